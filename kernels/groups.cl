@@ -18,7 +18,9 @@
 
 #define GROUP_BEGIN(Type, group) typedef struct {
 #define BUFFER(name, type, access) access(type) name;
-#define GROUP_END(Type) } Type;
+#define GROUP_END(Type) \
+  }                     \
+  Type;
 ALL_GROUPS
 #undef GROUP_BEGIN
 #undef BUFFER

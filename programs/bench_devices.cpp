@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// One picture by a device, by each of the parts that it is divided into, and by all of them together: samples of all pixels a
-// second, alternating, medians; and what the parts together reach of the sum of the parts, and of the whole.
+// One picture by a device, by each of the parts that it is divided into, and by all of them
+// together: samples of all pixels a second, alternating, medians; and what the parts together reach
+// of the sum of the parts, and of the whole.
 //
 // usage: caplet_bench_devices SCENE [SAMPLES [PARTS [DEVICE]]]
 #include <fmt/format.h>
@@ -41,10 +42,12 @@ double processor_seconds() {
   return seconds(used.ru_utime) + seconds(used.ru_stime);
 }
 
-/// Samples of all pixels a second, and processors that were busy: once to warm up, then the session goes on.
+/// Samples of all pixels a second, and processors that were busy: once to warm up, then the session
+/// goes on.
 class Contender {
  public:
-  Contender(const FlatScene& flat, const FlatView& view, const std::vector<Device>& devices, std::uint32_t samples)
+  Contender(const FlatScene& flat, const FlatView& view, const std::vector<Device>& devices,
+            std::uint32_t samples)
       : session_(flat, view, devices, {}), samples_(samples) {
     session_.render(samples);
   }
@@ -65,7 +68,8 @@ class Contender {
   std::vector<double> speeds_, busy_;
 };
 
-void run(const std::string& path, std::uint32_t samples, std::size_t parts, const std::string& choice) {
+void run(const std::string& path, std::uint32_t samples, std::size_t parts,
+         const std::string& choice) {
   const Scene scene = import_scene(path, FileImageReader());
   const FlatScene flat = lower(scene);
   const FlatView view = lower_view(scene);
@@ -74,17 +78,20 @@ void run(const std::string& path, std::uint32_t samples, std::size_t parts, cons
   std::vector<std::unique_ptr<Contender>> contenders;
   contenders.push_back(std::make_unique<Contender>(flat, view, std::vector{whole}, samples));
   contenders.push_back(std::make_unique<Contender>(flat, view, divided, samples));
-  for (const Device& part : divided) contenders.push_back(std::make_unique<Contender>(flat, view, std::vector{part}, samples));
+  for (const Device& part : divided)
+    contenders.push_back(std::make_unique<Contender>(flat, view, std::vector{part}, samples));
   for (int i = 0; i < times; ++i)
     for (const auto& contender : contenders) contender->go_on();
   double sum = 0;
   for (std::size_t i = 2; i < contenders.size(); ++i) sum += contenders[i]->speed();
   const double all = contenders[0]->speed(), together = contenders[1]->speed();
   fmt::print(
-      "{}, samples of {} x {} pixels a second: the device {:.2f}, its {} parts together {:.2f}, the sum of each alone {:.2f}; "
-      "together {:.3f} of the sum, {:.3f} of the device; processors busy: {:.2f} by the device, {:.2f} by the parts together\n",
-      path, scene.film.width, scene.film.height, all, parts, together, sum, together / sum, together / all, contenders[0]->busy(),
-      contenders[1]->busy());
+      "{}, samples of {} x {} pixels a second: the device {:.2f}, its {} parts together {:.2f}, "
+      "the sum of each alone {:.2f}; "
+      "together {:.3f} of the sum, {:.3f} of the device; processors busy: {:.2f} by the device, "
+      "{:.2f} by the parts together\n",
+      path, scene.film.width, scene.film.height, all, parts, together, sum, together / sum,
+      together / all, contenders[0]->busy(), contenders[1]->busy());
 }
 
 }  // namespace
@@ -92,9 +99,13 @@ void run(const std::string& path, std::uint32_t samples, std::size_t parts, cons
 
 int main(int argc, char** argv) {
   try {
-    if (argc < 2) throw std::runtime_error("usage: caplet_bench_devices SCENE [SAMPLES [PARTS [DEVICE]]]");
-    const auto number = [&](int i, unsigned long otherwise) { return argc > i ? std::strtoul(argv[i], nullptr, 10) : otherwise; };
-    caplet::run(argv[1], static_cast<std::uint32_t>(number(2, 8)), number(3, 2), argc > 4 ? argv[4] : "cpu");
+    if (argc < 2)
+      throw std::runtime_error("usage: caplet_bench_devices SCENE [SAMPLES [PARTS [DEVICE]]]");
+    const auto number = [&](int i, unsigned long otherwise) {
+      return argc > i ? std::strtoul(argv[i], nullptr, 10) : otherwise;
+    };
+    caplet::run(argv[1], static_cast<std::uint32_t>(number(2, 8)), number(3, 2),
+                argc > 4 ? argv[4] : "cpu");
     return 0;
   } catch (const std::exception& error) {
     fmt::print(stderr, "{}\n", error.what());

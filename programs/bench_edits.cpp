@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// What edits cost: from an edit to when the first pass of the new picture may begin, and the bytes that are sent.
+// What edits cost: from an edit to when the first pass of the new picture may begin, and the bytes
+// that are sent.
 //
 // usage: caplet_bench_edits [CAPSULES [DEVICE]]
 #include <fmt/format.h>
@@ -26,8 +27,12 @@ constexpr int times = 101;
 
 class Random {
  public:
-  double uniform(double low, double high) { return low + (high - low) * static_cast<double>(engine_()) / 4294967296.0; }
-  glm::vec3 within(double low, double high) { return {uniform(low, high), uniform(low, high), uniform(low, high)}; }
+  double uniform(double low, double high) {
+    return low + (high - low) * static_cast<double>(engine_()) / 4294967296.0;
+  }
+  glm::vec3 within(double low, double high) {
+    return {uniform(low, high), uniform(low, high), uniform(low, high)};
+  }
 
  private:
   std::mt19937 engine_{1};
@@ -61,7 +66,8 @@ Scene make_scene(std::size_t count, Random& random) {
   lamp.emission.emplace();
   scene.objects.emplace_back().shapes.push_back(walk(100, 0.2));
   for (int i = 0; i < 10000; ++i)
-    scene.instances.push_back({0, glm::translate(glm::dmat4(1), glm::dvec3(random.within(-50, 50))), {}});
+    scene.instances.push_back(
+        {0, glm::translate(glm::dmat4(1), glm::dvec3(random.within(-50, 50))), {}});
   scene.lights.push_back({InfiniteLight{}, 1, {}, {}, {}});
   scene.camera.world_from_camera = glm::translate(glm::dmat4(1), glm::dvec3(0, 0, -150));
   return scene;
@@ -71,14 +77,15 @@ void run(std::size_t count, const std::string& choice) {
   Random random;
   const Device on = Device::choose(choice);
   Scene scene = make_scene(count, random);
-  fmt::print("{} capsules, 10000 instances of 100, {} x {} pixels, on {}\n", count, scene.film.width, scene.film.height,
-             on.info().name);
+  fmt::print("{} capsules, 10000 instances of 100, {} x {} pixels, on {}\n", count,
+             scene.film.width, scene.film.height, on.info().name);
   Stopwatch watch;
   LiveScene live(std::move(scene));
   fmt::print("{:<28} {:>9.1f} ms\n", "full lowering", 1e3 * watch.lap());
   DeviceScene device(on, live.flat());
   on.finish();
-  fmt::print("{:<28} {:>9.1f} ms  {} bytes\n", "sending all of it", 1e3 * watch.lap(), live.flat().device_bytes());
+  fmt::print("{:<28} {:>9.1f} ms  {} bytes\n", "sending all of it", 1e3 * watch.lap(),
+             live.flat().device_bytes());
   Renderer renderer(device, live.view());
   renderer.pass(renderer.layout().window, 0, 1);
   on.finish();
@@ -99,13 +106,16 @@ void run(std::size_t count, const std::string& choice) {
     }
     std::ranges::sort(milliseconds);
     std::ranges::sort(edits);
-    fmt::print("{:<28} {:>9.3f} ms  (least {:.3f}, most {:.3f}; the edit itself {:.3f})  {} bytes, {} full lowerings\n", what,
-               milliseconds[times / 2], milliseconds.front(), milliseconds.back(), edits[times / 2],
-               (device.bytes_updated() - before) / times, live.lowerings() - lowerings);
+    fmt::print(
+        "{:<28} {:>9.3f} ms  (least {:.3f}, most {:.3f}; the edit itself {:.3f})  {} bytes, {} "
+        "full lowerings\n",
+        what, milliseconds[times / 2], milliseconds.front(), milliseconds.back(), edits[times / 2],
+        (device.bytes_updated() - before) / times, live.lowerings() - lowerings);
     std::fflush(stdout);
   };
   const auto some = [&](std::size_t below) {
-    return std::min(static_cast<std::size_t>(random.uniform(0, static_cast<double>(below))), below - 1);
+    return std::min(static_cast<std::size_t>(random.uniform(0, static_cast<double>(below))),
+                    below - 1);
   };
   measure("one capsule moved", [&] {
     const std::size_t i = some(count);
@@ -121,11 +131,13 @@ void run(std::size_t count, const std::string& choice) {
     return to;
   });
   measure("a material", [&] {
-    return MaterialEdit{0, DiffuseMaterial{RgbSpectrum{glm::dvec3(random.within(0.1, 0.9)), ColorSpace::srgb}}};
+    return MaterialEdit{
+        0, DiffuseMaterial{RgbSpectrum{glm::dvec3(random.within(0.1, 0.9)), ColorSpace::srgb}}};
   });
   measure("an instance of 10,000", [&] {
     const auto i = static_cast<std::uint32_t>(some(10000));
-    return InstanceEdit{i, glm::translate(live.scene().instances[i].world_from_object, glm::dvec3(random.within(-1, 1)))};
+    return InstanceEdit{i, glm::translate(live.scene().instances[i].world_from_object,
+                                          glm::dvec3(random.within(-1, 1)))};
   });
   measure("a light", [&] {
     Light to = live.scene().lights[0];
@@ -133,7 +145,8 @@ void run(std::size_t count, const std::string& choice) {
     return LightEdit{0, to};
   });
   measure("a lamp moved", [&] {
-    return TransformEdit{{{}, 1}, glm::translate(glm::dmat4(1), glm::dvec3(random.within(-40, 40)))};
+    return TransformEdit{{{}, 1},
+                         glm::translate(glm::dmat4(1), glm::dvec3(random.within(-40, 40)))};
   });
 }
 

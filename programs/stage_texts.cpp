@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Writes every stage's OpenCL C, as a renderer gives it to a driver, for a scene that has certain kinds of shapes: what
-// tools/budgets.py compiles for devices that are not there.
+// Writes every stage's OpenCL C, as a renderer gives it to a driver, for a scene that has certain
+// kinds of shapes: what tools/budgets.py compiles for devices that are not there.
 #include <array>
 #include <cstdint>
 #include <exception>
@@ -41,7 +41,8 @@ std::uint64_t mask_of(std::string_view shapes) {
     shapes.remove_prefix(name.size() < shapes.size() ? name.size() + 1 : name.size());
     std::uint32_t kind = 0;
     while (kind < shape_names.size() && shape_names[kind] != name) ++kind;
-    if (kind == shape_names.size()) throw std::invalid_argument("no shape is called '" + std::string(name) + "'");
+    if (kind == shape_names.size())
+      throw std::invalid_argument("no shape is called '" + std::string(name) + "'");
     mask |= caplet::shape_bit(kind);
   }
   return mask;
@@ -51,7 +52,8 @@ std::uint64_t mask_of(std::string_view shapes) {
 
 int main(int argc, char** argv) {
   if (argc != 3) {
-    std::cerr << "usage: caplet_stage_texts FOLDER SHAPES    SHAPES: all, or names of shapes.def with commas between them\n";
+    std::cerr << "usage: caplet_stage_texts FOLDER SHAPES    SHAPES: all, or names of shapes.def "
+                 "with commas between them\n";
     return 2;
   }
   try {

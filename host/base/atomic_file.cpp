@@ -29,7 +29,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Identifies a file by device and inode, whatever its name; one that does not exist yet by those of its folder, and its name.
+/// Identifies a file by device and inode, whatever its name; one that does not exist yet by those
+/// of its folder, and its name.
 struct Identity {
   dev_t device = 0;
   ino_t inode = 0;
@@ -61,11 +62,17 @@ class Descriptor {
   int number_;
 };
 
-fs::path folder_of(const fs::path& target) { return target.has_parent_path() ? target.parent_path() : fs::path("."); }
+fs::path folder_of(const fs::path& target) {
+  return target.has_parent_path() ? target.parent_path() : fs::path(".");
+}
 
-Place refused(const fs::path& path, const std::string& problem) { return {Kind::refused, path, {}, -1, problem}; }
+Place refused(const fs::path& path, const std::string& problem) {
+  return {Kind::refused, path, {}, -1, problem};
+}
 
-bool same_file(const struct stat& a, const struct stat& b) { return a.st_dev == b.st_dev && a.st_ino == b.st_ino; }
+bool same_file(const struct stat& a, const struct stat& b) {
+  return a.st_dev == b.st_dev && a.st_ino == b.st_ino;
+}
 
 int standard_stream(const struct stat& status) {
   for (const int descriptor : {STDOUT_FILENO, STDERR_FILENO}) {
@@ -96,13 +103,17 @@ Place place_of_new(const fs::path& target) {
 }
 
 Place place_of(const fs::path& target) {
-  if (!target.has_filename()) return refused(target, fmt::format("'{}' names no file", target.string()));
+  if (!target.has_filename())
+    return refused(target, fmt::format("'{}' names no file", target.string()));
   Place out{Kind::file, target};
   if (::stat(target.c_str(), &out.status) != 0) {
     if (errno == ENOENT) return place_of_new(target);
-    if (errno == ENOTDIR) return refused(target, fmt::format("folder '{}' does not exist", folder_of(target).string()));
-    if (errno == ELOOP) return refused(target, fmt::format("'{}' is a loop of links", target.string()));
-    return refused(target, fmt::format("'{}' cannot be written: {}", target.string(), std::strerror(errno)));
+    if (errno == ENOTDIR)
+      return refused(target, fmt::format("folder '{}' does not exist", folder_of(target).string()));
+    if (errno == ELOOP)
+      return refused(target, fmt::format("'{}' is a loop of links", target.string()));
+    return refused(
+        target, fmt::format("'{}' cannot be written: {}", target.string(), std::strerror(errno)));
   }
   const mode_t mode = out.status.st_mode;
   if (S_ISDIR(mode)) return refused(target, fmt::format("'{}' is a folder", target.string()));
@@ -112,7 +123,8 @@ Place place_of(const fs::path& target) {
     return out;
   }
   if (!S_ISREG(mode))
-    return refused(target, fmt::format("'{}' is a {}", target.string(), S_ISBLK(mode) ? "block device" : "socket"));
+    return refused(target, fmt::format("'{}' is a {}", target.string(),
+                                       S_ISBLK(mode) ? "block device" : "socket"));
   std::error_code error;
   out.path = fs::canonical(target, error);
   struct stat there {};
@@ -152,8 +164,9 @@ std::optional<std::string> input_at(const Place& place) {
 }
 
 std::string input_text(const fs::path& target, const std::string& input) {
-  return target == input ? fmt::format("'{}' is an input of this run", target.string())
-                         : fmt::format("'{}' is an input of this run ('{}')", target.string(), input);
+  return target == input
+             ? fmt::format("'{}' is an input of this run", target.string())
+             : fmt::format("'{}' is an input of this run ('{}')", target.string(), input);
 }
 
 // --- Writing ---
@@ -176,12 +189,15 @@ void copy(int from, int to, const fs::path& target) {
     const ssize_t count = ::read(from, buffer.data(), buffer.size());
     if (count == 0) return;
     if (count < 0 && errno != EINTR) fail(target, "cannot be written", errno);
-    if (count > 0) write_all(to, std::string_view(buffer.data(), static_cast<std::size_t>(count)), target);
+    if (count > 0)
+      write_all(to, std::string_view(buffer.data(), static_cast<std::size_t>(count)), target);
   }
 }
 
-/// Writes into a fifo, a device or a standard stream: first into an unnamed temporary file, which is then copied.
-void write_through(const Place& place, const fs::path& target, const std::function<void(const fs::path&)>& write) {
+/// Writes into a fifo, a device or a standard stream: first into an unnamed temporary file, which
+/// is then copied.
+void write_through(const Place& place, const fs::path& target,
+                   const std::function<void(const fs::path&)>& write) {
   std::error_code error;
   std::string name = (fs::temp_directory_path(error) / "caplet-XXXXXX").string();
   const Descriptor temporary(::mkostemp(name.data(), O_CLOEXEC));
@@ -203,7 +219,8 @@ void write_through(const Place& place, const fs::path& target, const std::functi
 /// Copies the mode and, if permitted, the owner of the file that is to be replaced.
 void set_owner_and_mode(int file, const Place& place) {
   if (place.kind == Kind::fresh) return;
-  // Users who may not change the owner keep the file. The mode comes last, because a change of the owner clears bits of it.
+  // Users who may not change the owner keep the file. The mode comes last, because a change of the
+  // owner clears bits of it.
   if (::fchown(file, place.status.st_uid, place.status.st_gid) != 0 &&
       ::fchown(file, static_cast<uid_t>(-1), place.status.st_gid) != 0)
     errno = 0;
@@ -227,7 +244,8 @@ struct Slot {
 std::array<Slot, 8> slots;
 static_assert(std::atomic<int>::is_always_lock_free, "handlers of signals use it");
 
-/// Lets remove_temporary_files remove this file during the object's lifetime, except a ninth file, or one with a longer name.
+/// Lets remove_temporary_files remove this file during the object's lifetime, except a ninth file,
+/// or one with a longer name.
 class Listed {
  public:
   explicit Listed(const fs::path& path) {
@@ -264,16 +282,19 @@ struct TemporaryName {
   }
   /// Returns whether it is a temporary name for the same target, of any process.
   bool is_one(std::string_view name) const {
-    if (name.size() < before.size() + after.size() || !name.starts_with(before) || !name.ends_with(after)) return false;
+    if (name.size() < before.size() + after.size() || !name.starts_with(before) ||
+        !name.ends_with(after))
+      return false;
     return are_numbers(name.substr(before.size(), name.size() - before.size() - after.size()));
   }
   /// Returns whether it is a temporary name for any target.
   static bool is_any(std::string_view name) {
     const std::size_t part = name.rfind(".part");
     if (!name.starts_with('.') || part == std::string_view::npos) return false;
-    const std::size_t second = name.rfind('.', part - 1), first = second == 0 ? second : name.rfind('.', second - 1);
-    return part > 0 && second != std::string_view::npos && first != std::string_view::npos && first > 0 &&
-           are_numbers(name.substr(first + 1, part - first - 1));
+    const std::size_t second = name.rfind('.', part - 1),
+                      first = second == 0 ? second : name.rfind('.', second - 1);
+    return part > 0 && second != std::string_view::npos && first != std::string_view::npos &&
+           first > 0 && are_numbers(name.substr(first + 1, part - first - 1));
   }
 
  private:
@@ -285,20 +306,22 @@ struct TemporaryName {
     const auto is_number = [](std::string_view one) {
       return !one.empty() && std::ranges::all_of(one, [](char c) { return c >= '0' && c <= '9'; });
     };
-    return point != std::string_view::npos && is_number(text.substr(0, point)) && is_number(text.substr(point + 1));
+    return point != std::string_view::npos && is_number(text.substr(0, point)) &&
+           is_number(text.substr(point + 1));
   }
 
   std::string before, after;
 };
 
-/// Returns the temporary files in a folder when this process first writes there. Newer ones belong to live processes, or to
-/// processes that died since; the next run removes those.
+/// Returns the temporary files in a folder when this process first writes there. Newer ones belong
+/// to live processes, or to processes that died since; the next run removes those.
 std::vector<std::string>& found_in(const fs::path& folder) {
   static std::map<fs::path, std::vector<std::string>> all;
   const auto [at, is_new] = all.try_emplace(folder);
   std::error_code error;
   if (is_new)
-    for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error))
+    for (fs::directory_iterator entry(folder, error), end; !error && entry != end;
+         entry.increment(error))
       if (std::string name = entry->path().filename().string(); TemporaryName::is_any(name))
         at->second.push_back(std::move(name));
   return at->second;
@@ -326,16 +349,18 @@ void remove_left_of(const fs::path& path) {
   });
 }
 
-/// A temporary file beside its target, locked during the object's lifetime. The lock ends with the process in any case.
+/// A temporary file beside its target, locked during the object's lifetime. The lock ends with the
+/// process in any case.
 class Temporary {
  public:
   Temporary(const Place& place, const fs::path& target) {
     const TemporaryName name(place.path);
     for (int tries = 0;; ++tries) {
       path_ = folder_of(place.path) / name.next();
-      descriptor_.emplace(
-          ::open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, place.kind == Kind::fresh ? 0666 : 0600));
-      if ((*descriptor_)() < 0 && (errno != EEXIST || tries == 100)) fail(target, "cannot be written", errno);
+      descriptor_.emplace(::open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC,
+                                 place.kind == Kind::fresh ? 0666 : 0600));
+      if ((*descriptor_)() < 0 && (errno != EEXIST || tries == 100))
+        fail(target, "cannot be written", errno);
       if ((*descriptor_)() >= 0 && is_ours()) break;
     }
     set_owner_and_mode((*descriptor_)(), place);
@@ -343,9 +368,11 @@ class Temporary {
   const fs::path& path() const { return path_; }
 
  private:
-  /// Returns false if another process found the file between its creation and its lock, took it for abandoned and removed it.
+  /// Returns false if another process found the file between its creation and its lock, took it for
+  /// abandoned and removed it.
   bool is_ours() const {
-    if (::flock((*descriptor_)(), LOCK_EX | LOCK_NB) != 0) return errno != EWOULDBLOCK;  // some file systems have no locks
+    if (::flock((*descriptor_)(), LOCK_EX | LOCK_NB) != 0)
+      return errno != EWOULDBLOCK;  // some file systems have no locks
     struct stat status {};
     return ::fstat((*descriptor_)(), &status) != 0 || status.st_nlink > 0;
   }
@@ -409,16 +436,19 @@ void check_writable(const fs::path& target, const std::string& flag) {
   if (place.kind == Kind::file && ::access(place.path.c_str(), W_OK) != 0)
     refuse(fmt::format("'{}' cannot be written", target.string()));
   const fs::path folder = folder_of(place.path);
-  if (::access(folder.c_str(), W_OK | X_OK) != 0) refuse(fmt::format("folder '{}' cannot be written", folder.string()));
+  if (::access(folder.c_str(), W_OK | X_OK) != 0)
+    refuse(fmt::format("folder '{}' cannot be written", folder.string()));
 }
 
 bool is_stream(const fs::path& target) { return place_of(target).kind == Kind::stream; }
 
 void note_input(const fs::path& path) {
   struct stat status {};
-  if (::stat(path.c_str(), &status) != 0 || !(S_ISREG(status.st_mode) || S_ISFIFO(status.st_mode))) return;
+  if (::stat(path.c_str(), &status) != 0 || !(S_ISREG(status.st_mode) || S_ISFIFO(status.st_mode)))
+    return;
   const std::lock_guard lock(inputs().mutex);
-  if (inputs().keepers > 0) inputs().names.emplace(std::pair{status.st_dev, status.st_ino}, path.string());
+  if (inputs().keepers > 0)
+    inputs().names.emplace(std::pair{status.st_dev, status.st_ino}, path.string());
 }
 
 void forget_input(const fs::path& path) {
@@ -453,8 +483,11 @@ void Outputs::add(const std::string& flag, const fs::path& target) {
   for (const Output& other : outputs_) {
     const Place there = place_of(other.target);
     // Several outputs may go to one device, such as /dev/null.
-    if (!identity || identity != identity_of(there) || (place.kind == Kind::stream && S_ISCHR(place.status.st_mode))) continue;
-    throw InputError(SourceLocation{flag}, fmt::format("'{}' is the output of {} as well", target.string(), other.flag));
+    if (!identity || identity != identity_of(there) ||
+        (place.kind == Kind::stream && S_ISCHR(place.status.st_mode)))
+      continue;
+    throw InputError(SourceLocation{flag},
+                     fmt::format("'{}' is the output of {} as well", target.string(), other.flag));
   }
   outputs_.push_back({flag, target});
 }

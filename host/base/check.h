@@ -11,13 +11,13 @@
 
 #include "base/error.h"
 
-#define CAPLET_CHECK_OP(a, op, b)                                                                                           \
-  do {                                                                                                                      \
-    const auto& check_a_ = (a);                                                                                             \
-    const auto& check_b_ = (b);                                                                                             \
-    if (!(check_a_ op check_b_))                                                                                            \
-      ::caplet::detail::check_failed(#a " " #op " " #b, fmt::format("{}", check_a_), fmt::format("{}", check_b_), __FILE__, \
-                                     __LINE__);                                                                             \
+#define CAPLET_CHECK_OP(a, op, b)                                                      \
+  do {                                                                                 \
+    const auto& check_a_ = (a);                                                        \
+    const auto& check_b_ = (b);                                                        \
+    if (!(check_a_ op check_b_))                                                       \
+      ::caplet::detail::check_failed(#a " " #op " " #b, fmt::format("{}", check_a_),   \
+                                     fmt::format("{}", check_b_), __FILE__, __LINE__); \
   } while (false)
 #define CHECK_EQ_(a, b) CAPLET_CHECK_OP(a, ==, b)
 #define CHECK_LT_(a, b) CAPLET_CHECK_OP(a, <, b)
@@ -29,8 +29,8 @@ namespace caplet {
 template <class To, class From>
 To narrow(From value) {
   if (!std::in_range<To>(value))
-    detail::check_failed("narrow", fmt::format("{}", value), fmt::format("{}", std::numeric_limits<To>::max()), __FILE__,
-                         __LINE__);
+    detail::check_failed("narrow", fmt::format("{}", value),
+                         fmt::format("{}", std::numeric_limits<To>::max()), __FILE__, __LINE__);
   return static_cast<To>(value);
 }
 

@@ -12,7 +12,9 @@ namespace caplet {
 using Clock = std::chrono::steady_clock;
 
 /// Returns the seconds since `start`.
-inline double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+inline double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
 
 class Stopwatch {
  public:

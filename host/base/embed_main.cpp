@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Build tool: embed_files OUTPUT FUNCTION ROOT FILE... writes a C++ function that returns a table of the files' texts by their
-// paths from ROOT (embedded_file.h).
+// Build tool: embed_files OUTPUT FUNCTION ROOT FILE... writes a C++ function that returns a table
+// of the files' texts by their paths from ROOT (embedded_file.h).
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -12,7 +12,8 @@
 
 namespace {
 
-/// Returns `line` as a C++ string literal. Bytes outside printable ASCII become three-digit octal escapes.
+/// Returns `line` as a C++ string literal. Bytes outside printable ASCII become three-digit octal
+/// escapes.
 std::string literal(const std::string& line) {
   std::string out = "\"";
   for (const char c : line) {
@@ -40,7 +41,9 @@ int main(int argc, char** argv) {
   }
   const std::filesystem::path root = argv[3];
   std::ofstream out(argv[1]);
-  out << "#include <span>\n#include \"base/embedded_file.h\"\nnamespace caplet {\nstd::span<const EmbeddedFile> " << argv[2]
+  out << "#include <span>\n#include \"base/embedded_file.h\"\nnamespace caplet {\nstd::span<const "
+         "EmbeddedFile> "
+      << argv[2]
       << "();\nnamespace {\nusing namespace std::string_view_literals;\n"
          "constexpr EmbeddedFile files[] = {\n";
   for (int i = 4; i < argc; ++i) {
@@ -49,7 +52,8 @@ int main(int argc, char** argv) {
       std::cerr << argv[i] << ": cannot be read\n";
       return 1;
     }
-    out << "{" << literal(std::filesystem::path(argv[i]).lexically_relative(root).generic_string()) << "sv,\n\"\"";
+    out << "{" << literal(std::filesystem::path(argv[i]).lexically_relative(root).generic_string())
+        << "sv,\n\"\"";
     const std::string text{std::istreambuf_iterator<char>(in), {}};
     for (std::size_t begin = 0; begin < text.size();) {
       const std::size_t end = std::min(text.find('\n', begin), text.size() - 1) + 1;

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Files that are embedded in the program; the build makes tables of them (host/base/embed_main.cpp).
+// Files that are embedded in the program; the build makes tables of them
+// (host/base/embed_main.cpp).
 #pragma once
 
 #include <span>

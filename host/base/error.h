@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Errors with a place (caplet/error.h), and a collection of them. Each interface (host/cli) catches the exceptions once.
+// Errors with a place (caplet/error.h), and a collection of them. Each interface (host/cli) catches
+// the exceptions once.
 #pragma once
 
 #include <cstddef>
@@ -12,16 +13,17 @@
 
 namespace caplet {
 
-/// Collects input errors so that several are reported at once. Errors of one kind share a line, that of the first, with the
-/// number of the others. Beyond `limit` lines only the number of errors is reported.
+/// Collects input errors so that several are reported at once. Errors of one kind share a line,
+/// that of the first, with the number of the others. Beyond `limit` lines only the number of errors
+/// is reported.
 class Diagnostics {
  public:
   /// `error` throws at so many errors, because reading on is useless.
   static constexpr std::size_t most_errors = 100'000;
 
   explicit Diagnostics(std::size_t limit = 20) : limit_(limit) {}
-  /// `kind` groups errors, such as an unsupported feature; if it is empty, the error has its own line. Throws InputError with all
-  /// errors when there are `most_errors`.
+  /// `kind` groups errors, such as an unsupported feature; if it is empty, the error has its own
+  /// line. Throws InputError with all errors when there are `most_errors`.
   void error(const SourceLocation& where, const std::string& message, const std::string& kind = {});
   /// Counts errors without messages.
   void add_more(std::size_t count);
@@ -45,7 +47,8 @@ class Diagnostics {
 };
 
 namespace detail {
-[[noreturn]] void check_failed(const char* expression, const std::string& a, const std::string& b, const char* file, int line);
+[[noreturn]] void check_failed(const char* expression, const std::string& a, const std::string& b,
+                               const char* file, int line);
 }
 
 }  // namespace caplet

@@ -30,7 +30,8 @@ void on_signal(int number) {
 void install_interrupt_handlers() {
   std::signal(SIGINT, on_signal);
   std::signal(SIGTERM, on_signal);
-  if (std::signal(SIGHUP, on_signal) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);  // nohup ignores SIGHUP
+  if (std::signal(SIGHUP, on_signal) == SIG_IGN)
+    std::signal(SIGHUP, SIG_IGN);  // nohup ignores SIGHUP
 }
 bool interrupt_requested() { return requested != 0; }
 void set_interrupt_requested(bool value) { requested = value ? 1 : 0; }

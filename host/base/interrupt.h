@@ -6,8 +6,9 @@
 
 namespace caplet {
 
-/// Installs handlers for SIGINT, SIGTERM and SIGHUP (unless ignored, as by nohup) that set the flag. After a SIGINT or SIGTERM
-/// the next one has its default action; SIGHUP may come repeatedly when a terminal closes, and only sets the flag.
+/// Installs handlers for SIGINT, SIGTERM and SIGHUP (unless ignored, as by nohup) that set the
+/// flag. After a SIGINT or SIGTERM the next one has its default action; SIGHUP may come repeatedly
+/// when a terminal closes, and only sets the flag.
 void install_interrupt_handlers();
 bool interrupt_requested();
 /// Sets or clears the flag, for tests.

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Diagnostics, one line each, on stderr unless a sink is set (caplet/log.h). Results are never logged.
+// Diagnostics, one line each, on stderr unless a sink is set (caplet/log.h). Results are never
+// logged.
 #pragma once
 
 #include <fmt/format.h>
@@ -23,11 +24,13 @@ void write(LogLevel level, std::string_view message);
 
 template <class... Values>
 void info(fmt::format_string<Values...> text, Values&&... values) {
-  if (is_shown(LogLevel::info)) write(LogLevel::info, fmt::format(text, std::forward<Values>(values)...));
+  if (is_shown(LogLevel::info))
+    write(LogLevel::info, fmt::format(text, std::forward<Values>(values)...));
 }
 template <class... Values>
 void warn(fmt::format_string<Values...> text, Values&&... values) {
-  if (is_shown(LogLevel::warning)) write(LogLevel::warning, fmt::format(text, std::forward<Values>(values)...));
+  if (is_shown(LogLevel::warning))
+    write(LogLevel::warning, fmt::format(text, std::forward<Values>(values)...));
 }
 /// Errors are counted whether they are shown or not.
 template <class... Values>

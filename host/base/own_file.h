@@ -8,7 +8,8 @@
 
 namespace caplet {
 
-/// Returns the program or shared library that contains this code, as an absolute path without links; empty if unknown.
+/// Returns the program or shared library that contains this code, as an absolute path without
+/// links; empty if unknown.
 std::filesystem::path own_file();
 
 }  // namespace caplet

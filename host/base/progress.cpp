@@ -84,7 +84,10 @@ ProgressReporter::Style ProgressReporter::style_for_stderr(bool quiet) {
 
 ProgressReporter::ProgressReporter(Style style, std::function<void(std::string_view)> write,
                                    std::function<Clock::time_point()> now)
-    : style_(style), write_(write ? std::move(write) : write_stderr), now_(std::move(now)), start_(now_()) {}
+    : style_(style),
+      write_(write ? std::move(write) : write_stderr),
+      now_(std::move(now)),
+      start_(now_()) {}
 
 ProgressReporter::~ProgressReporter() { clear_bar(); }
 
@@ -97,7 +100,8 @@ void ProgressReporter::update(double fraction, double paths_per_second, const st
   if (style_ == Style::none || finished_) return;
   const Clock::time_point now = now_();
   if (!(fraction > 0)) start_ = now;
-  const ProgressState state{fraction, std::chrono::duration<double>(now - start_).count(), paths_per_second, detail};
+  const ProgressState state{fraction, std::chrono::duration<double>(now - start_).count(),
+                            paths_per_second, detail};
   if (fraction >= 1) {
     finished_ = true;
     clear_bar();
@@ -106,7 +110,8 @@ void ProgressReporter::update(double fraction, double paths_per_second, const st
   }
   // Lines count their interval from the start, so that short tasks print only the end.
   const double interval = style_ == Style::bar ? 0.2 : 5.0;
-  const Clock::time_point last = drawn_ ? *drawn_ : (style_ == Style::bar ? now - std::chrono::hours(1) : start_);
+  const Clock::time_point last =
+      drawn_ ? *drawn_ : (style_ == Style::bar ? now - std::chrono::hours(1) : start_);
   if (std::chrono::duration<double>(now - last).count() < interval) return;
   drawn_ = now;
   if (style_ == Style::lines) {

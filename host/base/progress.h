@@ -26,7 +26,8 @@ std::string rate_text(double paths_per_second);
 /// Returns the seconds left at the present speed; no value before 0.1 % is done.
 std::optional<double> time_left(double fraction, double seconds);
 
-/// Returns one line without line break, of at most `columns` characters: bar, percent, detail, rate, time left.
+/// Returns one line without line break, of at most `columns` characters: bar, percent, detail,
+/// rate, time left.
 std::string progress_bar(const ProgressState& state, int columns);
 /// Returns the same in words.
 std::string progress_line(const ProgressState& state);
@@ -47,8 +48,8 @@ class ProgressReporter {
   ProgressReporter(const ProgressReporter&) = delete;
   ProgressReporter& operator=(const ProgressReporter&) = delete;
 
-  /// Draws when the last drawing is 0.2 s (bar) or 5 s (lines) old; the end of the task is always drawn as a line. A fraction of
-  /// 0 restarts the clock, so that earlier work does not count.
+  /// Draws when the last drawing is 0.2 s (bar) or 5 s (lines) old; the end of the task is always
+  /// drawn as a line. A fraction of 0 restarts the clock, so that earlier work does not count.
   void update(double fraction, double paths_per_second, const std::string& detail);
 
  private:

@@ -21,7 +21,8 @@ thread_local std::optional<fs::path> beneath;  // none: any file may be read
 }  // namespace
 
 ReadingBeneath::ReadingBeneath(const fs::path& scene)
-    : before_(std::exchange(beneath, without_links(scene.has_parent_path() ? scene.parent_path() : fs::path(".")))) {}
+    : before_(std::exchange(
+          beneath, without_links(scene.has_parent_path() ? scene.parent_path() : fs::path(".")))) {}
 ReadingBeneath::~ReadingBeneath() { beneath = std::move(before_); }
 
 ReadingAnywhere::ReadingAnywhere() : before_(std::exchange(beneath, std::nullopt)) {}
@@ -30,13 +31,16 @@ ReadingAnywhere::~ReadingAnywhere() { beneath = std::move(before_); }
 bool may_read(const fs::path& path) {
   if (!beneath) return true;
   const fs::path real = without_links(path);
-  return std::mismatch(beneath->begin(), beneath->end(), real.begin(), real.end()).first == beneath->end();
+  return std::mismatch(beneath->begin(), beneath->end(), real.begin(), real.end()).first ==
+         beneath->end();
 }
 
 void check_may_read(const fs::path& path, const SourceLocation& where) {
   if (may_read(path)) return;
   const SourceLocation here = where.file.empty() ? SourceLocation{path.string()} : where;
-  throw InputError(here, "'" + path.string() + "' is outside of the scene's folder, which --no-outside does not let it read");
+  throw InputError(
+      here, "'" + path.string() +
+                "' is outside of the scene's folder, which --no-outside does not let it read");
 }
 
 void begin_reading(const fs::path& path, const SourceLocation& where) {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Restricts the files that a scene may name, to those beneath its own folder, or not at all. Importers ask here before they open
-// or look for a file; tools/doors.py checks that they do.
+// Restricts the files that a scene may name, to those beneath its own folder, or not at all.
+// Importers ask here before they open or look for a file; tools/doors.py checks that they do.
 #pragma once
 
 #include <filesystem>
@@ -12,8 +12,9 @@
 
 namespace caplet {
 
-/// While an instance exists, this thread may read only files beneath the folder of `scene`, after links are resolved. For
-/// services that render untrusted files: these may change before they are read, but not during reading.
+/// While an instance exists, this thread may read only files beneath the folder of `scene`, after
+/// links are resolved. For services that render untrusted files: these may change before they are
+/// read, but not during reading.
 class ReadingBeneath {
  public:
   explicit ReadingBeneath(const std::filesystem::path& scene);
@@ -37,8 +38,8 @@ class ReadingAnywhere {
   std::optional<std::filesystem::path> before_;
 };
 
-/// Throws InputError at `where` (or of the file itself, where that is empty) for a file that may not be read, whether or not it
-/// exists.
+/// Throws InputError at `where` (or of the file itself, where that is empty) for a file that may
+/// not be read, whether or not it exists.
 void check_may_read(const std::filesystem::path& path, const SourceLocation& where = {});
 
 /// Returns whether check_may_read accepts the path.
@@ -51,7 +52,8 @@ void begin_reading(const std::filesystem::path& path, const SourceLocation& wher
 bool is_there(const std::filesystem::path& path, const SourceLocation& where);
 bool is_file(const std::filesystem::path& path, const SourceLocation& where);
 
-/// Resolves links, "." and ".." in `path`, even if it or a link's target does not exist; empty for a loop of links.
+/// Resolves links, "." and ".." in `path`, even if it or a link's target does not exist; empty for
+/// a loop of links.
 std::filesystem::path without_links(const std::filesystem::path& path);
 
 }  // namespace caplet

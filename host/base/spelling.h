@@ -10,8 +10,8 @@
 
 namespace caplet {
 
-/// Returns the known name with the smallest edit distance; empty if there is none. The time grows with the number of names, so
-/// skip it for an error that is not shown (Diagnostics::is_full).
+/// Returns the known name with the smallest edit distance; empty if there is none. The time grows
+/// with the number of names, so skip it for an error that is not shown (Diagnostics::is_full).
 std::string nearest_name(std::string_view name, const std::vector<std::string>& known);
 
 /// Converts A to Z to lower case; other bytes stay.

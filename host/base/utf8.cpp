@@ -11,7 +11,8 @@ namespace {
 
 constexpr std::string_view replacement_text = "\xef\xbf\xbd";
 
-/// The meaning of a first byte (Unicode 15, table 3-7): the number of further bytes, and the range of the first of them.
+/// The meaning of a first byte (Unicode 15, table 3-7): the number of further bytes, and the range
+/// of the first of them.
 struct Lead {
   std::size_t more = 0;  // 0: no sequence begins with it
   unsigned char low = 0x80, high = 0xbf;
@@ -37,7 +38,8 @@ char32_t take_character(std::string_view& text) {
   const std::size_t whole = 1 + lead.more;
   char32_t out = first < 0x80 ? first : first & (0x3fu >> lead.more);
   std::size_t end = 1;
-  for (; end < std::min(whole, text.size()) && byte(end) >= lead.low && byte(end) <= lead.high; ++end) {
+  for (; end < std::min(whole, text.size()) && byte(end) >= lead.low && byte(end) <= lead.high;
+       ++end) {
     out = out << 6 | (byte(end) & 0x3fu);
     lead = {0, 0x80, 0xbf};
   }

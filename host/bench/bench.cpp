@@ -30,11 +30,13 @@ double median(std::vector<double> values) {
   return values.empty() ? 0 : values[values.size() / 2];
 }
 
-void say(const Say& line, const std::string& name, double ours, double peer, const std::string& unit,
-         const std::string& more = {}) {
+void say(const Say& line, const std::string& name, double ours, double peer,
+         const std::string& unit, const std::string& more = {}) {
   const std::string beside =
-      peer > 0 ? fmt::format("\"embree\": {:.4g}, \"ratio\": {:.4g}", peer, ours / peer) : "\"embree\": null, \"ratio\": null";
-  line(fmt::format("{{\"name\": \"{}\", \"ours\": {:.4g}, {}, \"unit\": \"{}\"{}}}", name, ours, beside, unit, more));
+      peer > 0 ? fmt::format("\"embree\": {:.4g}, \"ratio\": {:.4g}", peer, ours / peer)
+               : "\"embree\": null, \"ratio\": null";
+  line(fmt::format("{{\"name\": \"{}\", \"ours\": {:.4g}, {}, \"unit\": \"{}\"{}}}", name, ours,
+                   beside, unit, more));
 }
 
 enum class Question { closest, any };
@@ -46,14 +48,17 @@ struct Bench {
   double seconds;
   bool by_shape = false;  // ids of the peer are not primitive ids
 
-  /// Alternates between both until the time is up, at least three rounds. `ours`: the same rays, possibly in another order.
+  /// Alternates between both until the time is up, at least three rounds. `ours`: the same rays,
+  /// possibly in another order.
   void run(const std::string& name, DeviceTracer& tracer, const std::vector<RayRecord>& ours,
            const std::vector<RayRecord>& theirs, Question question = Question::closest) {
     if (ours.empty()) return;
     const bool any = question == Question::any;
     std::vector<std::uint32_t> ids(theirs.size());
     const auto ask = [&] { any ? tracer.run_any() : tracer.run_closest(); };
-    const auto ask_peer = [&] { return any ? peer->trace_any(theirs, ids) : peer->trace(theirs, ids); };
+    const auto ask_peer = [&] {
+      return any ? peer->trace_any(theirs, ids) : peer->trace(theirs, ids);
+    };
     tracer.set_rays(ours);
     ask();
     const std::size_t peer_hits = peer ? ask_peer() : 0;
@@ -74,10 +79,12 @@ struct Bench {
       for (const int one : tracer.any()) found.push_back(one != 0 ? 1 : 0);
     } else {
       for (const HitRecord& hit : tracer.hits())
-        found.push_back(hit.slot == CAPLET_NONE ? CAPLET_NONE : std::bit_cast<std::uint32_t>(leaves[hit.slot]));
+        found.push_back(hit.slot == CAPLET_NONE ? CAPLET_NONE
+                                                : std::bit_cast<std::uint32_t>(leaves[hit.slot]));
     }
-    const auto our_hits =
-        std::count_if(found.begin(), found.end(), [&](std::uint32_t one) { return one != (any ? 0 : CAPLET_NONE); });
+    const auto our_hits = std::count_if(found.begin(), found.end(), [&](std::uint32_t one) {
+      return one != (any ? 0 : CAPLET_NONE);
+    });
     std::string more = fmt::format(", \"rays\": {}, \"hits\": {}", ours.size(), our_hits);
     if (peer) more += fmt::format(", \"embree_hits\": {}", peer_hits);
     if (peer && &ours == &theirs && (any || !by_shape)) {
@@ -98,15 +105,17 @@ struct Tracers {
       : camera(tracer_for(device, width, shapes, kind_bits, DeviceTracer::Manner::stream)),
         others(tracer_for(device, width, shapes, kind_bits, DeviceTracer::Manner::pool)) {}
 
-  void upload(std::span<const float> nodes, std::span<const float> leaves, std::span<const InstanceRecord> instances, uint root) {
+  void upload(std::span<const float> nodes, std::span<const float> leaves,
+              std::span<const InstanceRecord> instances, uint root) {
     camera.upload(nodes, leaves, instances, root);
     others.upload(nodes, leaves, instances, root);
   }
 
  private:
-  static DeviceTracer tracer_for(const Device& device, int width, std::uint64_t shapes, int kind_bits,
-                                 DeviceTracer::Manner manner) {
-    return DeviceTracer(device, width, fmt::format("-DCAPLET_LEAF_KIND_BITS={}", kind_bits), {{"shapes", shapes}}, manner);
+  static DeviceTracer tracer_for(const Device& device, int width, std::uint64_t shapes,
+                                 int kind_bits, DeviceTracer::Manner manner) {
+    return DeviceTracer(device, width, fmt::format("-DCAPLET_LEAF_KIND_BITS={}", kind_bits),
+                        {{"shapes", shapes}}, manner);
   }
 };
 
@@ -114,9 +123,11 @@ int width_for(const Device& device, const Options& options) {
   return options.width != 0 ? options.width : device.is_cpu() ? 8 : 1;
 }
 
-void run_shapes(const std::string& kind, const Device& device, const Options& options, const Say& line) {
+void run_shapes(const std::string& kind, const Device& device, const Options& options,
+                const Say& line) {
   std::vector<FlatPrimitive> same;
-  const FlatScene scene = lower(walk_scene(kind, std::min<std::size_t>(options.count, 100000), same));
+  const FlatScene scene =
+      lower(walk_scene(kind, std::min<std::size_t>(options.count, 100000), same));
   std::optional<Peer> peer;
   if (!same.empty() && Peer::is_there() && !options.alone) peer.emplace(same);
   Tracers tracers(device, width_for(device, options), scene.shapes, scene.leaf_kind_bits);
@@ -132,13 +143,16 @@ void run_shapes(const std::string& kind, const Device& device, const Options& op
 /// Returns the seconds of `work` on this number of threads, which may exceed the number of cores.
 template <class Work>
 double seconds_on(int threads, const Work& work) {
-  const tbb::global_control most(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
+  const tbb::global_control most(tbb::global_control::max_allowed_parallelism,
+                                 static_cast<std::size_t>(threads));
   tbb::task_arena arena(threads);
   return arena.execute(work);
 }
 
-/// Measures tree builds on 1 to options.builders threads, each followed by Embree's; reports medians.
-void run_builders(std::span<const FlatPrimitive> primitives, int kind_bits, const Options& options, const Say& line) {
+/// Measures tree builds on 1 to options.builders threads, each followed by Embree's; reports
+/// medians.
+void run_builders(std::span<const FlatPrimitive> primitives, int kind_bits, const Options& options,
+                  const Say& line) {
   constexpr int repetitions = 7;
   const bool beside = Peer::is_there() && !options.alone;
   for (int threads = 1; threads <= options.builders; ++threads) {
@@ -150,16 +164,18 @@ void run_builders(std::span<const FlatPrimitive> primitives, int kind_bits, cons
         encode_tree(primitives, nodes, leaves, kind_bits);
         return seconds_since(start);
       }));
-      if (beside) theirs.push_back(seconds_on(threads, [&] { return Peer(primitives).build_seconds(); }));
+      if (beside)
+        theirs.push_back(seconds_on(threads, [&] { return Peer(primitives).build_seconds(); }));
     }
-    say(line, fmt::format("{} build, {} thread{}", options.kind, threads, threads == 1 ? "" : "s"), median(ours),
-        beside ? median(theirs) : 0, "s");
+    say(line, fmt::format("{} build, {} thread{}", options.kind, threads, threads == 1 ? "" : "s"),
+        median(ours), beside ? median(theirs) : 0, "s");
   }
 }
 
 void run_walks(const Device& device, const Options& options, const Say& line) {
   const std::string& kind = options.kind;
-  const auto primitives = kind == "triangles" ? walk_triangles(options.count) : walk_capsules(options.count);
+  const auto primitives =
+      kind == "triangles" ? walk_triangles(options.count) : walk_capsules(options.count);
   if (options.builders > 0) {
     std::uint64_t shapes = 0;
     for (const FlatPrimitive& p : primitives) shapes |= shape_bit(p.shape);
@@ -174,11 +190,14 @@ void run_walks(const Device& device, const Options& options, const Say& line) {
   std::optional<Peer> peer;
   if (Peer::is_there() && !options.alone) peer.emplace(primitives);
   say(line, kind + " build", build, peer ? peer->build_seconds() : 0, "s",
-      fmt::format(", \"nodes\": {}, \"depth\": {}, \"sah\": {:.3f}", tree.nodes, tree.depth, tree.sah));
+      fmt::format(", \"nodes\": {}, \"depth\": {}, \"sah\": {:.3f}", tree.nodes, tree.depth,
+                  tree.sah));
   const double n = static_cast<double>(options.count);
-  say(line, kind + " memory", static_cast<double>((nodes.size() + leaves.size() + options.count) * sizeof(float)) / n, 0,
+  say(line, kind + " memory",
+      static_cast<double>((nodes.size() + leaves.size() + options.count) * sizeof(float)) / n, 0,
       "bytes/primitive",
-      fmt::format(", \"node_bytes\": {:.2f}, \"leaf_bytes\": {:.2f}", static_cast<double>(nodes.size() * sizeof(float)) / n,
+      fmt::format(", \"node_bytes\": {:.2f}, \"leaf_bytes\": {:.2f}",
+                  static_cast<double>(nodes.size() * sizeof(float)) / n,
                   static_cast<double>(leaves.size() * sizeof(float)) / n));
 
   Tracers tracers(device, width_for(device, options), shapes, leaf_kind_bits(shapes));
@@ -212,8 +231,9 @@ TreeLights tree_lights(std::span<const FlatPrimitive> primitives) {
 /// Returns the processor seconds of the whole program, including system time.
 double processor_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
-/// Measures the cost of emissive capsules, in processor seconds and in device bytes: the light tree compared with the tree of the
-/// same capsules, and all data of lights compared with the scene without lights. Reports medians of five.
+/// Measures the cost of emissive capsules, in processor seconds and in device bytes: the light tree
+/// compared with the tree of the same capsules, and all data of lights compared with the scene
+/// without lights. Reports medians of five.
 void run_lights(const Options& options, const Say& line) {
   constexpr int repetitions = 5;
   const auto primitives = walk_capsules(options.count);
@@ -243,13 +263,17 @@ void run_lights(const Options& options, const Say& line) {
     timed(bright, [&] { with = lower(walks); });
   }
   const double n = static_cast<double>(options.count);
-  const auto told = [&](const char* name, double light, double other, const char* of, const char* unit) {
-    line(fmt::format("{{\"name\": \"{}\", \"ours\": {:.4g}, \"{}\": {:.4g}, \"ratio\": {:.4g}, \"unit\": \"{}\"}}", name, light,
-                     of, other, light / other, unit));
+  const auto told = [&](const char* name, double light, double other, const char* of,
+                        const char* unit) {
+    line(
+        fmt::format("{{\"name\": \"{}\", \"ours\": {:.4g}, \"{}\": {:.4g}, \"ratio\": {:.4g}, "
+                    "\"unit\": \"{}\"}}",
+                    name, light, of, other, light / other, unit));
   };
   told("light tree", median(trees), median(geometry), "geometry's tree", "processor s");
   told("lights", median(bright) - median(dark), median(dark), "all of geometry", "processor s");
-  told("light tree memory", static_cast<double>((tree.light_nodes.size() + tree.light_places.size()) * sizeof(uint)) / n,
+  told("light tree memory",
+       static_cast<double>((tree.light_nodes.size() + tree.light_places.size()) * sizeof(uint)) / n,
        static_cast<double>(without.geometry_bytes()) / n, "geometry", "bytes/light");
   told("lights memory", static_cast<double>(with.device_bytes() - without.device_bytes()) / n,
        static_cast<double>(without.geometry_bytes()) / n, "geometry", "bytes/light");
@@ -266,7 +290,8 @@ std::vector<std::string> kinds() {
 void run(const Options& options, const Say& line) {
   if (options.kind == "lights") return run_lights(options, line);
   const Device device = Device::choose(options.device);
-  if (options.kind == "triangles" || options.kind == "capsules") return run_walks(device, options, line);
+  if (options.kind == "triangles" || options.kind == "capsules")
+    return run_walks(device, options, line);
   for (const std::string& one : walk_kinds())
     if (options.kind == "shapes" || options.kind == one) run_shapes(one, device, options, line);
 }

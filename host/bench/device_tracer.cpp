@@ -9,8 +9,9 @@
 namespace caplet::bench {
 namespace {
 
-// These stages are like a renderer's, with a struct for their arguments. They disable putting several work-items into one vector
-// (kernels/stages/kernel.cl): Intel's compiler of 2025 crashes on this kernel otherwise.
+// These stages are like a renderer's, with a struct for their arguments. They disable putting
+// several work-items into one vector (kernels/stages/kernel.cl): Intel's compiler of 2025 crashes
+// on this kernel otherwise.
 const char* const kernels = R"(
 #include "groups.cl"
 typedef struct {
@@ -41,7 +42,8 @@ __attribute__((vec_type_hint(float8))) __kernel void trace(__global const float*
 
 }  // namespace
 
-DeviceTracer::DeviceTracer(const Device& device, int width, const std::string& options, const RowMasks& rows, Manner manner)
+DeviceTracer::DeviceTracer(const Device& device, int width, const std::string& options,
+                           const RowMasks& rows, Manner manner)
     : device_(device), shares_(width == 8) {
   const std::string all = fmt::format("-DCAPLET_REAL_WIDTH={} {} {}", width,
                                       manner == Manner::stream       ? "-DTRACED_NEIGHBOURS=1"
@@ -49,13 +51,15 @@ DeviceTracer::DeviceTracer(const Device& device, int width, const std::string& o
                                                                      : "",
                                       options);
   const std::string source = flatten_kernels(kernels, rows);
-  closest_ = Program::from_source(device, "trace_closest", source, all + " -DTRACED_ANY=0").kernel("trace");
+  closest_ = Program::from_source(device, "trace_closest", source, all + " -DTRACED_ANY=0")
+                 .kernel("trace");
   any_ = Program::from_source(device, "trace_any", source, all + " -DTRACED_ANY=1").kernel("trace");
 }
 
-void DeviceTracer::upload(std::span<const float> nodes, std::span<const float> leaves, std::span<const InstanceRecord> instances,
-                          uint root) {
-  nodes_ = shares_ ? Buffer<float>(device_, nodes) : Buffer<float>(device_, std::span<const float>(packed_nodes(nodes)));
+void DeviceTracer::upload(std::span<const float> nodes, std::span<const float> leaves,
+                          std::span<const InstanceRecord> instances, uint root) {
+  nodes_ = shares_ ? Buffer<float>(device_, nodes)
+                   : Buffer<float>(device_, std::span<const float>(packed_nodes(nodes)));
   leaves_ = Buffer<float>(device_, leaves);
   instances_ = Buffer<InstanceRecord>(device_, instances);
   root_ = root;

@@ -15,14 +15,16 @@ namespace caplet::bench {
 
 class DeviceTracer {
  public:
-  /// How rays of width 8 traverse the tree (kernels/trace/many.cl): many at once, as a renderer's rays do; as its camera rays do;
-  /// or one after the other, for devices that are slow at tracing many.
+  /// How rays of width 8 traverse the tree (kernels/trace/many.cl): many at once, as a renderer's
+  /// rays do; as its camera rays do; or one after the other, for devices that are slow at tracing
+  /// many.
   enum class Manner { pool, stream, one_by_one };
 
   /// `width`: CAPLET_REAL_WIDTH, 8 or 1. The kernels support the shapes of `rows`.
-  DeviceTracer(const Device& device, int width, const std::string& options = "", const RowMasks& rows = {},
-               Manner manner = Manner::pool);
-  void upload(std::span<const float> nodes, std::span<const float> leaves, std::span<const InstanceRecord> instances, uint root);
+  DeviceTracer(const Device& device, int width, const std::string& options = "",
+               const RowMasks& rows = {}, Manner manner = Manner::pool);
+  void upload(std::span<const float> nodes, std::span<const float> leaves,
+              std::span<const InstanceRecord> instances, uint root);
   void set_rays(std::span<const RayRecord> rays);
   /// Traces the rays that were set before, and blocks.
   void run_closest();

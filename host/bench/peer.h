@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Traces the same primitives and rays with Embree, 3 or 4: single rays, all cores. Only peer.cpp uses Embree.
+// Traces the same primitives and rays with Embree, 3 or 4: single rays, all cores. Only peer.cpp
+// uses Embree.
 #pragma once
 
 #include <array>
@@ -22,8 +23,8 @@ struct PeerHit {
   float t = std::numeric_limits<float>::infinity();
 };
 
-/// Round linear curves: segment i runs from vertex first[i] (x y z radius) to the next one. Consecutive segments that share a
-/// vertex are neighbours.
+/// Round linear curves: segment i runs from vertex first[i] (x y z radius) to the next one.
+/// Consecutive segments that share a vertex are neighbours.
 struct RoundCurves {
   std::vector<std::array<float, 4>> vertices;
   std::vector<unsigned> first;
@@ -44,7 +45,8 @@ class Peer {
   Peer(const Peer&) = delete;
   Peer& operator=(const Peer&) = delete;
 
-  /// Traces all rays and returns how many hit. `ids` (same length) receives the primitive that each ray hits, or CAPLET_NONE.
+  /// Traces all rays and returns how many hit. `ids` (same length) receives the primitive that each
+  /// ray hits, or CAPLET_NONE.
   std::size_t trace(std::span<const RayRecord> rays, std::span<std::uint32_t> ids) const;
   /// Tests whether each ray hits anything (rtcOccluded1), 1 or 0; returns how many do.
   std::size_t trace_any(std::span<const RayRecord> rays, std::span<std::uint32_t> found) const;

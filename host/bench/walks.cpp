@@ -23,7 +23,9 @@ Vec operator+(Vec a, Vec b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
 Vec operator-(Vec a, Vec b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
 Vec operator*(float s, Vec a) { return {s * a.x, s * a.y, s * a.z}; }
 float dot(Vec a, Vec b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-Vec cross(Vec a, Vec b) { return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x}; }
+Vec cross(Vec a, Vec b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
 Vec normalize(Vec a) { return (1 / std::sqrt(dot(a, a))) * a; }
 
 /// Calls step(from, to, radius) `count` times.
@@ -61,7 +63,9 @@ Vec normal_at(const FlatPrimitive& p, Vec x, Vec from) {
 }
 
 std::uint64_t sort_key(const RayRecord& r) {
-  const auto cell = [](float x) { return static_cast<std::uint64_t>(std::clamp((x + 1) * 16, 0.0f, 31.0f)); };
+  const auto cell = [](float x) {
+    return static_cast<std::uint64_t>(std::clamp((x + 1) * 16, 0.0f, 31.0f));
+  };
   std::uint64_t key = 0;
   for (int bit = 4; bit >= 0; bit--)
     for (const float x : {r.ox, r.oy, r.oz}) key = key * 2 + (cell(x) >> bit & 1);
@@ -74,7 +78,9 @@ std::vector<FlatPrimitive> walk_capsules(std::size_t count) {
   std::vector<FlatPrimitive> out;
   out.reserve(count);
   walk(count, [&](Vec a, Vec b, float radius) {
-    out.push_back({shape_capsule, static_cast<std::uint32_t>(out.size()), {a.x, a.y, a.z, b.x, b.y, b.z, radius, 0, 0}});
+    out.push_back({shape_capsule,
+                   static_cast<std::uint32_t>(out.size()),
+                   {a.x, a.y, a.z, b.x, b.y, b.z, radius, 0, 0}});
   });
   return out;
 }
@@ -83,7 +89,9 @@ std::vector<FlatPrimitive> walk_triangles(std::size_t count) {
   std::vector<FlatPrimitive> out;
   out.reserve(count + 1);
   const auto add = [&](Vec a, Vec b, Vec c) {
-    out.push_back({shape_triangle, static_cast<std::uint32_t>(out.size()), {a.x, a.y, a.z, b.x, b.y, b.z, c.x, c.y, c.z}});
+    out.push_back({shape_triangle,
+                   static_cast<std::uint32_t>(out.size()),
+                   {a.x, a.y, a.z, b.x, b.y, b.z, c.x, c.y, c.z}});
   };
   walk((count + 1) / 2, [&](Vec a, Vec b, float radius) {
     const Vec side = radius * normalize(cross(b - a, Vec{0.3f, 0.5f, 0.8f}));
@@ -158,19 +166,22 @@ Scene walk_scene(const std::string& kind, std::size_t count, std::vector<FlatPri
       peer.push_back(peer_primitive(shape_sphere, id, {a.x, a.y, a.z, 2 * r}));
     } else if (kind == "tapered") {
       shape.geometry = one_capsule(a, b, r, 0.5f * r);
-      peer.push_back(peer_primitive(shape_tapered_capsule, id, {a.x, a.y, a.z, b.x, b.y, b.z, r, 0.5f * r}));
+      peer.push_back(
+          peer_primitive(shape_tapered_capsule, id, {a.x, a.y, a.z, b.x, b.y, b.z, r, 0.5f * r}));
     } else if (kind == "disks") {
       shape.geometry = DiskShape{0, double(2 * r)};
-      const Vec n = normalize(b - a), u = normalize(cross(n, Vec{0.3f, 0.5f, 0.8f})), v = cross(n, u);
-      shape.world_from_object =
-          glm::dmat4(glm::dvec4(wide(u), 0), glm::dvec4(wide(v), 0), glm::dvec4(wide(n), 0), glm::dvec4(wide(a), 1));
+      const Vec n = normalize(b - a), u = normalize(cross(n, Vec{0.3f, 0.5f, 0.8f})),
+                v = cross(n, u);
+      shape.world_from_object = glm::dmat4(glm::dvec4(wide(u), 0), glm::dvec4(wide(v), 0),
+                                           glm::dvec4(wide(n), 0), glm::dvec4(wide(a), 1));
       peer.push_back(peer_primitive(shape_disk, id, {a.x, a.y, a.z, n.x, n.y, n.z, 2 * r}));
     } else if (kind == "cylinders") {
       shape.geometry = CylinderShape{wide(a), wide(b), double(r), {}};
     } else if (kind == "cones") {
       shape.geometry = ConeShape{wide(a), wide(b), {double(r), double(0.5f * r)}, {}};
     } else if (kind == "boxes") {
-      shape.geometry = BoxShape{wide(a) - 1.5 * glm::dvec3(double(r)), wide(a) + 1.5 * glm::dvec3(double(r))};
+      shape.geometry =
+          BoxShape{wide(a) - 1.5 * glm::dvec3(double(r)), wide(a) + 1.5 * glm::dvec3(double(r))};
     } else if (kind == "octahedra") {
       shape.geometry = octahedron(a, b, r);
     } else {
@@ -206,18 +217,24 @@ std::vector<RayRecord> camera_rays(int size) {
     for (int tx = 0; tx < size; tx += 8)
       for (int y = ty; y < std::min(ty + 8, size); y++)
         for (int x = tx; x < std::min(tx + 8, size); x++) {
-          const float u = 0.6f * (2 * (static_cast<float>(x) + 0.5f) / static_cast<float>(size) - 1);
-          const float v = 0.6f * (1 - 2 * (static_cast<float>(y) + 0.5f) / static_cast<float>(size));
+          const float u =
+              0.6f * (2 * (static_cast<float>(x) + 0.5f) / static_cast<float>(size) - 1);
+          const float v =
+              0.6f * (1 - 2 * (static_cast<float>(y) + 0.5f) / static_cast<float>(size));
           const Vec d = normalize({u, v, -1});
           out.push_back({0, 0, 3, 0, d.x, d.y, d.z, inf});
         }
   return out;
 }
 
-std::vector<RayRecord> bounce_rays(std::span<const FlatPrimitive> primitives, std::span<const std::uint32_t> slots,
-                                   std::span<const RayRecord> rays, std::span<const HitRecord> hits) {
-  std::vector<std::uint32_t> primitive_of(static_cast<std::size_t>(*std::max_element(slots.begin(), slots.end())) + 1);
-  for (std::size_t i = 0; i < slots.size(); i++) primitive_of[slots[i]] = static_cast<std::uint32_t>(i);
+std::vector<RayRecord> bounce_rays(std::span<const FlatPrimitive> primitives,
+                                   std::span<const std::uint32_t> slots,
+                                   std::span<const RayRecord> rays,
+                                   std::span<const HitRecord> hits) {
+  std::vector<std::uint32_t> primitive_of(
+      static_cast<std::size_t>(*std::max_element(slots.begin(), slots.end())) + 1);
+  for (std::size_t i = 0; i < slots.size(); i++)
+    primitive_of[slots[i]] = static_cast<std::uint32_t>(i);
   std::mt19937 engine(2);
   std::uniform_real_distribution<float> u(0, 1);
   std::vector<RayRecord> out;
@@ -227,7 +244,8 @@ std::vector<RayRecord> bounce_rays(std::span<const FlatPrimitive> primitives, st
     const Vec x = o + hits[i].t * d;
     const Vec n = normal_at(primitives[primitive_of[hits[i].slot]], x, o);
     const float phi = 6.2831853f * u(engine), z = 2 * u(engine) - 1, s = std::sqrt(1 - z * z);
-    // The direction leads to a point of the unit sphere that touches the surface here, so it is cosine-distributed.
+    // The direction leads to a point of the unit sphere that touches the surface here, so it is
+    // cosine-distributed.
     const Vec w = n + 0.9999f * Vec{s * std::cos(phi), s * std::sin(phi), z};
     const Vec b = normalize(w), start = x + 1e-5f * n;
     out.push_back({start.x, start.y, start.z, 0, b.x, b.y, b.z, inf});
@@ -235,7 +253,8 @@ std::vector<RayRecord> bounce_rays(std::span<const FlatPrimitive> primitives, st
   return out;
 }
 
-std::vector<RayRecord> scattered_rays(std::span<const RayRecord> rays, std::span<const HitRecord> hits) {
+std::vector<RayRecord> scattered_rays(std::span<const RayRecord> rays,
+                                      std::span<const HitRecord> hits) {
   std::mt19937 engine(2);
   std::uniform_real_distribution<float> u(0, 1);
   std::vector<RayRecord> out;
@@ -252,7 +271,9 @@ std::vector<RayRecord> scattered_rays(std::span<const RayRecord> rays, std::span
 }
 
 void sort_rays(std::vector<RayRecord>& rays) {
-  std::stable_sort(rays.begin(), rays.end(), [](const RayRecord& a, const RayRecord& b) { return sort_key(a) < sort_key(b); });
+  std::stable_sort(rays.begin(), rays.end(), [](const RayRecord& a, const RayRecord& b) {
+    return sort_key(a) < sort_key(b);
+  });
 }
 
 }  // namespace caplet::bench

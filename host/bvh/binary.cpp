@@ -34,7 +34,9 @@ struct Cells {
   std::uint32_t references;  // a cell, roughly
   std::size_t least;         // a subtree of fewer cells is split by its references
 };
-constexpr Cells cells_of(Effort effort) { return effort == Effort::full ? Cells{32, 64} : Cells{8, 8}; }
+constexpr Cells cells_of(Effort effort) {
+  return effort == Effort::full ? Cells{32, 64} : Cells{8, 8};
+}
 
 // The lanes are x, y, z and an unused fourth one, which instructions of four lanes have anyway.
 typedef float Float4 __attribute__((vector_size(16)));
@@ -127,7 +129,9 @@ struct Binning {
 /// Returns the number of leaf blocks that `count` references will probably fill: a block costs the
 /// same however many of its lanes are used, and leaves of a finished tree are about three quarters
 /// full.
-double blocks(std::uint32_t count) { return count <= width ? 1.0 : static_cast<double>(count) / (0.75 * width); }
+double blocks(std::uint32_t count) {
+  return count <= width ? 1.0 : static_cast<double>(count) / (0.75 * width);
+}
 
 struct Split {
   double cost = std::numeric_limits<double>::infinity();
@@ -158,7 +162,9 @@ class Builder {
   }
 
  private:
-  std::span<Reference> items(std::uint32_t first, std::uint32_t count) { return {tree_.items.get() + first, count}; }
+  std::span<Reference> items(std::uint32_t first, std::uint32_t count) {
+    return {tree_.items.get() + first, count};
+  }
   Bounds bounds(std::uint32_t first, std::uint32_t count) { return bounds(items(first, count)); }
 
   static Bounds bounds(std::span<const Reference> range) {
@@ -166,7 +172,8 @@ class Builder {
     const std::uint32_t group = range[0].group;
     const auto over = [&](const tbb::blocked_range<std::uint32_t>& r, Bounds b) {
       for (std::uint32_t i = r.begin(); i < r.end(); i++) {
-        const Float4 low = corner(range[i].min), high = corner(range[i].max), center = centroid(low, high);
+        const Float4 low = corner(range[i].min), high = corner(range[i].max),
+                     center = centroid(low, high);
         b.box.extend(low, high);
         b.centroids.extend(center, center);
         b.mixed = b.mixed || range[i].group != group;
@@ -187,7 +194,8 @@ class Builder {
       for (std::uint32_t i = r.begin(); i < r.end(); i++) {
         const Float4 low = corner(range[i].min), high = corner(range[i].max);
         const Int4 bin = binning.bin(centroid(low, high));
-        for (std::size_t axis = 0; axis < 3; axis++) to.extend(axis, static_cast<std::size_t>(bin[axis]), low, high, 1);
+        for (std::size_t axis = 0; axis < 3; axis++)
+          to.extend(axis, static_cast<std::size_t>(bin[axis]), low, high, 1);
       }
     };
     if (count < 2 * chunk) return over({0, count}, bins);
@@ -199,7 +207,8 @@ class Builder {
         },
         [&](Bins a, const Bins& b) {
           for (std::size_t axis = 0; axis < 3; axis++)
-            for (std::size_t i = 0; i < binning.bins; i++) a.extend(axis, i, b.min[axis][i], b.max[axis][i], b.count[axis][i]);
+            for (std::size_t i = 0; i < binning.bins; i++)
+              a.extend(axis, i, b.min[axis][i], b.max[axis][i], b.count[axis][i]);
           return a;
         });
   }
@@ -214,7 +223,8 @@ class Builder {
       for (std::size_t b = binning.bins - 1; b > 0; b--) {
         box.extend(bins.box(axis, b));
         count += bins.count[axis][b];
-        right_cost[b] = count == 0 ? std::numeric_limits<double>::infinity() : box.box().area() * blocks(count);
+        right_cost[b] =
+            count == 0 ? std::numeric_limits<double>::infinity() : box.box().area() * blocks(count);
       }
       box = {};
       count = 0;
@@ -241,7 +251,9 @@ class Builder {
     const auto range = items(first, count);
     const std::span<Reference> spare(scratch_.get() + first, count);
     Halves halves;
-    const auto center_of = [](const Reference& r) { return centroid(corner(r.min), corner(r.max)); };
+    const auto center_of = [](const Reference& r) {
+      return centroid(corner(r.min), corner(r.max));
+    };
     if (count < 4 * chunk) {
       std::uint32_t kept = 0;
       for (std::uint32_t i = 0; i < count; i++) {
@@ -286,7 +298,8 @@ class Builder {
     return halves;
   }
 
-  void build(std::uint32_t index, std::uint32_t first, std::uint32_t count, int depth, const Bounds& b) {
+  void build(std::uint32_t index, std::uint32_t first, std::uint32_t count, int depth,
+             const Bounds& b) {
     BinaryNode& node = tree_.nodes[index];
     const Box box = b.box.box();
     node = {box.min, box.max, 0, 0, first, count};
@@ -309,16 +322,20 @@ class Builder {
         const Split split = best_split(bins, binning);
         if (std::isfinite(split.cost)) {
           const Halves halves = partition(first, count, [&](const Reference& r) {
-            return static_cast<std::size_t>(binning.bin(centroid(corner(r.min), corner(r.max)))[split.axis]) < split.bin;
+            return static_cast<std::size_t>(
+                       binning.bin(centroid(corner(r.min), corner(r.max)))[split.axis]) < split.bin;
           });
           left = halves.left;
           bounded = !b.mixed;
-          for (std::size_t i = 0; i < binning.bins; i++) sides[i < split.bin ? 0 : 1].box.extend(bins.box(split.axis, i));
-          for (std::size_t side = 0; side < 2; side++) sides[side].centroids = halves.centroids[side];
+          for (std::size_t i = 0; i < binning.bins; i++)
+            sides[i < split.bin ? 0 : 1].box.extend(bins.box(split.axis, i));
+          for (std::size_t side = 0; side < 2; side++)
+            sides[side].centroids = halves.centroids[side];
         }
       }
     }
-    if (left == 0 || left == count) {  // nothing tells them apart, or the depth is used up: halve the list
+    if (left == 0 ||
+        left == count) {  // nothing tells them apart, or the depth is used up: halve the list
       left = count / 2;
       bounded = false;
     }
@@ -328,7 +345,9 @@ class Builder {
     node.left = children;
     node.right = children + 1;
     const auto go_left = [&] { build(children, first, left, depth + 1, sides[0]); };
-    const auto go_right = [&] { build(children + 1, first + left, count - left, depth + 1, sides[1]); };
+    const auto go_right = [&] {
+      build(children + 1, first + left, count - left, depth + 1, sides[1]);
+    };
     if (count > parallel_threshold) {
       tbb::parallel_invoke(go_left, go_right);
     } else {
@@ -358,7 +377,8 @@ class Builder {
     build_over_cells(0, 0, static_cast<std::uint32_t>(cells_.size()), 0, 0);
     // The order is that into which the splits have brought the cells.
     std::vector<std::uint32_t> to(cells_.size() + 1, 0);
-    for (std::size_t i = 0; i < cells_.size(); i++) to[i + 1] = to[i] + cells_[cell_order_[i]].count;
+    for (std::size_t i = 0; i < cells_.size(); i++)
+      to[i + 1] = to[i] + cells_[cell_order_[i]].count;
     tbb::parallel_for(std::size_t{0}, cells_.size(), [&](std::size_t i) {
       const Cell& cell = cells_[cell_order_[i]];
       std::copy_n(scratch_.get() + cell.first, cell.count, tree_.items.get() + to[i]);
@@ -372,14 +392,18 @@ class Builder {
   /// Sorts into scratch_, stable within a cell; empty cells are left out of cells_.
   void sort_into_cells(std::span<const Reference> references, const Bounds& all) {
     const std::uint32_t count = tree_.count;
-    const int bits = std::clamp(static_cast<int>(std::bit_width(count / cell_size_.references) - 1) / 3, 1, max_cell_bits);
+    const int bits = std::clamp(
+        static_cast<int>(std::bit_width(count / cell_size_.references) - 1) / 3, 1, max_cell_bits);
     const Binning grid(all.centroids.box(), std::size_t{1} << bits);
     const std::uint32_t cell_count = 1u << (3 * bits);
     const std::uint32_t parts = std::min<std::uint32_t>(16, (count + chunk - 1) / chunk);
-    const auto part_begin = [&](std::uint32_t p) { return static_cast<std::uint32_t>(std::uint64_t{count} * p / parts); };
+    const auto part_begin = [&](std::uint32_t p) {
+      return static_cast<std::uint32_t>(std::uint64_t{count} * p / parts);
+    };
     const auto keys = std::make_unique_for_overwrite<std::uint32_t[]>(count);
-    std::vector<std::uint32_t> places(std::size_t{parts} * cell_count,
-                                      0);  // of each part: references a cell, then where the next goes
+    std::vector<std::uint32_t> places(
+        std::size_t{parts} * cell_count,
+        0);  // of each part: references a cell, then where the next goes
     tbb::parallel_for(0u, parts, [&](std::uint32_t p) {
       std::uint32_t* counts = &places[std::size_t{p} * cell_count];
       for (std::uint32_t i = part_begin(p); i < part_begin(p + 1); i++) {
@@ -393,7 +417,8 @@ class Builder {
     std::uint32_t next = 0;
     for (std::uint32_t c = 0; c < cell_count; c++) {
       const std::uint32_t first = next;
-      for (std::uint32_t p = 0; p < parts; p++) next += std::exchange(places[std::size_t{p} * cell_count + c], next);
+      for (std::uint32_t p = 0; p < parts; p++)
+        next += std::exchange(places[std::size_t{p} * cell_count + c], next);
       if (next == first) continue;
       Cell cell;
       cell.first = first;
@@ -418,7 +443,8 @@ class Builder {
 
   /// Builds the node over cells [begin, end) of cell_order_, whose references begin at `first` of
   /// the items.
-  void build_over_cells(std::uint32_t index, std::uint32_t begin, std::uint32_t end, std::uint32_t first, int depth) {
+  void build_over_cells(std::uint32_t index, std::uint32_t begin, std::uint32_t end,
+                        std::uint32_t first, int depth) {
     LaneBox box, centers;
     std::uint32_t count = 0;
     for (std::uint32_t i = begin; i < end; i++) {
@@ -436,14 +462,17 @@ class Builder {
         const Cell& cell = cells_[cell_order_[i]];
         const Int4 bin = binning.bin(cell.center);
         for (std::size_t axis = 0; axis < 3; axis++)
-          bins.extend(axis, static_cast<std::size_t>(bin[axis]), cell.box.min, cell.box.max, cell.count);
+          bins.extend(axis, static_cast<std::size_t>(bin[axis]), cell.box.min, cell.box.max,
+                      cell.count);
       }
       const Split split = best_split(bins, binning);
       if (std::isfinite(split.cost)) {
         for (std::size_t b = 0; b < split.bin; b++) left += bins.count[split.axis][b];
-        const auto at = std::stable_partition(cell_order_.begin() + begin, cell_order_.begin() + end, [&](std::uint32_t c) {
-          return static_cast<std::size_t>(binning.bin(cells_[c].center)[split.axis]) < split.bin;
-        });
+        const auto at = std::stable_partition(
+            cell_order_.begin() + begin, cell_order_.begin() + end, [&](std::uint32_t c) {
+              return static_cast<std::size_t>(binning.bin(cells_[c].center)[split.axis]) <
+                     split.bin;
+            });
         middle = static_cast<std::uint32_t>(at - cell_order_.begin());
       }
     }
@@ -470,7 +499,8 @@ class Builder {
 
 }  // namespace
 
-BinaryTree build_binary(std::span<const Reference> references, std::uint32_t single_group, Effort effort) {
+BinaryTree build_binary(std::span<const Reference> references, std::uint32_t single_group,
+                        Effort effort) {
   BinaryTree tree;
   tree.count = static_cast<std::uint32_t>(references.size());
   tree.items = std::make_unique_for_overwrite<Reference[]>(tree.count);

@@ -39,12 +39,12 @@ struct Leaf {
 };
 
 struct Tree {
-  std::vector<Node>
-      nodes;  // node 0 is the root, present also for one primitive and for none; children after parents, depth-first
+  std::vector<Node> nodes;  // node 0 is the root, present also for one primitive and for none;
+                            // children after parents, depth-first
   std::vector<Leaf> leaves;
   std::vector<std::uint32_t> order;  // indices into the references given
   int depth = 0;                     // nodes on the longest path
-  double sah = 0;                    // expected node visits + leaf visits of a random line through the root box
+  double sah = 0;  // expected node visits + leaf visits of a random line through the root box
 };
 
 /// No path of a tree is longer than this, whatever the boxes: the builder splits at the median once
@@ -59,6 +59,7 @@ enum class Effort { full, quick };
 
 /// Builds the same tree for any number of threads. Boxes are finite with min <= max. References of
 /// group `single_group` get a leaf each. Without references the tree is a root without children.
-Tree build(std::span<const Reference> references, std::uint32_t single_group = 0xffffffffu, Effort effort = Effort::full);
+Tree build(std::span<const Reference> references, std::uint32_t single_group = 0xffffffffu,
+           Effort effort = Effort::full);
 
 }  // namespace caplet::bvh

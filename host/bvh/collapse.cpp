@@ -32,13 +32,16 @@ class Collapser {
     scale_ = 1 / std::max(binary_.nodes[0].box().area(), std::numeric_limits<double>::min());
     choose(0);
     tree_.order.reserve(binary_.count);
-    for (std::uint32_t i = 0; i < binary_.count; i++) tree_.order.push_back(binary_.items[i].primitive);
+    for (std::uint32_t i = 0; i < binary_.count; i++)
+      tree_.order.push_back(binary_.items[i].primitive);
     emit(0, 1);
     return std::move(tree_);
   }
 
  private:
-  float relative_area(const BinaryNode& node) const { return static_cast<float>(node.box().area() * scale_); }
+  float relative_area(const BinaryNode& node) const {
+    return static_cast<float>(node.box().area() * scale_);
+  }
 
   void choose(std::uint32_t index) {
     const BinaryNode& node = binary_.nodes[index];
@@ -81,8 +84,10 @@ class Collapser {
       }
   }
 
-  /// Adds the roots of subtree `index`, at most `allowed`; `open`: the subtree itself must not be one of them.
-  void gather(std::uint32_t index, std::size_t allowed, bool open, std::vector<std::uint32_t>& roots) const {
+  /// Adds the roots of subtree `index`, at most `allowed`; `open`: the subtree itself must not be
+  /// one of them.
+  void gather(std::uint32_t index, std::size_t allowed, bool open,
+              std::vector<std::uint32_t>& roots) const {
     const BinaryNode& node = binary_.nodes[index];
     const std::size_t left = node.left == 0 ? 0 : choices_[index].left[allowed - 1];
     if (left == 0 && !(open && node.left != 0)) {
@@ -97,7 +102,8 @@ class Collapser {
   /// how well the slot number's bits match the octant of the node that the root lies in (bit k:
   /// towards larger values along axis k). A ray meets the slots nearly in the order of slot ^
   /// octant of its direction (Ylitie et al. 2017, section 3.3).
-  std::array<std::uint32_t, width> placed(std::uint32_t index, const std::vector<std::uint32_t>& roots) const {
+  std::array<std::uint32_t, width> placed(std::uint32_t index,
+                                          const std::vector<std::uint32_t>& roots) const {
     std::array<std::uint32_t, width> slots;
     slots.fill(no_root);
     const Box all = binary_.nodes[index].box();
@@ -115,7 +121,8 @@ class Collapser {
       std::size_t best_root = width, best_slot = 0;
       for (std::size_t r = 0; r < roots.size(); r++)
         for (std::size_t s = 0; s < width; s++)
-          if (!done[r] && slots[s] == no_root && (best_root == width || gain[r][s] > gain[best_root][best_slot])) {
+          if (!done[r] && slots[s] == no_root &&
+              (best_root == width || gain[r][s] > gain[best_root][best_slot])) {
             best_root = r;
             best_slot = s;
           }

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// The subcommands: each adds itself to the program, with its options and its action. main.cpp catches their errors.
+// The subcommands: each adds itself to the program, with its options and its action. main.cpp
+// catches their errors.
 #pragma once
 
 #include <CLI/App.hpp>

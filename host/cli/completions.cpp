@@ -22,11 +22,14 @@ std::string in_quotes(const std::string& text) {
 }
 
 std::string replaced(std::string text, const std::string& from, const std::string& to) {
-  for (std::size_t at = 0; (at = text.find(from, at)) != std::string::npos; at += to.size()) text.replace(at, from.size(), to);
+  for (std::size_t at = 0; (at = text.find(from, at)) != std::string::npos; at += to.size())
+    text.replace(at, from.size(), to);
   return text;
 }
 
-std::string joined(const std::vector<std::string>& words) { return fmt::format("{}", fmt::join(words, " ")); }
+std::string joined(const std::vector<std::string>& words) {
+  return fmt::format("{}", fmt::join(words, " "));
+}
 
 std::vector<std::string> command_names(const std::vector<CommandText>& commands) {
   std::vector<std::string> out;
@@ -36,7 +39,8 @@ std::vector<std::string> command_names(const std::vector<CommandText>& commands)
 
 std::vector<std::string> option_names(const CommandText& command) {
   std::vector<std::string> out;
-  for (const OptionText& option : command.options) out.insert(out.end(), option.names.begin(), option.names.end());
+  for (const OptionText& option : command.options)
+    out.insert(out.end(), option.names.begin(), option.names.end());
   return out;
 }
 
@@ -52,17 +56,21 @@ Values values_of_arguments(const CommandText& command) {
 /// Returns calls of the functions below that add the possible values.
 std::string bash_values(const Values& values) {
   std::string out;
-  if (!values.words.empty()) out += fmt::format("_caplet_words {}; ", in_quotes(joined(values.words)));
-  if (!values.list_words.empty()) out += fmt::format("_caplet_list {}; ", in_quotes(joined(values.list_words)));
+  if (!values.words.empty())
+    out += fmt::format("_caplet_words {}; ", in_quotes(joined(values.words)));
+  if (!values.list_words.empty())
+    out += fmt::format("_caplet_list {}; ", in_quotes(joined(values.list_words)));
   if (values.devices)
-    out += fmt::format("{} \"$(_caplet_devices)\"; ", values.devices_are_a_list ? "_caplet_list" : "_caplet_words");
+    out += fmt::format("{} \"$(_caplet_devices)\"; ",
+                       values.devices_are_a_list ? "_caplet_list" : "_caplet_words");
   if (values.scenes) out += "_caplet_scenes; ";
   if (values.files) out += "_caplet_files -f; ";
   if (values.folders) out += "_caplet_files -d; ";
   return out;
 }
 
-constexpr const char* bash_functions = R"sh(_caplet_words() { COMPREPLY+=($(compgen -W "$1" -- "$_caplet_cur")); }
+constexpr const char* bash_functions =
+    R"sh(_caplet_words() { COMPREPLY+=($(compgen -W "$1" -- "$_caplet_cur")); }
 
 _caplet_list() {
   local before=
@@ -97,13 +105,15 @@ std::string extension_patterns() {
 }
 
 std::string bash_command(const CommandText& command) {
-  std::string out =
-      fmt::format("    {})\n      options={}\n      case $previous in\n", command.name, in_quotes(joined(option_names(command))));
+  std::string out = fmt::format("    {})\n      options={}\n      case $previous in\n",
+                                command.name, in_quotes(joined(option_names(command))));
   for (const OptionText& option : command.options) {
     if (option.type.empty()) continue;
     // Options are still offered where the value may be omitted.
-    const std::string guard = option.value_is_optional ? "[ \"${_caplet_cur#-}\" != \"$_caplet_cur\" ] || { " : "";
-    out += fmt::format("        {}) {}{}{} ;;\n", fmt::join(option.names, " | "), guard, bash_values(values_of(option.type)),
+    const std::string guard =
+        option.value_is_optional ? "[ \"${_caplet_cur#-}\" != \"$_caplet_cur\" ] || { " : "";
+    out += fmt::format("        {}) {}{}{} ;;\n", fmt::join(option.names, " | "), guard,
+                       bash_values(values_of(option.type)),
                        option.value_is_optional ? "return; }" : "return");
   }
   return out + "      esac\n      ;;\n";
@@ -124,7 +134,8 @@ std::string zsh_text(const std::string& text) {
 std::string zsh_action(const Values& values) {
   std::vector<std::string> parts;
   if (!values.words.empty()) parts.push_back(fmt::format("words:value:({})", joined(values.words)));
-  if (!values.list_words.empty()) parts.push_back(fmt::format("list:value:_caplet_list {}", joined(values.list_words)));
+  if (!values.list_words.empty())
+    parts.push_back(fmt::format("list:value:_caplet_list {}", joined(values.list_words)));
   if (values.devices) parts.emplace_back("devices:device:_caplet_devices");
   if (values.scenes) parts.emplace_back("files:scene:_caplet_scenes");
   if (values.files) parts.emplace_back("files:file:_files");
@@ -139,13 +150,16 @@ std::string zsh_option(const OptionText& option) {
   const bool is_many = option.is_repeated;
   std::string out;
   for (const std::string& name : option.names) {
-    std::string spec = is_many ? "*" : option.names.size() > 1 ? "(" + joined(option.names) + ")" : "";
+    std::string spec = is_many                   ? "*"
+                       : option.names.size() > 1 ? "(" + joined(option.names) + ")"
+                                                 : "";
     spec += name;
     if (!option.type.empty() && is_long(name)) spec += "=";
     if (!option.type.empty() && !is_long(name)) spec += "+";
     spec += "[" + zsh_text(short_help(option.help)) + "]";
     if (!option.type.empty())
-      spec += (option.value_is_optional ? "::" : ":") + zsh_text(option.type) + ":" + zsh_action(values_of(option.type));
+      spec += (option.value_is_optional ? "::" : ":") + zsh_text(option.type) + ":" +
+              zsh_action(values_of(option.type));
     out += "        " + in_quotes(spec) + " \\\n";
   }
   return out;
@@ -166,16 +180,19 @@ std::string zsh_command(const CommandText& command) {
 
 std::string fish_values(const Values& values) {
   std::vector<std::string> parts = values.words;
-  if (!values.list_words.empty()) parts.push_back(fmt::format("(__fish_append , {})", joined(values.list_words)));
+  if (!values.list_words.empty())
+    parts.push_back(fmt::format("(__fish_append , {})", joined(values.list_words)));
   if (values.devices) parts.emplace_back("(__caplet_devices)");
-  if (values.scenes) parts.push_back(fmt::format("(__fish_complete_suffix {})", scene_extensions()));
+  if (values.scenes)
+    parts.push_back(fmt::format("(__fish_complete_suffix {})", scene_extensions()));
   if (values.folders && !values.files) parts.emplace_back("(__fish_complete_directories)");
   return joined(parts);
 }
 
 std::string fish_option(const std::string& command, const OptionText& option) {
   std::string out = fmt::format("complete -c caplet -n '__fish_seen_subcommand_from {}'", command);
-  for (const std::string& name : option.names) out += is_long(name) ? " -l " + name.substr(2) : " -s " + name.substr(1);
+  for (const std::string& name : option.names)
+    out += is_long(name) ? " -l " + name.substr(2) : " -s " + name.substr(1);
   if (!option.type.empty()) {
     const Values values = values_of(option.type);
     const std::string words = fish_values(values);
@@ -214,8 +231,11 @@ _caplet() {{
 )sh",
                      in_quotes(joined(option_names(program.program))));
   for (const CommandText& command : program.commands) out += bash_command(command);
-  out += "  esac\n  case $_caplet_cur in -*) _caplet_words \"$options\" && return ;; esac\n  case $command in\n";
-  out += fmt::format("    '') _caplet_words {} ;;\n", in_quotes(joined(command_names(program.commands))));
+  out +=
+      "  esac\n  case $_caplet_cur in -*) _caplet_words \"$options\" && return ;; esac\n  case "
+      "$command in\n";
+  out += fmt::format("    '') _caplet_words {} ;;\n",
+                     in_quotes(joined(command_names(program.commands))));
   for (const CommandText& command : program.commands)
     if (const std::string values = bash_values(values_of_arguments(command)); !values.empty())
       out += fmt::format("    {}) {};;\n", command.name, values);
@@ -243,14 +263,17 @@ _caplet_list() {
   std::string globs = replaced(scene_extensions(), " .", "|");
   if (globs.starts_with('.')) globs.erase(0, 1);
   out += fmt::format("_caplet_scenes() {{ _files -g '*.({})(-.)'; }}\n", globs);
-  out += "\n_caplet() {\n  local curcontext=$curcontext state line\n  local -a commands\n  commands=(\n";
+  out +=
+      "\n_caplet() {\n  local curcontext=$curcontext state line\n  local -a commands\n  "
+      "commands=(\n";
   for (const CommandText& command : program.commands)
     out += "    " + in_quotes(command.name + ":" + zsh_text(short_help(command.help))) + "\n";
   out += "  )\n  _arguments -C \\\n";
   for (const OptionText& option : program.program.options) out += zsh_option(option);
   out += "        '1:command:->command' \\\n        '*::argument:->argument' && return\n";
   out +=
-      "  if [[ $state == command ]]; then\n    _describe -t commands command commands\n    return\n  fi\n  case $words[1] in\n";
+      "  if [[ $state == command ]]; then\n    _describe -t commands command commands\n    "
+      "return\n  fi\n  case $words[1] in\n";
   for (const CommandText& command : program.commands) out += zsh_command(command);
   return out + "  esac\n}\n\n_caplet \"$@\"\n";
 }
@@ -264,7 +287,8 @@ end
 complete -c caplet -f
 )sh";
   for (const OptionText& option : program.program.options)
-    out += replaced(fish_option("", option), "'__fish_seen_subcommand_from '", "__fish_use_subcommand");
+    out += replaced(fish_option("", option), "'__fish_seen_subcommand_from '",
+                    "__fish_use_subcommand");
   for (const CommandText& command : program.commands)
     out += fmt::format("complete -c caplet -n __fish_use_subcommand -a {} -d {}\n", command.name,
                        in_quotes(short_help(command.help)));
@@ -272,8 +296,8 @@ complete -c caplet -f
     for (const OptionText& option : command.options) out += fish_option(command.name, option);
     const Values values = values_of_arguments(command);
     if (values.scenes || values.files)
-      out += fmt::format("complete -c caplet -n '__fish_seen_subcommand_from {}' {} -a {}\n", command.name,
-                         values.files ? "-F" : "-f", in_quotes(fish_values(values)));
+      out += fmt::format("complete -c caplet -n '__fish_seen_subcommand_from {}' {} -a {}\n",
+                         command.name, values.files ? "-F" : "-f", in_quotes(fish_values(values)));
   }
   return out;
 }

@@ -30,7 +30,8 @@ void run_convert(const ConvertFlags& options) {
   Outputs outputs;
   outputs.add("OUT.pbrt", output);
   if (output.extension() != ".pbrt" && !is_stream(output))
-    throw InputError(SourceLocation{"OUT.pbrt"}, "'" + output.string() + "': scenes are written as pbrt text, to a file .pbrt");
+    throw InputError(SourceLocation{"OUT.pbrt"},
+                     "'" + output.string() + "': scenes are written as pbrt text, to a file .pbrt");
   install_interrupt_handlers();
   const Scene scene = import_files(options.scenes, options.import_options);
   outputs.check_inputs();
@@ -42,19 +43,22 @@ void run_convert(const ConvertFlags& options) {
 
 void add_convert(CLI::App& app) {
   const auto o = std::make_shared<ConvertFlags>();
-  CLI::App* command = app.add_subcommand("convert", "Write any scene file as pbrt text that gives the same picture");
+  CLI::App* command = app.add_subcommand(
+      "convert", "Write any scene file as pbrt text that gives the same picture");
   command
-      ->add_option("FILES", o->scenes,
-                   "SCENE... OUT.pbrt: a scene file, or several that make one scene, of any formats (" + scene_extensions() +
-                       "), then the scene file to write; -: to stdout")
+      ->add_option(
+          "FILES", o->scenes,
+          "SCENE... OUT.pbrt: a scene file, or several that make one scene, of any formats (" +
+              scene_extensions() + "), then the scene file to write; -: to stdout")
       ->required()
       ->type_name("SCENE");
   command->add_flag("-q,--quiet", o->quiet, "Only warnings and errors");
   add_import_options(*command, o->import_options);
-  command->footer(footer_with(
-      {"caplet convert molecule.pdb --style sticks molecule.pbrt"},
-      "The picture of the written scene is that of the first one, bit for bit. Images and other files that the scene names "
-      "are not copied: the text names them relative to OUT.pbrt. Comments, includes and the names of transforms are not kept."));
+  command->footer(footer_with({"caplet convert molecule.pdb --style sticks molecule.pbrt"},
+                              "The picture of the written scene is that of the first one, bit for "
+                              "bit. Images and other files that the scene names "
+                              "are not copied: the text names them relative to OUT.pbrt. Comments, "
+                              "includes and the names of transforms are not kept."));
   command->callback([o] {
     if (o->scenes.size() < 2) throw CLI::RequiredError("OUT.pbrt");
     o->output = o->scenes.back();

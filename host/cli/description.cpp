@@ -25,7 +25,8 @@ std::vector<std::string> split(const std::string& text, char separator) {
 
 std::string trimmed(const std::string& text) {
   const std::size_t first = text.find_first_not_of(" \n");
-  return first == std::string::npos ? std::string() : text.substr(first, text.find_last_not_of(" \n") - first + 1);
+  return first == std::string::npos ? std::string()
+                                    : text.substr(first, text.find_last_not_of(" \n") - first + 1);
 }
 
 bool has_capitals(const std::string& text) {
@@ -38,7 +39,9 @@ std::string type_of(const CLI::Option& option) {
   try {
     // CLI11 offers neither constant access to checks nor their number.
     for (int i = 0;; ++i)
-      if (const std::string says = const_cast<CLI::Option&>(option).get_validator(i)->get_description(); !says.empty())
+      if (const std::string says =
+              const_cast<CLI::Option&>(option).get_validator(i)->get_description();
+          !says.empty())
         checks += ":" + says;
   } catch (const CLI::OptionNotFound&) {
     const std::string whole = option.get_type_name();
@@ -49,7 +52,8 @@ std::string type_of(const CLI::Option& option) {
 OptionText describe_option(const CLI::Option& option) {
   OptionText out;
   if (option.nonpositional())
-    for (const std::string& name : split(option.get_name(false, true), ',')) out.names.push_back(trimmed(name));
+    for (const std::string& name : split(option.get_name(false, true), ','))
+      out.names.push_back(trimmed(name));
   else
     out.names.push_back(option.get_name(true));
   if (option.get_expected_max() > 0) out.type = type_of(option);
@@ -97,14 +101,16 @@ CommandText describe_command(const CLI::App& command) {
     (option->nonpositional() ? out.options : out.arguments).push_back(describe_option(*option));
   }
   // The option --help comes last, because every command has it.
-  std::ranges::stable_partition(
-      out.options, [](const OptionText& option) { return std::ranges::find(option.names, "--help") == option.names.end(); });
+  std::ranges::stable_partition(out.options, [](const OptionText& option) {
+    return std::ranges::find(option.names, "--help") == option.names.end();
+  });
   return out;
 }
 
 ProgramText describe_program(const CLI::App& app) {
   ProgramText out{CAPLET_VERSION, describe_command(app), {}};
-  for (const CLI::App* command : app.get_subcommands([](const CLI::App* one) { return !one->get_group().empty(); }))
+  for (const CLI::App* command :
+       app.get_subcommands([](const CLI::App* one) { return !one->get_group().empty(); }))
     out.commands.push_back(describe_command(*command));
   return out;
 }
@@ -118,7 +124,8 @@ std::vector<std::string> groups_of(const CommandText& command) {
 
 std::vector<OptionText> options_in(const CommandText& command, const std::string& group) {
   std::vector<OptionText> out;
-  std::ranges::copy_if(command.options, std::back_inserter(out), [&](const OptionText& one) { return one.group == group; });
+  std::ranges::copy_if(command.options, std::back_inserter(out),
+                       [&](const OptionText& one) { return one.group == group; });
   return out;
 }
 
@@ -134,7 +141,9 @@ std::string usage_of(const OptionText& argument) {
 }
 
 std::string full_help(const OptionText& option) {
-  return option.usual.empty() ? option.help : option.help + (option.help.empty() ? "" : " ") + "(default: " + option.usual + ")";
+  return option.usual.empty()
+             ? option.help
+             : option.help + (option.help.empty() ? "" : " ") + "(default: " + option.usual + ")";
 }
 
 std::vector<FooterPart> footer_parts(const std::string& footer) {

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Plain values of what CLI11 knows of the program. Help, man page and completions are made from them.
+// Plain values of what CLI11 knows of the program. Help, man page and completions are made from
+// them.
 //
-// An option's type name in CLI11 describes its values, so that completions can read it: alternatives between `|`, of which those
-// without capitals and commas are typed literally. Names in capitals are placeholders: FILE, FILE.npy and OUT.exr for a file, DIR
-// for a folder, SCENE for a scene file, DEVICE for a device's index, LAYER for a layer's name, and others for values that cannot
-// be listed. A final `,...` allows several values separated by commas.
+// An option's type name in CLI11 describes its values, so that completions can read it:
+// alternatives between `|`, of which those without capitals and commas are typed literally. Names
+// in capitals are placeholders: FILE, FILE.npy and OUT.exr for a file, DIR for a folder, SCENE for
+// a scene file, DEVICE for a device's index, LAYER for a layer's name, and others for values that
+// cannot be listed. A final `,...` allows several values separated by commas.
 #pragma once
 
 #include <CLI/App.hpp>
@@ -61,7 +63,8 @@ std::string usage_of(const OptionText& argument);
 /// Returns help and default together.
 std::string full_help(const OptionText& option);
 
-/// A part of a footer: a paragraph, which is filled, or lines that begin with two blanks, which stay as they are.
+/// A part of a footer: a paragraph, which is filled, or lines that begin with two blanks, which
+/// stay as they are.
 struct FooterPart {
   bool is_literal = false;
   std::vector<std::string> lines;  // a single one for a paragraph
@@ -70,11 +73,13 @@ std::vector<FooterPart> footer_parts(const std::string& footer);
 /// Makes a footer of examples and further remarks.
 std::string footer_with(const std::vector<std::string>& examples, const std::string& more = "");
 
-/// Breaks `text` into lines of at most `width` columns at blanks; a longer word is broken after a `|`.
+/// Breaks `text` into lines of at most `width` columns at blanks; a longer word is broken after a
+/// `|`.
 std::vector<std::string> filled(const std::string& text, std::size_t width);
 
 // These texts are made from the description.
-std::string help_text(const CommandText& command, const std::string& name, const std::vector<CommandText>& commands);
+std::string help_text(const CommandText& command, const std::string& name,
+                      const std::vector<CommandText>& commands);
 std::string man_page(const ProgramText& program);
 std::string bash_completion(const ProgramText& program);
 std::string zsh_completion(const ProgramText& program);

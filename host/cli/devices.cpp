@@ -30,7 +30,8 @@ Scene measured_scene() {
   CapsulesShape capsules;
   for (int i = 0; i < 4096; ++i) {
     const int row = i / 16, layer = i / 256;
-    const float x = static_cast<float>(i % 16), y = static_cast<float>(row % 16), z = static_cast<float>(layer);
+    const float x = static_cast<float>(i % 16), y = static_cast<float>(row % 16),
+                z = static_cast<float>(layer);
     capsules.p0.emplace_back(x - 0.3f, y - 0.2f, z);
     capsules.p1.emplace_back(x + 0.3f, y + 0.2f, z);
     capsules.radius0.push_back(0.15f);
@@ -96,23 +97,30 @@ void print_devices_json(const std::vector<Listed>& devices, bool measured) {
 
 void print_table(const std::vector<Listed>& devices, bool measured) {
   if (devices.empty())
-    fmt::print(stderr, "caplet: no OpenCL device (on Debian: apt-get install pocl-opencl-icd; `caplet doctor` tells more)\n");
+    fmt::print(stderr,
+               "caplet: no OpenCL device (on Debian: apt-get install pocl-opencl-icd; `caplet "
+               "doctor` tells more)\n");
   for (const auto& [device, rays_a_second, why_not] : devices) {
-    const std::string speed = !measured         ? ""
-                              : why_not.empty() ? fmt::format(", {:.3g} Mrays/s", rays_a_second * 1e-6)
-                                                : ", not measured: " + why_not;
-    fmt::print("{}  {}  {}  ({}, {} compute units, {:.1f} GiB, {}){}\n", device.index, device.type, device.name, device.platform,
-               device.compute_units, static_cast<double>(device.global_bytes) / (1 << 30), device.driver, speed);
+    const std::string speed = !measured ? ""
+                              : why_not.empty()
+                                  ? fmt::format(", {:.3g} Mrays/s", rays_a_second * 1e-6)
+                                  : ", not measured: " + why_not;
+    fmt::print("{}  {}  {}  ({}, {} compute units, {:.1f} GiB, {}){}\n", device.index, device.type,
+               device.name, device.platform, device.compute_units,
+               static_cast<double>(device.global_bytes) / (1 << 30), device.driver, speed);
   }
 }
 
 }  // namespace
 
 void add_devices(CLI::App& app) {
-  CLI::App* command = app.add_subcommand("devices", "List the OpenCL devices, as --device takes them");
+  CLI::App* command =
+      app.add_subcommand("devices", "List the OpenCL devices, as --device takes them");
   const auto json = std::make_shared<bool>(false), measure = std::make_shared<bool>(false);
   command->add_flag("--json", *json, "Print a JSON array for machines");
-  command->add_flag("--measure", *measure, "Also how many rays a second each traces in a render, which takes seconds a device");
+  command->add_flag(
+      "--measure", *measure,
+      "Also how many rays a second each traces in a render, which takes seconds a device");
   command->footer(footer_with({"caplet devices --measure"}));
   command->callback([json, measure] {
     const std::vector<Listed> devices = list(*measure);

@@ -32,7 +32,8 @@ struct Container {
 
 const std::vector<Container>& containers() {
   static const std::vector<const char*> h264{
-      "-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2", "-c:v", "libx264", "-pix_fmt", "yuv420p", "-crf", "18"};
+      "-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2", "-c:v", "libx264", "-pix_fmt", "yuv420p", "-crf",
+      "18"};
   static const std::vector<Container> rows = {
       {".mp4", "mp4", h264},
       {".mov", "mov", h264},
@@ -73,11 +74,14 @@ std::optional<Place> place_of(const std::string& name) {
     while (begin > 0 && name[begin - 1] == '#') --begin;
     return Place{begin, last - begin + 1, static_cast<int>(last - begin + 1)};
   }
-  for (std::size_t at = name.rfind('%'); at != std::string::npos; at = at == 0 ? std::string::npos : name.rfind('%', at - 1)) {
+  for (std::size_t at = name.rfind('%'); at != std::string::npos;
+       at = at == 0 ? std::string::npos : name.rfind('%', at - 1)) {
     std::size_t end = at + 1;
     int digits = 0;
-    while (end < name.size() && name[end] >= '0' && name[end] <= '9' && digits < 10) digits = 10 * digits + (name[end++] - '0');
-    if (end < name.size() && name[end] == 'd' && digits <= 20) return Place{at, end + 1 - at, digits};
+    while (end < name.size() && name[end] >= '0' && name[end] <= '9' && digits < 10)
+      digits = 10 * digits + (name[end++] - '0');
+    if (end < name.size() && name[end] == 'd' && digits <= 20)
+      return Place{at, end + 1 - at, digits};
   }
   return std::nullopt;
 }
@@ -87,7 +91,8 @@ std::optional<Place> place_of(const std::string& name) {
 std::optional<FrameRange> parse_frames(const std::string& text) {
   if (text == "all") return std::nullopt;
   const auto refuse = [&] {
-    throw InputError(SourceLocation{"--frames"}, fmt::format("'{}' is neither A-B, two whole numbers from 1, nor all", text));
+    throw InputError(SourceLocation{"--frames"},
+                     fmt::format("'{}' is neither A-B, two whole numbers from 1, nor all", text));
   };
   FrameRange out;
   const auto number = [&](std::string_view part, std::uint32_t& value) {
@@ -104,7 +109,9 @@ std::optional<FrameRange> parse_frames(const std::string& text) {
   return out;
 }
 
-bool is_numbered(const std::string& name) { return place_of(fs::path(name).filename().string()).has_value(); }
+bool is_numbered(const std::string& name) {
+  return place_of(fs::path(name).filename().string()).has_value();
+}
 
 fs::path numbered(const fs::path& path, std::uint32_t number) {
   std::string name = path.filename().string();
@@ -119,9 +126,11 @@ bool is_movie(const fs::path& path) { return container_of(path) != nullptr; }
 Movie::Movie(fs::path path, double frames_a_second, const std::string& flag)
     : path_(std::move(path)), frames_a_second_(frames_a_second) {
   if (in_path("ffmpeg").empty())
-    throw InputError(SourceLocation{flag}, fmt::format("'{}': movies are made by ffmpeg, which is not there: install the package "
-                                                       "ffmpeg, or write numbered pictures, such as frame.####.png",
-                                                       path_.string()));
+    throw InputError(
+        SourceLocation{flag},
+        fmt::format("'{}': movies are made by ffmpeg, which is not there: install the package "
+                    "ffmpeg, or write numbered pictures, such as frame.####.png",
+                    path_.string()));
   std::string name = (fs::temp_directory_path() / "caplet-frames-XXXXXX").string();
   if (!::mkdtemp(name.data())) throw RunError("no temporary folder can be made: " + name);
   folder_ = name;
@@ -152,9 +161,11 @@ void Movie::finish() {
     posix_spawn_file_actions_t streams;
     posix_spawn_file_actions_init(&streams);
     posix_spawn_file_actions_addopen(&streams, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
-    posix_spawn_file_actions_addopen(&streams, STDERR_FILENO, said.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
+    posix_spawn_file_actions_addopen(&streams, STDERR_FILENO, said.c_str(),
+                                     O_WRONLY | O_CREAT | O_TRUNC, 0600);
     pid_t child = 0;
-    const int failed = ::posix_spawnp(&child, "ffmpeg", &streams, nullptr, arguments.data(), environ);
+    const int failed =
+        ::posix_spawnp(&child, "ffmpeg", &streams, nullptr, arguments.data(), environ);
     posix_spawn_file_actions_destroy(&streams);
     int status = 0;
     if (!failed)
@@ -164,7 +175,8 @@ void Movie::finish() {
     std::ifstream in(said);
     std::string text((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
     while (!text.empty() && text.back() == '\n') text.pop_back();
-    throw RunError(fmt::format("ffmpeg made no movie of {} frames{}{}", count_, text.empty() ? "" : ": ", text.substr(0, 1000)));
+    throw RunError(fmt::format("ffmpeg made no movie of {} frames{}{}", count_,
+                               text.empty() ? "" : ": ", text.substr(0, 1000)));
   });
 }
 

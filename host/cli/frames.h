@@ -19,11 +19,13 @@ struct FrameRange {
   std::uint32_t first = 1, last = 1, count = 1;
 };
 
-/// Parses "A-B" or "A": integers from 1, the second not below the first. Returns no value for "all". Throws InputError that names
+/// Parses "A-B" or "A": integers from 1, the second not below the first. Returns no value for
+/// "all". Throws InputError that names
 /// --frames.
 std::optional<FrameRange> parse_frames(const std::string& text);
 
-/// Returns whether a name has a place for a number: "####" (at least so many digits) or "%d", "%04d".
+/// Returns whether a name has a place for a number: "####" (at least so many digits) or "%d",
+/// "%04d".
 bool is_numbered(const std::string& name);
 /// Fills in the last such place of the file name; a name without one stays as it is.
 std::filesystem::path numbered(const std::filesystem::path& name, std::uint32_t number);

@@ -13,7 +13,8 @@ namespace {
 
 constexpr std::size_t width = 80, help_column = 26;
 
-/// Returns "  NAME    HELP". The help begins in its column, on the next line if the name is too long.
+/// Returns "  NAME    HELP". The help begins in its column, on the next line if the name is too
+/// long.
 std::string row(const std::string& name, const std::string& help) {
   std::vector<std::string> names = filled(name, width - 6);
   for (std::size_t i = 0; i < names.size(); ++i) names[i].insert(0, i == 0 ? 2 : 6, ' ');
@@ -56,14 +57,16 @@ class HelpText : public CLI::FormatterBase {
 
 }  // namespace
 
-std::string help_text(const CommandText& command, const std::string& name, const std::vector<CommandText>& commands) {
+std::string help_text(const CommandText& command, const std::string& name,
+                      const std::vector<CommandText>& commands) {
   std::string usage = "Usage: " + name + (command.options.empty() ? "" : " [OPTIONS]");
   for (const OptionText& argument : command.arguments) usage += " " + usage_of(argument);
   if (!commands.empty()) usage += " COMMAND ...";
   std::string out = paragraph(command.help) + paragraph(usage);
   if (!command.arguments.empty()) {
     out += "\nArguments:\n";
-    for (const OptionText& argument : command.arguments) out += row(usage_of(argument), full_help(argument));
+    for (const OptionText& argument : command.arguments)
+      out += row(usage_of(argument), full_help(argument));
   }
   if (!commands.empty()) {
     out += "\nCommands:\n";
@@ -71,7 +74,8 @@ std::string help_text(const CommandText& command, const std::string& name, const
   }
   for (const std::string& group : groups_of(command)) {
     out += "\n" + group + ":\n";
-    for (const OptionText& option : options_in(command, group)) out += row(names_and_value(option), full_help(option));
+    for (const OptionText& option : options_in(command, group))
+      out += row(names_and_value(option), full_help(option));
   }
   const std::vector<FooterPart> footer = footer_parts(command.footer);
   for (std::size_t i = 0; i < footer.size(); ++i) {

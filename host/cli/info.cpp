@@ -21,21 +21,25 @@ namespace {
 
 void print_text(const nlohmann::ordered_json& info) {
   fmt::print("scene        {}\n", info["scene"].get<std::string>());
-  for (const auto& [kind, count] : info["primitives"].items()) fmt::print("{:<12} {}\n", kind, count.get<std::uint64_t>());
+  for (const auto& [kind, count] : info["primitives"].items())
+    fmt::print("{:<12} {}\n", kind, count.get<std::uint64_t>());
   if (const auto& bounds = info["bounds"]; bounds.is_null()) {
     fmt::print("bounds       none: there are no shapes\n");
   } else {
     const auto &low = bounds["min"], &high = bounds["max"];
-    fmt::print("bounds       ({:.6g}, {:.6g}, {:.6g}) to ({:.6g}, {:.6g}, {:.6g})\n", low[0].get<double>(), low[1].get<double>(),
-               low[2].get<double>(), high[0].get<double>(), high[1].get<double>(), high[2].get<double>());
+    fmt::print("bounds       ({:.6g}, {:.6g}, {:.6g}) to ({:.6g}, {:.6g}, {:.6g})\n",
+               low[0].get<double>(), low[1].get<double>(), low[2].get<double>(),
+               high[0].get<double>(), high[1].get<double>(), high[2].get<double>());
   }
-  fmt::print("materials    {}\nlights       {}\n", info["materials"].get<std::uint64_t>(), info["lights"].get<std::uint64_t>());
+  fmt::print("materials    {}\nlights       {}\n", info["materials"].get<std::uint64_t>(),
+             info["lights"].get<std::uint64_t>());
   fmt::print("image        {} x {}, {} samples per pixel\n", info["image"]["width"].get<int>(),
              info["image"]["height"].get<int>(), info["samples_per_pixel"].get<int>());
   fmt::print("bytes        {} host, {} device\n", info["bytes"]["host"].get<std::uint64_t>(),
              info["bytes"]["device"].get<std::uint64_t>());
-  fmt::print("bvh          {} nodes, depth {}, SAH cost {:.4g}\n", info["bvh"]["nodes"].get<std::uint64_t>(),
-             info["bvh"]["depth"].get<int>(), info["bvh"]["sah"].get<double>());
+  fmt::print("bvh          {} nodes, depth {}, SAH cost {:.4g}\n",
+             info["bvh"]["nodes"].get<std::uint64_t>(), info["bvh"]["depth"].get<int>(),
+             info["bvh"]["sah"].get<double>());
 }
 
 }  // namespace
@@ -47,20 +51,22 @@ void add_info(CLI::App& app) {
     bool json = false, parameters = false;
   };
   const auto options = std::make_shared<Options>();
-  CLI::App* command =
-      app.add_subcommand("info", "Tell what a scene file holds: primitives, bounds, materials, lights, memory, tree");
+  CLI::App* command = app.add_subcommand(
+      "info", "Tell what a scene file holds: primitives, bounds, materials, lights, memory, tree");
   add_scene_files(*command, options->scenes);
   command->get_option("SCENE")->required(false);
   command->add_flag("--json", options->json, "Print JSON for machines");
   command->add_flag("--parameters", options->parameters,
-                    "List what scene files may say, in place of a scene: families and their types; of a family, or of a family "
+                    "List what scene files may say, in place of a scene: families and their types; "
+                    "of a family, or of a family "
                     "and a type, the parameters with types, defaults, ranges and units");
   add_import_options(*command, options->import_options);
-  command->footer(
-      footer_with({"caplet info scene.pbrt", "caplet info neuron.swc --json", "caplet info --parameters material conductor"}));
+  command->footer(footer_with({"caplet info scene.pbrt", "caplet info neuron.swc --json",
+                               "caplet info --parameters material conductor"}));
   command->callback([options] {
     if (options->parameters) {
-      fmt::print("{}", options->json ? parameters_json(options->scenes) : parameters_text(options->scenes));
+      fmt::print("{}", options->json ? parameters_json(options->scenes)
+                                     : parameters_text(options->scenes));
       return;
     }
     if (options->scenes.empty()) throw CLI::RequiredError("SCENE");

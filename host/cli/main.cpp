@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// The main program: dispatches subcommands and returns exit codes (0 done, 1 failed while working, 2 wrong input or usage, 3
-// `verify` found disagreement).
+// The main program: dispatches subcommands and returns exit codes (0 done, 1 failed while working,
+// 2 wrong input or usage, 3 `verify` found disagreement).
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <unistd.h>
@@ -30,8 +30,11 @@ namespace {
 
 constexpr int exit_failed = 1, exit_wrong_input = 2;
 
-/// Prints one line. Control characters of names and files, which could break the line or the terminal, become blanks.
-void print_error(const std::string& message) { std::fprintf(stderr, "caplet: error: %s\n", caplet::one_line(message).c_str()); }
+/// Prints one line. Control characters of names and files, which could break the line or the
+/// terminal, become blanks.
+void print_error(const std::string& message) {
+  std::fprintf(stderr, "caplet: error: %s\n", caplet::one_line(message).c_str());
+}
 
 int print_usage_error(const CLI::App& app, const CLI::ParseError& error) {
   std::string message = error.what();
@@ -39,23 +42,27 @@ int print_usage_error(const CLI::App& app, const CLI::ParseError& error) {
     message = "unknown command or option '" + unknown.front() + "'";
   print_error(message);
   std::string help = "caplet --help";
-  for (const CLI::App* command : app.get_subcommands()) help = "caplet " + command->get_name() + " --help";
+  for (const CLI::App* command : app.get_subcommands())
+    help = "caplet " + command->get_name() + " --help";
   std::fprintf(stderr, "caplet: see: %s\n", help.c_str());
   return exit_wrong_input;
 }
 
-/// If a standard stream is closed, its number would be given to the next opened file. A closed stdout is replaced by one that
-/// cannot be written, which end() reports.
+/// If a standard stream is closed, its number would be given to the next opened file. A closed
+/// stdout is replaced by one that cannot be written, which end() reports.
 void open_standard_streams() {
   for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
-    if (::fcntl(stream, F_GETFD) < 0 && ::open("/dev/null", stream == STDOUT_FILENO ? O_RDONLY : O_RDWR) != stream) return;
+    if (::fcntl(stream, F_GETFD) < 0 &&
+        ::open("/dev/null", stream == STDOUT_FILENO ? O_RDONLY : O_RDWR) != stream)
+      return;
 }
 
 /// Returns `code`, or exit_failed when results did not reach stdout.
 int end(int code) {
   errno = 0;
   if (std::fflush(stdout) == 0 && !std::ferror(stdout) && std::cout.flush()) return code;
-  print_error(fmt::format("stdout cannot be written: {}", errno ? std::strerror(errno) : "not all of it was taken"));
+  print_error(fmt::format("stdout cannot be written: {}",
+                          errno ? std::strerror(errno) : "not all of it was taken"));
   return exit_failed;
 }
 
@@ -73,7 +80,8 @@ int run(CLI::App& app, int argc, char** argv) {
     for (const std::string& message : error.messages()) print_error(message);
     return exit_wrong_input;
   } catch (const caplet::DriverError& error) {
-    // A driver's compiler may fail because of the signal; the interrupt is then the reason, not the driver.
+    // A driver's compiler may fail because of the signal; the interrupt is then the reason, not the
+    // driver.
     if (caplet::interrupt_requested()) {
       print_error("interrupted; nothing is written");
     } else {
@@ -91,21 +99,27 @@ int run(CLI::App& app, int argc, char** argv) {
 int whole_program(int argc, char** argv) {
   open_standard_streams();
   caplet::log::set_quiet(false);
-  // A closed pipe and the file size limit become write errors, not signals: other outputs remain, and files must be removed.
+  // A closed pipe and the file size limit become write errors, not signals: other outputs remain,
+  // and files must be removed.
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);
   const caplet::SecondTry second_try(argv);
   const caplet::NotedInputs inputs;
   const caplet::cli::Invocation invocation{{argv, argv + argc}};
-  CLI::App app{"Caplet renders scenes of exact analytic solids, capsules first, by path tracing on any OpenCL device.", "caplet"};
-  app.set_version_flag("--version", "caplet " CAPLET_VERSION, "Show the version and exit")->group("Options");
+  CLI::App app{
+      "Caplet renders scenes of exact analytic solids, capsules first, by path tracing on any "
+      "OpenCL device.",
+      "caplet"};
+  app.set_version_flag("--version", "caplet " CAPLET_VERSION, "Show the version and exit")
+      ->group("Options");
   caplet::cli::use_help_text(app);
   app.set_help_flag("-h,--help", "Show this help and exit")->group("Options");
   app.require_subcommand(1);
-  app.footer(caplet::cli::footer_with(
-      {"caplet render scene.pbrt -o picture.exr --preview picture.png"},
-      "`caplet COMMAND --help` explains a command.\n"
-      "Exit codes: 0 done, 1 failed while working, 2 the input or the usage is wrong, 3 verify found disagreement."));
+  app.footer(
+      caplet::cli::footer_with({"caplet render scene.pbrt -o picture.exr --preview picture.png"},
+                               "`caplet COMMAND --help` explains a command.\n"
+                               "Exit codes: 0 done, 1 failed while working, 2 the input or the "
+                               "usage is wrong, 3 verify found disagreement."));
   caplet::cli::add_render(app, invocation);
   caplet::cli::add_pick(app);
   caplet::cli::add_verify(app);

@@ -10,7 +10,8 @@ namespace caplet::cli {
 
 namespace {
 
-/// Escapes text for roff, which prints a plain `-` as a hyphen that cannot be typed, and takes a leading dot for a macro.
+/// Escapes text for roff, which prints a plain `-` as a hyphen that cannot be typed, and takes a
+/// leading dot for a macro.
 std::string escaped(const std::string& text) {
   std::string out;
   for (const char c : text) {
@@ -43,11 +44,13 @@ std::string escaped(const std::string& text) {
   return out.starts_with('.') ? "\\&" + out : out;
 }
 
-/// Formats an option's values: literals in bold, placeholders in italics. A line may break after each `|`.
+/// Formats an option's values: literals in bold, placeholders in italics. A line may break after
+/// each `|`.
 std::string type_in_fonts(const std::string& type) {
   std::string out, word;
   const auto end_word = [&] {
-    const bool is_word = std::ranges::none_of(word, [](char c) { return (c >= 'A' && c <= 'Z') || c == ',' || c == '['; });
+    const bool is_word = std::ranges::none_of(
+        word, [](char c) { return (c >= 'A' && c <= 'Z') || c == ',' || c == '['; });
     if (!word.empty()) out += (is_word ? "\\fB" : "\\fI") + escaped(word) + "\\fR";
     word.clear();
   };
@@ -65,13 +68,16 @@ std::string type_in_fonts(const std::string& type) {
 
 std::string names_in_bold(const OptionText& option) {
   std::string out;
-  for (const std::string& name : option.names) out += (out.empty() ? "\\fB" : ", \\fB") + escaped(name) + "\\fR";
+  for (const std::string& name : option.names)
+    out += (out.empty() ? "\\fB" : ", \\fB") + escaped(name) + "\\fR";
   if (option.type.empty()) return out;
-  return out + (option.value_is_optional ? " [" + type_in_fonts(option.type) + "]" : " " + type_in_fonts(option.type));
+  return out + (option.value_is_optional ? " [" + type_in_fonts(option.type) + "]"
+                                         : " " + type_in_fonts(option.type));
 }
 
 void add_options(std::string& out, const std::vector<OptionText>& options) {
-  for (const OptionText& option : options) out += ".TP\n" + names_in_bold(option) + "\n" + escaped(full_help(option)) + "\n";
+  for (const OptionText& option : options)
+    out += ".TP\n" + names_in_bold(option) + "\n" + escaped(full_help(option)) + "\n";
 }
 
 void add_footer(std::string& out, const std::string& footer) {
@@ -110,8 +116,9 @@ std::vector<SharedGroup> shared_groups(const ProgramText& program) {
   for (const CommandText& command : program.commands)
     for (const std::string& group : groups_of(command)) {
       const std::vector<OptionText> options = options_in(command, group);
-      const auto same =
-          std::ranges::find_if(out, [&](const SharedGroup& one) { return one.name == group && are_same(one.options, options); });
+      const auto same = std::ranges::find_if(out, [&](const SharedGroup& one) {
+        return one.name == group && are_same(one.options, options);
+      });
       if (same == out.end())
         out.push_back({group, options, {command.name}});
       else
@@ -121,16 +128,21 @@ std::vector<SharedGroup> shared_groups(const ProgramText& program) {
   return out;
 }
 
-bool is_shared(const std::vector<SharedGroup>& shared, const std::string& command, const std::string& group) {
+bool is_shared(const std::vector<SharedGroup>& shared, const std::string& command,
+               const std::string& group) {
   return std::ranges::any_of(shared, [&](const SharedGroup& one) {
     return one.name == group && std::ranges::find(one.commands, command) != one.commands.end();
   });
 }
 
-std::string listed(const std::vector<std::string>& names, const std::string& before, const std::string& after) {
+std::string listed(const std::vector<std::string>& names, const std::string& before,
+                   const std::string& after) {
   std::string out;
   for (std::size_t i = 0; i < names.size(); ++i)
-    out += (i == 0 ? "" : i + 1 == names.size() ? " and " : ", ") + before + escaped(names[i]) + after;
+    out += (i == 0                  ? ""
+            : i + 1 == names.size() ? " and "
+                                    : ", ") +
+           before + escaped(names[i]) + after;
   return out;
 }
 
@@ -153,7 +165,8 @@ void add_command(std::string& out, const ProgramText& program, const CommandText
     add_options(out, options_in(command, group));
   }
   if (!elsewhere.empty())
-    out += ".PP\nIt also has the options of " + listed(elsewhere, "\\(lq", "\\(rq") + " in OPTIONS OF SEVERAL COMMANDS.\n";
+    out += ".PP\nIt also has the options of " + listed(elsewhere, "\\(lq", "\\(rq") +
+           " in OPTIONS OF SEVERAL COMMANDS.\n";
   add_footer(out, command.footer);
 }
 
@@ -164,12 +177,14 @@ std::string man_page(const ProgramText& program) {
   std::string help = short_help(program.program.help);
   if (help.ends_with('.')) help.pop_back();
   if (help.starts_with("Caplet ")) help.erase(0, 7);
-  std::string out = ".\\\" Made by `caplet describe man`.\n.TH " + upper(name) + " 1 \"\" \"" + name + " " + program.version +
-                    "\" \"User Commands\"\n.SH NAME\n" + name + " \\- " + escaped(help) + "\n.SH SYNOPSIS\n";
+  std::string out = ".\\\" Made by `caplet describe man`.\n.TH " + upper(name) + " 1 \"\" \"" +
+                    name + " " + program.version + "\" \"User Commands\"\n.SH NAME\n" + name +
+                    " \\- " + escaped(help) + "\n.SH SYNOPSIS\n";
   for (const CommandText& command : program.commands) {
     out += ".B \"" + name + " " + escaped(command.name) + "\"\n";
     out += command.options.empty() ? "" : "[\\fIOPTIONS\\fR]";
-    for (const OptionText& argument : command.arguments) out += " \\fI" + usage_of(argument) + "\\fR";
+    for (const OptionText& argument : command.arguments)
+      out += " \\fI" + usage_of(argument) + "\\fR";
     out += "\n.br\n";
   }
   out += ".SH DESCRIPTION\n" + escaped(program.program.help) + "\n.SH COMMANDS\n";
@@ -181,7 +196,8 @@ std::string man_page(const ProgramText& program) {
   for (const CommandText& command : program.commands) add_command(out, program, command, shared);
   out += ".SH OPTIONS OF SEVERAL COMMANDS\n";
   for (const SharedGroup& group : shared) {
-    out += ".SS \"" + escaped(group.name) + "\"\n.PP\nOf " + listed(group.commands, "\\fB", "\\fR") + ":\n";
+    out += ".SS \"" + escaped(group.name) + "\"\n.PP\nOf " +
+           listed(group.commands, "\\fB", "\\fR") + ":\n";
     add_options(out, group.options);
   }
   out += ".SH NOTES\n";

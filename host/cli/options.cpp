@@ -40,17 +40,24 @@ std::vector<long long> whole_numbers(std::string_view text, char separator) {
   }
 }
 
-[[noreturn]] void refuse(const char* flag, const std::string& message) { throw InputError(SourceLocation{flag}, message); }
+[[noreturn]] void refuse(const char* flag, const std::string& message) {
+  throw InputError(SourceLocation{flag}, message);
+}
 
 }  // namespace
 
-std::filesystem::path output_named(const std::string& text) { return text == "-" ? "/dev/stdout" : text; }
+std::filesystem::path output_named(const std::string& text) {
+  return text == "-" ? "/dev/stdout" : text;
+}
 
 ImageSize parse_size(const std::string& text) {
   const std::vector<long long> sides = whole_numbers(text, 'x');
-  if (sides.size() != 2) refuse("--size", fmt::format("'{}' is not WIDTHxHEIGHT, like 960x540", text));
-  if (sides[0] < 1 || sides[1] < 1) refuse("--size", fmt::format("'{}': both sides must be at least 1", text));
-  if (sides[0] > most_image_pixels || sides[1] > most_image_pixels || sides[0] * sides[1] > most_image_pixels)
+  if (sides.size() != 2)
+    refuse("--size", fmt::format("'{}' is not WIDTHxHEIGHT, like 960x540", text));
+  if (sides[0] < 1 || sides[1] < 1)
+    refuse("--size", fmt::format("'{}': both sides must be at least 1", text));
+  if (sides[0] > most_image_pixels || sides[1] > most_image_pixels ||
+      sides[0] * sides[1] > most_image_pixels)
     refuse("--size", fmt::format("'{}' is more than 2^28 pixels", text));
   return {static_cast<int>(sides[0]), static_cast<int>(sides[1])};
 }
@@ -59,17 +66,20 @@ std::array<int, 4> parse_crop(const std::string& text) {
   const std::vector<long long> corners = whole_numbers(text, ',');
   if (corners.size() != 4) refuse("--crop", fmt::format("'{}' is not x0,y0,x1,y1 in pixels", text));
   for (const long long corner : corners)
-    if (corner < 0 || corner > most_image_pixels) refuse("--crop", fmt::format("'{}': {} is out of range", text, corner));
+    if (corner < 0 || corner > most_image_pixels)
+      refuse("--crop", fmt::format("'{}': {} is out of range", text, corner));
   if (corners[0] >= corners[2] || corners[1] >= corners[3])
     refuse("--crop", fmt::format("'{}' is empty: x0 < x1 and y0 < y1 are needed", text));
-  return {static_cast<int>(corners[0]), static_cast<int>(corners[1]), static_cast<int>(corners[2]), static_cast<int>(corners[3])};
+  return {static_cast<int>(corners[0]), static_cast<int>(corners[1]), static_cast<int>(corners[2]),
+          static_cast<int>(corners[3])};
 }
 
 std::array<int, 2> parse_pixel(const std::string& text) {
   const std::vector<long long> numbers = whole_numbers(text, ',');
   if (numbers.size() != 2) refuse("--pixel", fmt::format("'{}' is not X,Y in whole pixels", text));
   for (const long long number : numbers)
-    if (number < 0 || number > most_image_pixels) refuse("--pixel", fmt::format("'{}' is outside of any image", text));
+    if (number < 0 || number > most_image_pixels)
+      refuse("--pixel", fmt::format("'{}' is outside of any image", text));
   return {static_cast<int>(numbers[0]), static_cast<int>(numbers[1])};
 }
 
@@ -77,9 +87,11 @@ RayNumbers parse_ray(const std::string& text) {
   std::array<double, 6> numbers{};
   std::size_t count = 0;
   for (std::string_view rest = text;; ++count) {
-    if (count == numbers.size()) refuse("--ray", fmt::format("'{}' is more than six numbers", text));
+    if (count == numbers.size())
+      refuse("--ray", fmt::format("'{}' is more than six numbers", text));
     const std::size_t comma = rest.find(',');
-    if (const auto wrong = parse_number(rest.substr(0, comma), numbers[count])) refuse("--ray", *wrong);
+    if (const auto wrong = parse_number(rest.substr(0, comma), numbers[count]))
+      refuse("--ray", *wrong);
     if (comma == std::string_view::npos) break;
     rest.remove_prefix(comma + 1);
   }
@@ -95,13 +107,14 @@ Layers parse_layers(const std::optional<std::string>& list, bool variance) {
     for (std::string_view rest = *list;;) {
       const std::size_t comma = rest.find(',');
       const std::string_view name = rest.substr(0, comma);
-      const auto found =
-          std::ranges::find_if(layer_rows, [&](const LayerRow& row) { return !name.empty() && row.option == name; });
+      const auto found = std::ranges::find_if(
+          layer_rows, [&](const LayerRow& row) { return !name.empty() && row.option == name; });
       if (found == layer_rows.end()) {
         std::vector<std::string> names;
         for (const LayerRow& row : layer_rows)
           if (*row.option) names.emplace_back(row.option);
-        refuse("--layers", fmt::format("there is no layer '{}'; the nearest is '{}' (a list like Z,albedo, or all, or none)",
+        refuse("--layers", fmt::format("there is no layer '{}'; the nearest is '{}' (a list like "
+                                       "Z,albedo, or all, or none)",
                                        name, nearest_name(name, names)));
       }
       layers = layers.with(static_cast<Layer>(found - layer_rows.begin()));
@@ -120,7 +133,10 @@ std::vector<Device> choose_devices(const std::string& choice, Encoding encoding)
 }
 
 void add_device(CLI::App& command, std::string& choice) {
-  command.add_option("--device", choice, "OpenCL device: index, cpu, gpu, bundled or part of its name (see `caplet devices`)")
+  command
+      .add_option(
+          "--device", choice,
+          "OpenCL device: index, cpu, gpu, bundled or part of its name (see `caplet devices`)")
       ->type_name("cpu|gpu|bundled|DEVICE")
       ->default_str(usual_device);
 }
@@ -128,7 +144,8 @@ void add_device(CLI::App& command, std::string& choice) {
 void add_devices_option(CLI::App& command, std::string& choice) {
   command
       .add_option("--device", choice,
-                  "OpenCL device: index, cpu, gpu, bundled or part of its name (see `caplet devices`); some of these between "
+                  "OpenCL device: index, cpu, gpu, bundled or part of its name (see `caplet "
+                  "devices`); some of these between "
                   "commas, or all")
       ->type_name("all|cpu|gpu|bundled|DEVICE,...")
       ->default_str(usual_device);
@@ -144,8 +161,10 @@ std::string layer_names() {
 void add_encoding(CLI::App& command, Encoding& encoding) {
   command
       .add_option_function<std::string>(
-          "--encoding", [&encoding](const std::string& text) { encoding = parse_encoding(text, "--encoding"); },
-          "How kernels go through the tree: wide (eight boxes at a time) or single; automatic: by the device")
+          "--encoding",
+          [&encoding](const std::string& text) { encoding = parse_encoding(text, "--encoding"); },
+          "How kernels go through the tree: wide (eight boxes at a time) or single; automatic: by "
+          "the device")
       ->type_name("automatic|wide|single")
       ->default_str("automatic");
 }
@@ -175,30 +194,39 @@ void add_import_options(CLI::App& command, ImportOptions& options) {
         formats_of_it += (formats_of_it.empty() ? "" : ", ") + format.name;
     command
         .add_option_function<std::string>(
-            "--" + row.name, [&options, name = row.name](const std::string& value) { options.set(name, value); },
+            "--" + row.name,
+            [&options, name = row.name](const std::string& value) { options.set(name, value); },
             row.help + (row.of == Of::picture ? "" : " (" + formats_of_it + ")") +
-                (row.name == "least-width" ? fmt::format("; at most {}; unless asked {}", widest_least_width, usual_least_width())
+                (row.name == "least-width" ? fmt::format("; at most {}; unless asked {}",
+                                                         widest_least_width, usual_least_width())
                                            : ""))
         ->type_name(row.values)
         ->group(row.of == Of::picture ? "The picture" : "Files of other fields");
   }
   command
       .add_flag_callback(
-          "--orthographic", [&options] { options.set("projection", "orthographic"); }, "--projection orthographic")
+          "--orthographic", [&options] { options.set("projection", "orthographic"); },
+          "--projection orthographic")
       ->group("The picture");
 }
 
 CLI::Option* add_scene_files(CLI::App& command, std::vector<std::string>& scenes) {
-  return command.add_option("SCENE", scenes, "Scene file, or several that make one scene, of any formats: " + scene_extensions())
+  return command
+      .add_option(
+          "SCENE", scenes,
+          "Scene file, or several that make one scene, of any formats: " + scene_extensions())
       ->required()
       ->type_name("SCENE");
 }
 
 Scene import_files(const std::vector<std::string>& scenes, const ImportOptions& options) {
-  return import_scenes(std::vector<std::filesystem::path>(scenes.begin(), scenes.end()), FileImageReader(), options);
+  return import_scenes(std::vector<std::filesystem::path>(scenes.begin(), scenes.end()),
+                       FileImageReader(), options);
 }
 
-std::string scene_names(const std::vector<std::string>& scenes) { return fmt::format("{}", fmt::join(scenes, " ")); }
+std::string scene_names(const std::vector<std::string>& scenes) {
+  return fmt::format("{}", fmt::join(scenes, " "));
+}
 
 std::string scene_extensions() {
   std::vector<std::string> all;
@@ -220,7 +248,8 @@ std::string usual_samples() {
 std::string usual_least_width() {
   std::string out = fmt::format("{}", FilmSettings{}.least_width);
   for (const Format& format : formats())
-    if (format.least_width != FilmSettings{}.least_width) out += fmt::format(", {} of {}", format.least_width, format.name);
+    if (format.least_width != FilmSettings{}.least_width)
+      out += fmt::format(", {} of {}", format.least_width, format.name);
   return out;
 }
 

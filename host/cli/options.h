@@ -27,30 +27,36 @@ struct ImageSize {
 /// Returns the path of an output; "-" is the standard output.
 std::filesystem::path output_named(const std::string& text);
 
-/// Parses "960x540": two integers from 1, at most 2^28 pixels in all. Throws InputError that names --size.
+/// Parses "960x540": two integers from 1, at most 2^28 pixels in all. Throws InputError that names
+/// --size.
 ImageSize parse_size(const std::string& text);
 
-/// Parses "x0,y0,x1,y1" in pixels from the top left, x1 and y1 excluded. Throws InputError that names --crop.
+/// Parses "x0,y0,x1,y1" in pixels from the top left, x1 and y1 excluded. Throws InputError that
+/// names --crop.
 std::array<int, 4> parse_crop(const std::string& text);
 
-/// Parses "X,Y": a pixel of the full image, from the top left. Throws InputError that names --pixel.
+/// Parses "X,Y": a pixel of the full image, from the top left. Throws InputError that names
+/// --pixel.
 std::array<int, 2> parse_pixel(const std::string& text);
 
-/// Parses "ox,oy,oz,dx,dy,dz": origin and direction (of any length). Throws InputError that names --ray.
+/// Parses "ox,oy,oz,dx,dy,dz": origin and direction (of any length). Throws InputError that names
+/// --ray.
 RayNumbers parse_ray(const std::string& text);
 
-/// Returns the layers to write: the default ones without `list`; "all", "none", or some of layer_rows' options separated by
-/// commas; and the variance if requested. Throws InputError that names --layers.
+/// Returns the layers to write: the default ones without `list`; "all", "none", or some of
+/// layer_rows' options separated by commas; and the variance if requested. Throws InputError that
+/// names --layers.
 Layers parse_layers(const std::optional<std::string>& list, bool variance);
 
-/// Adds an option --NAME for each of import_option_rows, stored in `options` if given. The option SCENE must precede them.
+/// Adds an option --NAME for each of import_option_rows, stored in `options` if given. The option
+/// SCENE must precede them.
 void add_import_options(CLI::App& command, ImportOptions& options);
 
 /// Returns the extensions of all scene formats, for help: ".pbrt, .swc, ...".
 std::string scene_extensions();
 
-/// Returns the defaults of pictures if neither the scene nor the user sets them, for help: samples per pixel of all formats ("16,
-/// 64 of swc"), least widths of capsules, and the size.
+/// Returns the defaults of pictures if neither the scene nor the user sets them, for help: samples
+/// per pixel of all formats ("16, 64 of swc"), least widths of capsules, and the size.
 std::string usual_samples();
 std::string usual_least_width();
 std::string usual_size();
@@ -80,7 +86,8 @@ auto with_device_flag(const Choose& choose) {
   } catch (const UnknownDevice& error) {
     throw InputError(SourceLocation{"--device"}, error.what());
   } catch (const NoDevice& error) {
-    throw RunError(std::string("--device: ") + error.what() + "; `caplet doctor` tells what is missing");
+    throw RunError(std::string("--device: ") + error.what() +
+                   "; `caplet doctor` tells what is missing");
   }
 }
 
@@ -107,8 +114,8 @@ struct Overrides {
   std::optional<double> clamp;  // film.max_component_value; 0: none
 };
 
-/// Applies the settings. A new size rescales the file's own crop and re-frames an automatic camera. Throws InputError when the
-/// crop does not lie within the image.
+/// Applies the settings. A new size rescales the file's own crop and re-frames an automatic camera.
+/// Throws InputError when the crop does not lie within the image.
 void apply(const Overrides& overrides, Scene& scene);
 
 }  // namespace caplet::cli

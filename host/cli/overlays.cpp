@@ -17,7 +17,8 @@ void add_overlays(CLI::App& command, post::Overlays& overlays) {
     if (row.values.empty()) {
       command
           .add_flag_callback(
-              flag, [&overlays, name, flag] { post::set_overlay(overlays, name, "", flag); }, row.help)
+              flag, [&overlays, name, flag] { post::set_overlay(overlays, name, "", flag); },
+              row.help)
           ->group(group);
       continue;
     }

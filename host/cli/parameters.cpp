@@ -21,10 +21,11 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-void check_name(const std::string& name, const std::vector<std::string>& known, const std::string& what) {
+void check_name(const std::string& name, const std::vector<std::string>& known,
+                const std::string& what) {
   if (std::ranges::find(known, name) == known.end())
-    throw InputError(
-        fmt::format("--parameters: there is no {} '{}'; the nearest is '{}'", what, name, nearest_name(name, known)));
+    throw InputError(fmt::format("--parameters: there is no {} '{}'; the nearest is '{}'", what,
+                                 name, nearest_name(name, known)));
 }
 
 /// Returns the requested types: (family, type).
@@ -44,13 +45,17 @@ std::vector<std::pair<std::string, std::string>> types_of(const std::vector<std:
 
 std::string range_text(const schema::Parameter& parameter) {
   const bool has_low = std::isfinite(parameter.low), has_high = std::isfinite(parameter.high);
-  const std::string low = fmt::format("{} {}", parameter.above_low ? "above" : "from", parameter.low);
+  const std::string low =
+      fmt::format("{} {}", parameter.above_low ? "above" : "from", parameter.low);
   if (has_low && has_high) return fmt::format("{} to {}", low, parameter.high);
-  return has_low ? low + (parameter.above_low ? "" : " up") : has_high ? fmt::format("up to {}", parameter.high) : "";
+  return has_low    ? low + (parameter.above_low ? "" : " up")
+         : has_high ? fmt::format("up to {}", parameter.high)
+                    : "";
 }
 
 std::string line_of(const schema::Parameter& parameter, std::size_t width) {
-  std::string out = fmt::format("  {:<{}}  {}", parameter.name, width, fmt::join(parameter.types, "|"));
+  std::string out =
+      fmt::format("  {:<{}}  {}", parameter.name, width, fmt::join(parameter.types, "|"));
   if (!parameter.fallback.empty()) out += ", default " + parameter.fallback;
   if (const std::string range = range_text(parameter); !range.empty()) out += ", " + range;
   if (!parameter.unit.empty()) out += " " + parameter.unit;
@@ -78,7 +83,8 @@ std::string parameters_text(const std::vector<std::string>& names) {
   std::string out;
   if (names.empty()) {
     for (const std::string& family : schema::families())
-      out += fmt::format("{:<11} {}\n", family, fmt::join(file_statement_types(schema::directive_of(family)), " "));
+      out += fmt::format("{:<11} {}\n", family,
+                         fmt::join(file_statement_types(schema::directive_of(family)), " "));
     return out;
   }
   for (const auto& [family, type] : types_of(names)) {
@@ -97,8 +103,10 @@ std::string parameters_json(const std::vector<std::string>& names) {
     Json parameters = Json::array();
     for (const schema::Parameter& one : schema::parameters_of(schema::directive_of(family), type))
       parameters.push_back(json_of(one));
-    out.push_back(
-        {{"family", family}, {"directive", schema::directive_of(family)}, {"type", type}, {"parameters", std::move(parameters)}});
+    out.push_back({{"family", family},
+                   {"directive", schema::directive_of(family)},
+                   {"type", type},
+                   {"parameters", std::move(parameters)}});
   }
   return report::to_text(out);
 }

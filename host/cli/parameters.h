@@ -9,8 +9,8 @@
 
 namespace caplet::cli {
 
-/// `names`: nothing, a family ("material"), or a family and a type ("material", "conductor"). Lists families with their types, or
-/// the parameters of the types. Throws InputError for unknown names.
+/// `names`: nothing, a family ("material"), or a family and a type ("material", "conductor"). Lists
+/// families with their types, or the parameters of the types. Throws InputError for unknown names.
 std::string parameters_text(const std::vector<std::string>& names);
 /// Returns them as a JSON array of types, each with its parameters.
 std::string parameters_json(const std::vector<std::string>& names);

@@ -70,7 +70,8 @@ struct RenderFlags {
 
 constexpr const char* no_picture = "none";
 
-/// The outputs and their paths; for frames, with the place of the number. An empty path is not written.
+/// The outputs and their paths; for frames, with the place of the number. An empty path is not
+/// written.
 struct Files {
   std::vector<fs::path> pictures, previews;
   fs::path movie, stats;
@@ -103,8 +104,11 @@ void add_output(const RenderFlags& options, Files& files, const fs::path& path) 
     files.all.add("-o", path);
   } else if (is_movie(path) && (options.has_frames() || path.extension() != ".gif")) {
     if (!options.has_frames())
-      throw InputError(SourceLocation{"-o"}, fmt::format("'{}': a movie goes with --turntable or --frames", path.string()));
-    if (!files.movie.empty()) throw InputError(SourceLocation{"-o"}, "one movie at a time is written");
+      throw InputError(
+          SourceLocation{"-o"},
+          fmt::format("'{}': a movie goes with --turntable or --frames", path.string()));
+    if (!files.movie.empty())
+      throw InputError(SourceLocation{"-o"}, "one movie at a time is written");
     check_preview_format("frame.png", "-o");
     files.movie = path;
     files.all.add("-o", path);
@@ -114,7 +118,8 @@ void add_output(const RenderFlags& options, Files& files, const fs::path& path) 
       check_preview_format(path, "-o");
     } catch (const InputError& error) {
       throw InputError(SourceLocation{"-o"},
-                       fmt::format("'{}': pictures are written as .exr, and tone-mapped as .png, .jpg and the like; movies of "
+                       fmt::format("'{}': pictures are written as .exr, and tone-mapped as .png, "
+                                   ".jpg and the like; movies of "
                                    "frames as .mp4, .mov, .mkv, .webm or .gif",
                                    path.string()));
     }
@@ -123,19 +128,22 @@ void add_output(const RenderFlags& options, Files& files, const fs::path& path) 
 }
 
 void check_frame_options(const RenderFlags& options, const Files& files) {
-  const auto refuse = [](const char* flag, const std::string& why) { throw InputError(SourceLocation{flag}, why); };
+  const auto refuse = [](const char* flag, const std::string& why) {
+    throw InputError(SourceLocation{flag}, why);
+  };
   if (!options.has_frames()) {
     if (options.skip_existing) refuse("--skip-existing", "goes with --turntable or --frames");
     return;
   }
   if (options.separation) refuse("--stereo", "does not go with --turntable and --frames");
   if (!options.display.empty()) refuse("--display", "does not go with --turntable and --frames");
-  if (options.skip_existing && !files.movie.empty()) refuse("--skip-existing", "does not go with a movie, which has all frames");
+  if (options.skip_existing && !files.movie.empty())
+    refuse("--skip-existing", "does not go with a movie, which has all frames");
   for (const auto* paths : {&files.pictures, &files.previews})
     for (const fs::path& path : *paths)
       if (!is_numbered(path.string()))
-        refuse("-o", fmt::format("'{}': frames are written to numbered files, such as {}.####{}", path.string(),
-                                 path.stem().string(), path.extension().string()));
+        refuse("-o", fmt::format("'{}': frames are written to numbered files, such as {}.####{}",
+                                 path.string(), path.stem().string(), path.extension().string()));
   if (files.pictures.empty() && files.previews.empty() && files.movie.empty())
     refuse("-o", "frames need a name, such as frame.####.png or movie.mp4");
 }
@@ -150,17 +158,22 @@ Overrides check_options(const RenderFlags& options, Files& files) {
   overrides.seed = options.seed;
   overrides.clamp = options.clamp;
   if (!options.separation && (options.convergence || !options.layout.empty()))
-    throw InputError(SourceLocation{options.convergence ? "--convergence" : "--stereo-layout"}, "goes with --stereo");
+    throw InputError(SourceLocation{options.convergence ? "--convergence" : "--stereo-layout"},
+                     "goes with --stereo");
   const bool none = std::ranges::find(options.outputs, no_picture) != options.outputs.end();
-  if (none && options.outputs.size() > 1) throw InputError(SourceLocation{"-o"}, "'none' does not go with another -o");
+  if (none && options.outputs.size() > 1)
+    throw InputError(SourceLocation{"-o"}, "'none' does not go with another -o");
   if (none && options.preview.empty() && options.stats.empty())
-    throw InputError(SourceLocation{"-o"}, "'none' goes with --preview or --stats: nothing would be written");
+    throw InputError(SourceLocation{"-o"},
+                     "'none' goes with --preview or --stats: nothing would be written");
   for (const std::string& output : options.outputs)
     if (output != no_picture) add_output(options, files, output_named(output));
   if (!options.preview.empty()) add_preview(files, options.preview, "--preview");
-  if (options.overlays.any() && ((files.previews.empty() && files.movie.empty()) || options.separation))
+  if (options.overlays.any() &&
+      ((files.previews.empty() && files.movie.empty()) || options.separation))
     throw InputError(SourceLocation{"--preview"},
-                     options.separation ? "overlays are not drawn for two eyes (--stereo)" : "overlays are drawn on it alone");
+                     options.separation ? "overlays are not drawn for two eyes (--stereo)"
+                                        : "overlays are drawn on it alone");
   if (!options.stats.empty()) {
     files.stats = output_named(options.stats);
     files.all.add("--stats", files.stats);
@@ -176,8 +189,9 @@ report::StereoLayout layout_of(const RenderFlags& options) {
              : static_cast<report::StereoLayout>(found - report::stereo_layout_names.begin());
 }
 
-/// Checks what depends on the scene: the picture's name (the scene's own film name, else the scene file's, in the current
-/// folder), its size, and that no output is a file that the scene was read from.
+/// Checks what depends on the scene: the picture's name (the scene's own film name, else the scene
+/// file's, in the current folder), its size, and that no output is a file that the scene was read
+/// from.
 void check_outputs(const RenderFlags& options, const Scene& scene, Layers layers, Files& files) {
   if (options.outputs.empty() && !options.has_frames()) {
     fs::path name = fs::path(scene.film.filename).filename();
@@ -185,20 +199,28 @@ void check_outputs(const RenderFlags& options, const Scene& scene, Layers layers
     add_output(options, files, name.replace_extension(".exr"));
   }
   files.all.check_inputs();
-  const std::array<int, 4> window = scene.film.crop.value_or(std::array<int, 4>{0, scene.film.width, 0, scene.film.height});
+  const std::array<int, 4> window =
+      scene.film.crop.value_or(std::array<int, 4>{0, scene.film.width, 0, scene.film.height});
   const int width = window[1] - window[0], height = window[3] - window[2];
   const std::string flag = options.crop.empty() ? "--size" : "--crop";
-  if (!files.pictures.empty()) check_exr_size(width, height, layers.channels() * (options.separation ? 2 : 1), flag);
-  const bool is_transparent = scene.film.backdrop && scene.film.backdrop->kind == Backdrop::Kind::transparent;
+  if (!files.pictures.empty())
+    check_exr_size(width, height, layers.channels() * (options.separation ? 2 : 1), flag);
+  const bool is_transparent =
+      scene.film.backdrop && scene.film.backdrop->kind == Backdrop::Kind::transparent;
   for (const fs::path& preview : files.previews) {
     if (is_transparent && !options.separation) check_preview_alpha(preview, "--preview");
-    check_preview_size(preview,
-                       options.separation && layout_of(options) == report::StereoLayout::side_by_side ? 2 * width : width,
-                       options.separation && layout_of(options) == report::StereoLayout::over_under ? 2 * height : height, flag);
+    check_preview_size(
+        preview,
+        options.separation && layout_of(options) == report::StereoLayout::side_by_side ? 2 * width
+                                                                                       : width,
+        options.separation && layout_of(options) == report::StereoLayout::over_under ? 2 * height
+                                                                                     : height,
+        flag);
   }
 }
 
-constexpr const char* interrupted_early = "interrupted before anything was rendered; nothing is written";
+constexpr const char* interrupted_early =
+    "interrupted before anything was rendered; nothing is written";
 
 void guard(const std::vector<Device>& devices) {
   for (const Device& device : devices) SecondTry::guard(device);
@@ -212,8 +234,8 @@ std::string names_of(const std::vector<Device>& devices) {
 
 /// Returns the result of `work`, and reports its progress.
 template <class Work>
-RenderResult with_progress(const std::vector<Device>& devices, const RenderOptions& render_options, bool quiet,
-                           const Work& work) {
+RenderResult with_progress(const std::vector<Device>& devices, const RenderOptions& render_options,
+                           bool quiet, const Work& work) {
   ProgressReporter reporter(ProgressReporter::style_for_stderr(quiet));
   try {
     return work([&](const Progress& progress) {
@@ -221,22 +243,27 @@ RenderResult with_progress(const std::vector<Device>& devices, const RenderOptio
         SecondTry::driver_works();
       else
         guard(devices);  // once more, because the kernels' compiler may have set signal handlers
-      reporter.update(progress.fraction, progress.samples_per_second,
-                      fmt::format("{:.0f}/{} samples", std::floor(progress.fraction * render_options.samples_per_pixel + 1e-6),
-                                  render_options.samples_per_pixel));
+      reporter.update(
+          progress.fraction, progress.samples_per_second,
+          fmt::format("{:.0f}/{} samples",
+                      std::floor(progress.fraction * render_options.samples_per_pixel + 1e-6),
+                      render_options.samples_per_pixel));
     });
   } catch (const RunError&) {
-    // A driver's compiler may fail because of the signal; the interrupt is then the reason, not the driver.
+    // A driver's compiler may fail because of the signal; the interrupt is then the reason, not the
+    // driver.
     if (interrupt_requested()) throw RunError(interrupted_early);
     throw;
   }
 }
 
-RenderResult render_with_progress(const FlatScene& flat, const FlatView& view, const std::vector<Device>& devices,
+RenderResult render_with_progress(const FlatScene& flat, const FlatView& view,
+                                  const std::vector<Device>& devices,
                                   const RenderOptions& render_options, bool quiet) {
-  return with_progress(devices, render_options, quiet, [&](const std::function<void(const Progress&)>& progress) {
-    return render(flat, view, devices, render_options, progress);
-  });
+  return with_progress(devices, render_options, quiet,
+                       [&](const std::function<void(const Progress&)>& progress) {
+                         return render(flat, view, devices, render_options, progress);
+                       });
 }
 
 /// The inputs and settings of a picture.
@@ -254,10 +281,13 @@ struct Work {
 /// Renders a view; if requested, tev shows its progress.
 RenderResult render_shown(const Work& work, const FlatView& view, const std::string& view_name) {
   if (work.options.display.empty())
-    return render_with_progress(work.flat, view, work.devices, work.render_options, work.options.quiet);
+    return render_with_progress(work.flat, view, work.devices, work.render_options,
+                                work.options.quiet);
   constexpr double most_seconds_at_the_end = 5;
-  const std::string name =
-      (work.files.pictures.empty() ? fs::path(work.options.scenes.front()) : work.files.pictures.front()).filename().string();
+  const std::string name = (work.files.pictures.empty() ? fs::path(work.options.scenes.front())
+                                                        : work.files.pictures.front())
+                               .filename()
+                               .string();
   TevDisplay display(parse_tev_address(work.options.display, "--display"),
                      view_name.empty() ? name : name + " (" + view_name + ")");
   NotFinite ignored;
@@ -266,7 +296,8 @@ RenderResult render_shown(const Work& work, const FlatView& view, const std::str
   shown.look = [&](const Film& film) {
     if (display.is_idle()) display.show(develop(film, work.scene, work.layers, ignored));
   };
-  RenderResult result = render_with_progress(work.flat, view, work.devices, shown, work.options.quiet);
+  RenderResult result =
+      render_with_progress(work.flat, view, work.devices, shown, work.options.quiet);
   display.show(develop(result.film, work.scene, work.layers, ignored));
   display.finish(most_seconds_at_the_end);
   return result;
@@ -278,18 +309,22 @@ void add_to(report::RunSeconds& seconds, const RenderResult& result) {
 }
 
 BandedImage bands_of(const Work& work, const RenderResult& result, NotFinite& not_finite) {
-  BandedImage out = result.device_film ? report::developed_in_bands(*result.device_film, work.scene, work.film_layers, not_finite)
-                                       : report::developed_in_bands(result.film, work.scene, work.film_layers, not_finite);
-  out.whole.metadata =
-      report::picture_metadata(work.scene, scene_names(work.options.scenes), work.invocation.command_line(), result);
+  BandedImage out = result.device_film ? report::developed_in_bands(*result.device_film, work.scene,
+                                                                    work.film_layers, not_finite)
+                                       : report::developed_in_bands(result.film, work.scene,
+                                                                    work.film_layers, not_finite);
+  out.whole.metadata = report::picture_metadata(work.scene, scene_names(work.options.scenes),
+                                                work.invocation.command_line(), result);
   return out;
 }
 
-/// Calls write with a picture and a preview at a time, which are developed together; one of them may be empty.
+/// Calls write with a picture and a preview at a time, which are developed together; one of them
+/// may be empty.
 template <class Write>
 void each_pair(const Files& files, const Write& write) {
   for (std::size_t i = 0; i < std::max(files.pictures.size(), files.previews.size()); ++i)
-    write(i < files.pictures.size() ? files.pictures[i] : fs::path(), i < files.previews.size() ? files.previews[i] : fs::path());
+    write(i < files.pictures.size() ? files.pictures[i] : fs::path(),
+          i < files.previews.size() ? files.previews[i] : fs::path());
 }
 
 RenderResult written(const Work& work, RenderResult result, report::RunSeconds& seconds) {
@@ -300,9 +335,12 @@ RenderResult written(const Work& work, RenderResult result, report::RunSeconds& 
   const post::Overlays& overlays = work.options.overlays;
   report::Finish finish{overlays.layers(), work.layers, {}};
   if (overlays.any())
-    finish.draw = [&](Shown& shown, const LayeredImage& layers) { post::draw(shown, layers, work.scene, overlays); };
+    finish.draw = [&](Shown& shown, const LayeredImage& layers) {
+      post::draw(shown, layers, work.scene, overlays);
+    };
   each_pair(work.files, [&](const fs::path& exr, const fs::path& preview) {
-    report::write_pictures(exr, preview, picture, work.layers.channels(), result.render_seconds, finish);
+    report::write_pictures(exr, preview, picture, work.layers.channels(), result.render_seconds,
+                           finish);
   });
   not_finite.warn();
   seconds.write += phase.lap();
@@ -313,8 +351,8 @@ RenderResult one_picture(const Work& work, const FlatView& view, report::RunSeco
   return written(work, render_shown(work, view, ""), seconds);
 }
 
-/// Renders the views of two eyes in turn, the right one with as many samples as the left one got. The result describes
-/// both.
+/// Renders the views of two eyes in turn, the right one with as many samples as the left one got.
+/// The result describes both.
 RenderResult stereo_pictures(const Work& both, report::RunSeconds& seconds) {
   const Stereo stereo{*both.options.separation, both.options.convergence};
   std::array<RenderResult, 2> results;
@@ -333,16 +371,19 @@ RenderResult stereo_pictures(const Work& both, report::RunSeconds& seconds) {
     if (i == 1) work.render_options.time_limit.reset();
     results[i] = render_shown(work, lower_view(seen), eye == Eye::left ? "left" : "right");
     add_to(seconds, results[i]);
-    if (results[i].interrupted && i == 0) throw RunError("interrupted before there was a view for both eyes; nothing is written");
+    if (results[i].interrupted && i == 0)
+      throw RunError("interrupted before there was a view for both eyes; nothing is written");
   }
   NotFinite not_finite;
   BandedImage left = bands_of(both, results[0], not_finite);
   const BandedImage right = bands_of(both, results[1], not_finite);
   left.whole.metadata["caplet.stereo_separation"] = fmt::format("{}", stereo.separation);
-  if (stereo.convergence) left.whole.metadata["caplet.stereo_convergence"] = fmt::format("{}", *stereo.convergence);
+  if (stereo.convergence)
+    left.whole.metadata["caplet.stereo_convergence"] = fmt::format("{}", *stereo.convergence);
   Stopwatch phase;
   each_pair(both.files, [&](const fs::path& exr, const fs::path& preview) {
-    report::write_stereo_pictures(exr, preview, left, right, layout_of(both.options), both.layers.channels(),
+    report::write_stereo_pictures(exr, preview, left, right, layout_of(both.options),
+                                  both.layers.channels(),
                                   results[0].render_seconds + results[1].render_seconds);
   });
   not_finite.warn();
@@ -358,7 +399,8 @@ RenderResult stereo_pictures(const Work& both, report::RunSeconds& seconds) {
 void tell_of_bar(const RenderFlags& options, const Scene& scene) {
   const post::BarOnPicture bar = post::bar_of(*options.overlays.scale_bar, scene, "--scale-bar");
   log::info("scale bar: {} are {:.1f} pixels{}", bar.label, bar.pixels,
-            bar.distance ? fmt::format(" at {:.6g} before the camera, the middle of what is seen (--orthographic: everywhere)",
+            bar.distance ? fmt::format(" at {:.6g} before the camera, the middle of what is seen "
+                                       "(--orthographic: everywhere)",
                                        *bar.distance)
                          : std::string());
 }
@@ -378,8 +420,11 @@ struct FrameSource {
 };
 
 FrameSource source_of(const RenderFlags& options) {
-  const auto refuse = [](const std::string& why) { throw InputError(SourceLocation{"--frames"}, why); };
-  const std::optional<FrameRange> asked = options.frames.empty() ? std::nullopt : parse_frames(options.frames);
+  const auto refuse = [](const std::string& why) {
+    throw InputError(SourceLocation{"--frames"}, why);
+  };
+  const std::optional<FrameRange> asked =
+      options.frames.empty() ? std::nullopt : parse_frames(options.frames);
   FrameSource source;
   source.range = {1, options.turntable, options.turntable};
   const bool has_numbers = std::ranges::any_of(options.scenes, [](const std::string& scene) {
@@ -394,21 +439,26 @@ FrameSource source_of(const RenderFlags& options) {
     source.range = *asked;
   } else {
     source.kind = FrameSource::Kind::models;
-    if (options.import_options.text("model")) throw InputError(SourceLocation{"--model"}, "does not go with --frames");
+    if (options.import_options.text("model"))
+      throw InputError(SourceLocation{"--model"}, "does not go with --frames");
     const auto moves = std::ranges::find_if(options.scenes, [](const std::string& scene) {
       return std::ranges::find(format_of(scene).options, "model") != format_of(scene).options.end();
     });
     if (moves == options.scenes.end())
-      refuse("the scene has one frame: several are in files of molecules, in numbered files (####), or in --turntable N");
+      refuse(
+          "the scene has one frame: several are in files of molecules, in numbered files (####), "
+          "or in --turntable N");
     ImportOptions of_file;
     for (const auto& [name, value] : options.import_options.values())
-      if (name == "no-outside" || std::ranges::find(format_of(*moves).options, name) != format_of(*moves).options.end())
+      if (name == "no-outside" ||
+          std::ranges::find(format_of(*moves).options, name) != format_of(*moves).options.end())
         of_file.set(name, value);
     const std::uint32_t count = read_scene(*moves, FileImageReader(), of_file).frames;
     source.range = {1, count, count};
   }
   if (asked && source.kind != FrameSource::Kind::files) {
-    if (asked->last > source.range.last) refuse(fmt::format("'{}': there are {} frames", options.frames, source.range.last));
+    if (asked->last > source.range.last)
+      refuse(fmt::format("'{}': there are {} frames", options.frames, source.range.last));
     source.range.first = asked->first;
     source.range.last = asked->last;
   }
@@ -416,15 +466,18 @@ FrameSource source_of(const RenderFlags& options) {
 }
 
 Scene scene_of_frame(const RenderFlags& options, const FrameSource& source, std::uint32_t frame) {
-  if (source.kind == FrameSource::Kind::turntable) return import_files(options.scenes, options.import_options);
-  if (source.kind == FrameSource::Kind::files) return import_files(numbered_all(options.scenes, frame), options.import_options);
+  if (source.kind == FrameSource::Kind::turntable)
+    return import_files(options.scenes, options.import_options);
+  if (source.kind == FrameSource::Kind::files)
+    return import_files(numbered_all(options.scenes, frame), options.import_options);
   ImportOptions of_frame = options.import_options;
   of_frame.set("model", std::to_string(frame));
   return import_files(options.scenes, of_frame);
 }
 
 /// Frames an automatic camera to the union of up to 17 frames, including the first and the last.
-void frame_all(const RenderFlags& options, const FrameSource& source, const Overrides& overrides, Scene& first) {
+void frame_all(const RenderFlags& options, const FrameSource& source, const Overrides& overrides,
+               Scene& first) {
   constexpr std::uint32_t most = 16;
   if (!first.automatic_camera) return;
   Scene all = first;
@@ -432,7 +485,8 @@ void frame_all(const RenderFlags& options, const FrameSource& source, const Over
   const bool quiet = options.quiet;
   log::set_quiet(true);  // messages appear when each frame is rendered
   for (std::uint32_t i = 1; i <= std::min(count, most); ++i) {
-    const auto frame = source.range.first + static_cast<std::uint32_t>(std::uint64_t{count} * i / std::min(count, most));
+    const auto frame = source.range.first +
+                       static_cast<std::uint32_t>(std::uint64_t{count} * i / std::min(count, most));
     Scene other = scene_of_frame(options, source, frame);
     other.lights.clear();
     append(all, std::move(other));
@@ -450,10 +504,11 @@ bool is_there(const Files& files) {
   return std::ranges::all_of(files.pictures, exists) && std::ranges::all_of(files.previews, exists);
 }
 
-/// Renders the frames one after the other. What they share (the device, its kernels, for a turntable the whole scene) is made
-/// once. Throws RunError when it is interrupted: each frame is then either complete or missing.
-RenderResult render_frames(const Work& of_all, const FrameSource& source, const Overrides& overrides, Scene scene,
-                           report::RunSeconds& seconds) {
+/// Renders the frames one after the other. What they share (the device, its kernels, for a
+/// turntable the whole scene) is made once. Throws RunError when it is interrupted: each frame is
+/// then either complete or missing.
+RenderResult render_frames(const Work& of_all, const FrameSource& source,
+                           const Overrides& overrides, Scene scene, report::RunSeconds& seconds) {
   const RenderFlags& options = of_all.options;
   std::optional<Movie> movie;
   if (!of_all.files.movie.empty()) movie.emplace(of_all.files.movie, options.frames_a_second, "-o");
@@ -472,13 +527,15 @@ RenderResult render_frames(const Work& of_all, const FrameSource& source, const 
     Files files = of_frame(of_all.files, frame);
     if (options.skip_existing && is_there(files)) continue;
     if (movie) files.previews.push_back(movie->next());
-    if (interrupt_requested()) throw RunError(fmt::format("interrupted: {} of {} frames are written", made, count));
+    if (interrupt_requested())
+      throw RunError(fmt::format("interrupted: {} of {} frames are written", made, count));
     if (table) {
       ViewEdit view = view_of(live.scene());
       view.camera = table->camera(frame - 1, source.range.count);
       live.edit(view);
       for (std::uint32_t i = 0; i < lights.size(); ++i)
-        if (table->turns(lights[i])) live.edit(LightEdit{i, table->turned(lights[i], frame - 1, source.range.count)});
+        if (table->turns(lights[i]))
+          live.edit(LightEdit{i, table->turned(lights[i], frame - 1, source.range.count)});
     } else if (session || frame != source.range.first) {
       Scene next = scene_of_frame(options, source, frame);
       apply(overrides, next);
@@ -490,14 +547,19 @@ RenderResult render_frames(const Work& of_all, const FrameSource& source, const 
       live.replace(std::move(next));
     }
     if (!session)
-      session.emplace(live.flat(), live.view(), of_all.devices, session_options(of_all.render_options));
+      session.emplace(live.flat(), live.view(), of_all.devices,
+                      session_options(of_all.render_options));
     else
       session->update(live.flat(), live.take_changes(), live.view());
-    const Work work{options,       of_all.invocation,  live.scene(), live.flat(),          of_all.devices,
-                    of_all.layers, of_all.film_layers, files,        of_all.render_options};
+    const Work work{
+        options,       of_all.invocation,  live.scene(), live.flat(),          of_all.devices,
+        of_all.layers, of_all.film_layers, files,        of_all.render_options};
     result = with_progress(of_all.devices, work.render_options, options.quiet,
-                           [&](const auto& progress) { return render(*session, of_all.devices, work.render_options, progress); });
-    if (result.interrupted) throw RunError(fmt::format("interrupted: {} of {} frames are written", made, count));
+                           [&](const auto& progress) {
+                             return render(*session, of_all.devices, work.render_options, progress);
+                           });
+    if (result.interrupted)
+      throw RunError(fmt::format("interrupted: {} of {} frames are written", made, count));
     result = written(work, std::move(result), seconds);
     ++made;
     if (!files.pictures.empty() || files.previews.size() > (movie ? 1U : 0U))
@@ -523,11 +585,13 @@ void run_render(const RenderFlags& options, const Invocation& invocation) {
   phase.lap();
   std::optional<FrameSource> frames;
   if (options.has_frames()) frames = source_of(options);
-  if (!files.movie.empty()) Movie(files.movie, options.frames_a_second, "-o");  // checks that it can be made
-  Scene scene =
-      frames ? scene_of_frame(options, *frames, frames->range.first) : import_files(options.scenes, options.import_options);
+  if (!files.movie.empty())
+    Movie(files.movie, options.frames_a_second, "-o");  // checks that it can be made
+  Scene scene = frames ? scene_of_frame(options, *frames, frames->range.first)
+                       : import_files(options.scenes, options.import_options);
   apply(overrides, scene);
-  if (frames && frames->kind != FrameSource::Kind::turntable) frame_all(options, *frames, overrides, scene);
+  if (frames && frames->kind != FrameSource::Kind::turntable)
+    frame_all(options, *frames, overrides, scene);
   check_outputs(options, scene, layers, files);
   post::check(options.overlays, scene, "--");
   if (options.overlays.scale_bar && !options.quiet) tell_of_bar(options, scene);
@@ -541,8 +605,9 @@ void run_render(const RenderFlags& options, const Invocation& invocation) {
   devices = tried_apart(devices, {.shapes = flat.shapes, .render = true});
   guard(devices);
   if (!options.quiet)
-    log::info("{}: {} primitives, {} x {} pixels, {} samples per pixel on {}", scene_names(options.scenes), flat.primitive_count,
-              view.view.crop_width, view.view.crop_height, scene.sampler.samples_per_pixel, names_of(devices));
+    log::info("{}: {} primitives, {} x {} pixels, {} samples per pixel on {}",
+              scene_names(options.scenes), flat.primitive_count, view.view.crop_width,
+              view.view.crop_height, scene.sampler.samples_per_pixel, names_of(devices));
   RenderOptions render_options;
   render_options.samples_per_pixel = scene.sampler.samples_per_pixel;
   render_options.time_limit = options.time_limit;
@@ -552,27 +617,29 @@ void run_render(const RenderFlags& options, const Invocation& invocation) {
   render_options.cancelled = interrupt_requested;
   render_options.layers = film_layers;
   render_options.patience = options.patience;
-  const Work work{options, invocation, scene, flat, devices, layers, film_layers, files, render_options};
-  const RenderResult result = frames               ? render_frames(work, *frames, overrides, scene, seconds)
+  const Work work{options, invocation,  scene, flat,          devices,
+                  layers,  film_layers, files, render_options};
+  const RenderResult result = frames ? render_frames(work, *frames, overrides, scene, seconds)
                               : options.separation ? stereo_pictures(work, seconds)
                                                    : one_picture(work, view, seconds);
   seconds.total = total.lap();
-  if (!files.stats.empty()) write_bytes(files.stats, report::to_text(report::run_summary(seconds, result)));
+  if (!files.stats.empty())
+    write_bytes(files.stats, report::to_text(report::run_summary(seconds, result)));
   const fs::path first = frames && !files.movie.empty() ? files.movie : files.first();
   if (result.interrupted)
-    log::warn("interrupted: {} holds {} of {} samples per pixel", first.string(), result.samples_per_pixel,
-              scene.sampler.samples_per_pixel);
+    log::warn("interrupted: {} holds {} of {} samples per pixel", first.string(),
+              result.samples_per_pixel, scene.sampler.samples_per_pixel);
   log::info("wrote {}", first.string());
 }
 
 void add_outputs(CLI::App& command, RenderFlags& o) {
   command.option_defaults()->group("Output");
   command
-      .add_option(
-          "-o,--output", o.outputs,
-          "What to write, as often as there is to: a picture .exr, tone-mapped ones "
-          ".png, .jpg and the like, of frames numbered ones (out.####.exr) or a movie .mp4, .mov, .mkv, .webm, .gif; none: "
-          "no picture")
+      .add_option("-o,--output", o.outputs,
+                  "What to write, as often as there is to: a picture .exr, tone-mapped ones "
+                  ".png, .jpg and the like, of frames numbered ones (out.####.exr) or a movie "
+                  ".mp4, .mov, .mkv, .webm, .gif; none: "
+                  "no picture")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
       ->type_name("OUT.exr|OUT.png|OUT.mp4|none")
@@ -583,12 +650,14 @@ void add_frames(CLI::App& command, RenderFlags& o) {
   command.option_defaults()->group("Frames");
   command
       .add_option("--turntable", o.turntable,
-                  "Frames of a camera that goes once around the scene, with studio light where the file brings none")
+                  "Frames of a camera that goes once around the scene, with studio light where the "
+                  "file brings none")
       ->check(CLI::Range(1, 100000))
       ->type_name("N");
   command
       .add_option("--frames", o.frames,
-                  "Which frames: of a turntable, of the models in a file of molecules, of numbered scene files (in.####.swc)")
+                  "Which frames: of a turntable, of the models in a file of molecules, of numbered "
+                  "scene files (in.####.swc)")
       ->type_name("A-B|all");
   command.add_option("--fps", o.frames_a_second, "Frames a second of a movie")
       ->check(CLI::Range(0.01, 1000.0))
@@ -599,26 +668,37 @@ void add_frames(CLI::App& command, RenderFlags& o) {
 
 void add_preview_file(CLI::App& command, RenderFlags& o) {
   command.option_defaults()->group("Output");
-  command.add_option("--preview", o.preview, "Also write a tone-mapped 8-bit picture (.png, .jpg, .tif...)")->type_name("FILE");
+  command
+      .add_option("--preview", o.preview,
+                  "Also write a tone-mapped 8-bit picture (.png, .jpg, .tif...)")
+      ->type_name("FILE");
 }
 
 void add_size(CLI::App& command, RenderFlags& o) {
   command.option_defaults()->group("Size and quality");
-  command.add_option("--spp", o.samples_per_pixel, "Samples per pixel; unless asked the scene's, else " + usual_samples())
+  command
+      .add_option("--spp", o.samples_per_pixel,
+                  "Samples per pixel; unless asked the scene's, else " + usual_samples())
       ->check(CLI::Range(1, 1 << 24))
       ->type_name("N");
   command
       .add_option("--size", o.size,
-                  "Picture size in pixels; an automatic camera frames anew; unless asked the scene's, else " + usual_size())
+                  "Picture size in pixels; an automatic camera frames anew; unless asked the "
+                  "scene's, else " +
+                      usual_size())
       ->type_name("WxH");
-  command.add_option("--crop", o.crop, "Render only these pixels (from the top left; x1, y1 excluded)")->type_name("x0,y0,x1,y1");
+  command
+      .add_option("--crop", o.crop, "Render only these pixels (from the top left; x1, y1 excluded)")
+      ->type_name("x0,y0,x1,y1");
 }
 
 void add_device_choice(CLI::App& command, RenderFlags& o) {
   command.option_defaults()->group("Devices");
   add_devices_option(command, o.device);
   add_encoding(command, o.encoding);
-  command.add_option("--patience", o.patience, "Leave a device out that does not answer for so long, where there are others")
+  command
+      .add_option("--patience", o.patience,
+                  "Leave a device out that does not answer for so long, where there are others")
       ->check(CLI::Range(0.1, 1e6))
       ->capture_default_str()
       ->type_name("SECONDS");
@@ -626,58 +706,76 @@ void add_device_choice(CLI::App& command, RenderFlags& o) {
 
 void add_quality(CLI::App& command, RenderFlags& o) {
   command.option_defaults()->group("Size and quality");
-  command.add_option("--seed", o.seed, "Seed of the samples")->type_name("S")->default_str("the scene's");
+  command.add_option("--seed", o.seed, "Seed of the samples")
+      ->type_name("S")
+      ->default_str("the scene's");
   command.add_option("--max-depth", o.max_depth, "Most scattering events of a path")
       ->check(CLI::Range(0, 1 << 16))
       ->type_name("N")
       ->default_str("the scene's");
   command
-      .add_option(
-          "--clamp", o.clamp,
-          "Greatest component of a sample, exposed, as pbrt's maxcomponentvalue: fewer fireflies, a darker picture; 0: none")
+      .add_option("--clamp", o.clamp,
+                  "Greatest component of a sample, exposed, as pbrt's maxcomponentvalue: fewer "
+                  "fireflies, a darker picture; 0: none")
       ->check(CLI::Range(0.0, 1e30))
       ->type_name("X")
       ->default_str("the scene's");
   command.add_option("--time", o.time_limit, "Stop after the sample pass that passes this limit")
       ->check([](const std::string& text) {
         const double value = std::strtod(text.c_str(), nullptr);
-        return std::isfinite(value) && value > 0 ? std::string() : "'" + text + "' is not a positive number of seconds";
+        return std::isfinite(value) && value > 0
+                   ? std::string()
+                   : "'" + text + "' is not a positive number of seconds";
       })
       ->type_name("SECONDS");
 }
 
 void add_layer_choice(CLI::App& command, RenderFlags& o) {
   command.option_defaults()->group("Output");
-  command.add_option("--layers", o.layers, "Layers beside R G B A: some of " + layer_names() + ", or all, or none")
+  command
+      .add_option("--layers", o.layers,
+                  "Layers beside R G B A: some of " + layer_names() + ", or all, or none")
       ->type_name("all|none|LAYER,...")
       ->default_str("all but the variance");
 }
 
 void add_two_eyes(CLI::App& command, RenderFlags& o) {
   command.option_defaults()->group("Two eyes");
-  command.add_option("--stereo", o.separation, "Render for two eyes, so far apart, into one multi-view EXR")
+  command
+      .add_option("--stereo", o.separation,
+                  "Render for two eyes, so far apart, into one multi-view EXR")
       ->check(CLI::Range(1e-18, 1e18))
       ->type_name("SEPARATION");
-  command.add_option("--convergence", o.convergence, "Distance at which both eyes see things at one place")
+  command
+      .add_option("--convergence", o.convergence,
+                  "Distance at which both eyes see things at one place")
       ->check(CLI::Range(1e-18, 1e18))
       ->type_name("DISTANCE")
       ->default_str("infinitely far");
   command
       .add_option("--stereo-layout", o.layout,
-                  "How the preview shows both views: side by side (sbs), one over the other, or in red and cyan")
-      ->check(CLI::IsMember(std::vector<std::string>(report::stereo_layout_names.begin(), report::stereo_layout_names.end())))
+                  "How the preview shows both views: side by side (sbs), one over the other, or in "
+                  "red and cyan")
+      ->check(CLI::IsMember(std::vector<std::string>(report::stereo_layout_names.begin(),
+                                                     report::stereo_layout_names.end())))
       ->type_name(fmt::format("{}", fmt::join(report::stereo_layout_names, "|")))
       ->default_str(report::stereo_layout_names.front());
 }
 
 void add_reports(CLI::App& command, RenderFlags& o) {
   command.option_defaults()->group("Output");
-  command.add_option("--display", o.display, "Show the picture in tev as it grows, such as 127.0.0.1:14158")
+  command
+      .add_option("--display", o.display,
+                  "Show the picture in tev as it grows, such as 127.0.0.1:14158")
       ->type_name("HOST:PORT");
-  command.add_flag("--variance", o.variance, "Also write variance.R/G/B: the variance of each pixel's mean");
-  command.add_option("--stats", o.stats, "Write times, ray counts and memory as JSON; -: to stdout")->type_name("FILE.json");
+  command.add_flag("--variance", o.variance,
+                   "Also write variance.R/G/B: the variance of each pixel's mean");
+  command
+      .add_option("--stats", o.stats, "Write times, ray counts and memory as JSON; -: to stdout")
+      ->type_name("FILE.json");
   command.add_flag("-q,--quiet", o.quiet, "No progress, only warnings and errors");
-  command.add_option("--batch", o.batch_paths, "Paths a batch (the picture does not depend on it)")->group("");
+  command.add_option("--batch", o.batch_paths, "Paths a batch (the picture does not depend on it)")
+      ->group("");
 }
 
 }  // namespace
@@ -697,12 +795,12 @@ void add_render(CLI::App& app, const Invocation& invocation) {
   add_reports(*command, *o);
   add_import_options(*command, o->import_options);
   add_overlays(*command, o->overlays);
-  command->footer(footer_with(
-      {"caplet render scene.pbrt -o picture.exr --preview picture.png",
-       "caplet render a.swc b.swc --size 960x540 --spp 64 -o picture.png",
-       "caplet render neuron.swc --turntable 72 -o movie.mp4"},
-      "Options override the scene file. Ctrl-C finishes the sample pass and writes what there is; a second one stops at once. "
-      "The picture is scene-linear."));
+  command->footer(footer_with({"caplet render scene.pbrt -o picture.exr --preview picture.png",
+                               "caplet render a.swc b.swc --size 960x540 --spp 64 -o picture.png",
+                               "caplet render neuron.swc --turntable 72 -o movie.mp4"},
+                              "Options override the scene file. Ctrl-C finishes the sample pass "
+                              "and writes what there is; a second one stops at once. "
+                              "The picture is scene-linear."));
   command->callback([o, &invocation] { run_render(*o, invocation); });
 }
 

@@ -35,8 +35,9 @@ std::string error_text(const std::string& line) {
 void try_device_apart(const Device& device, const Trial& trial) {
   if (!needs_trial(device, trial)) return;
   log::info("testing {} once, and compiling for it", device.info().name);
-  std::vector<std::string> words{
-      "caplet", "try-device", "--device", std::to_string(device.info().index), "--encoding", name_of(device.encoding())};
+  std::vector<std::string> words{"caplet",     "try-device",
+                                 "--device",   std::to_string(device.info().index),
+                                 "--encoding", name_of(device.encoding())};
   words.push_back(fmt::format("--shapes={}", trial.shapes));
   if (trial.render) words.push_back("--render");
   if (trial.nearest) words.push_back("--nearest");
@@ -55,7 +56,8 @@ void try_device_apart(const Device& device, const Trial& trial) {
         most_seconds, interrupt_requested);
   };
   doctor::ChildEnd end = in_child();
-  if (!end.finished && end.exit_code != exit_wrong_device && device.is_pocl() && !interrupt_requested()) {
+  if (!end.finished && end.exit_code != exit_wrong_device && device.is_pocl() &&
+      !interrupt_requested()) {
     // PoCL's cache may be broken, which SecondTry handles.
     const FreshPoclCache fresh;
     end = in_child();
@@ -69,10 +71,12 @@ void try_device_apart(const Device& device, const Trial& trial) {
   if (interrupt_requested()) throw RunError("interrupted");
   if (end.exit_code == exit_wrong_device) throw WrongDevice(error_text(end.said));
   if (end.exit_code == 1 || end.exit_code == 2) throw RunError(error_text(end.said));
-  throw RunError(fmt::format(
-      "device '{}' (driver {}): its driver {} while Caplet's kernels were compiled and tried{}; use another device or "
-      "driver (--device; `caplet doctor` tells more), or another --encoding",
-      device.info().name, device.info().driver, end.how, end.said.empty() ? "" : fmt::format(" (it printed: {})", end.said)));
+  throw RunError(
+      fmt::format("device '{}' (driver {}): its driver {} while Caplet's kernels were compiled and "
+                  "tried{}; use another device or "
+                  "driver (--device; `caplet doctor` tells more), or another --encoding",
+                  device.info().name, device.info().driver, end.how,
+                  end.said.empty() ? "" : fmt::format(" (it printed: {})", end.said)));
 }
 
 std::vector<Device> tried_apart(const std::vector<Device>& devices, const Trial& trial) {
@@ -82,7 +86,8 @@ std::vector<Device> tried_apart(const std::vector<Device>& devices, const Trial&
       out.push_back(device);
     } catch (const RunError& error) {
       if (interrupt_requested() || (out.empty() && &device == &devices.back())) throw;
-      log::warn("device {} '{}' is left out: {}", device.info().index, device.info().name, error.what());
+      log::warn("device {} '{}' is left out: {}", device.info().index, device.info().name,
+                error.what());
     }
   return out;
 }

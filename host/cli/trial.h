@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// The first use of a device: its self-test in a separate process, so that a crash or hang of the driver is reported.
+// The first use of a device: its self-test in a separate process, so that a crash or hang of the
+// driver is reported.
 #pragma once
 
 #include <vector>
@@ -10,11 +11,12 @@
 
 namespace caplet::cli {
 
-/// Runs try_device (render/known_answers.h), when it is due, by starting this program again. Throws WrongDevice with the test's
-/// message, or RunError that says how the driver ended it; also when interrupted.
+/// Runs try_device (render/known_answers.h), when it is due, by starting this program again. Throws
+/// WrongDevice with the test's message, or RunError that says how the driver ended it; also when
+/// interrupted.
 void try_device_apart(const Device& device, const Trial& trial);
-/// Returns those of several devices that pass, and warns of the others. If none passes, throws the error of the last
-/// one.
+/// Returns those of several devices that pass, and warns of the others. If none passes, throws the
+/// error of the last one.
 std::vector<Device> tried_apart(const std::vector<Device>& devices, const Trial& trial);
 
 }  // namespace caplet::cli

@@ -47,7 +47,8 @@ std::vector<Device> devices_of(const VerifyFlags& o) {
   if (!o.all_devices) {
     out.push_back(choose_device(o.device, o.encoding));
   } else {
-    for (const DeviceInfo& info : list_devices()) out.push_back(Device::choose(std::to_string(info.index), o.encoding));
+    for (const DeviceInfo& info : list_devices())
+      out.push_back(Device::choose(std::to_string(info.index), o.encoding));
     if (out.empty()) out.push_back(choose_device("", o.encoding));  // reports what is missing
   }
   for (const Device& device : out) {
@@ -69,14 +70,16 @@ std::string scene_label(const verify::SceneName& name) {
 bool replay(const VerifyFlags& o) {
   const std::vector<verify::Case> cases = verify::load_cases(o.replay);
   const std::vector<Device> devices = devices_of(o);
-  std::map<std::tuple<std::string, std::uint64_t, std::uint64_t>, std::vector<const verify::Case*>> by_scene;
-  for (const verify::Case& one : cases) by_scene[{one.scene.file, one.scene.seed, one.scene.round}].push_back(&one);
+  std::map<std::tuple<std::string, std::uint64_t, std::uint64_t>, std::vector<const verify::Case*>>
+      by_scene;
+  for (const verify::Case& one : cases)
+    by_scene[{one.scene.file, one.scene.seed, one.scene.round}].push_back(&one);
   std::map<const verify::Case*, std::string> wrong;
   for (const auto& group : by_scene) {
     const std::vector<const verify::Case*>& members = group.second;
     const verify::SceneName& name = members.front()->scene;
-    const Scene scene =
-        name.file.empty() ? verify::torture_scene(name.seed, name.round) : import_scene(name.file, FileImageReader());
+    const Scene scene = name.file.empty() ? verify::torture_scene(name.seed, name.round)
+                                          : import_scene(name.file, FileImageReader());
     std::vector<RayRecord> rays;
     rays.reserve(members.size());
     for (const verify::Case* one : members) rays.push_back(one->ray);
@@ -86,8 +89,9 @@ bool replay(const VerifyFlags& o) {
       std::string text;
       for (std::size_t d = 0; d < devices.size(); ++d)
         for (const verify::Disagreement& found : ray.outcomes[d].disagreements)
-          text += fmt::format("  {}: {}: {}\n", devices[d].info().name,
-                              verify::fault_names[static_cast<std::size_t>(found.fault)], found.text);
+          text +=
+              fmt::format("  {}: {}: {}\n", devices[d].info().name,
+                          verify::fault_names[static_cast<std::size_t>(found.fault)], found.text);
       const std::lock_guard lock(mutex);
       if (!text.empty()) wrong[members[ray.ray]] = text;
     });
@@ -103,7 +107,9 @@ bool replay(const VerifyFlags& o) {
 
 void run_verify(const VerifyFlags& o) {
   log::set_quiet(o.quiet);
-  const auto refuse = [](const char* flag, const char* why) { throw InputError(SourceLocation{flag}, why); };
+  const auto refuse = [](const char* flag, const char* why) {
+    throw InputError(SourceLocation{flag}, why);
+  };
   if (o.all_devices && !o.device.empty()) refuse("--device", "does not go with --all-devices");
   if (!o.replay.empty()) {
     if (!o.scenes.empty()) refuse("--replay", "takes the scene from the cases");
@@ -115,14 +121,16 @@ void run_verify(const VerifyFlags& o) {
   }
   Outputs outputs;
   if (!o.heatmap.empty()) {
-    if (!o.heatmap.ends_with(".exr") && !is_stream(o.heatmap)) refuse("--heatmap", "writes EXR: the name must end in .exr");
+    if (!o.heatmap.ends_with(".exr") && !is_stream(o.heatmap))
+      refuse("--heatmap", "writes EXR: the name must end in .exr");
     outputs.add("--heatmap", o.heatmap);
   }
   if (!o.size.empty() && o.heatmap.empty()) refuse("--size", "goes with --heatmap");
   Overrides overrides;
   if (!o.size.empty()) overrides.size = parse_size(o.size);
   std::optional<Scene> scene;
-  if (o.scenes.size() > 1 && !o.failures.empty()) refuse("--save-failures", "keeps the name of one scene file: not of several");
+  if (o.scenes.size() > 1 && !o.failures.empty())
+    refuse("--save-failures", "keeps the name of one scene file: not of several");
   if (!o.scenes.empty()) scene = import_files(o.scenes, o.import_options);
   const std::string name = scene_names(o.scenes);
   outputs.check_inputs();
@@ -141,13 +149,14 @@ void run_verify(const VerifyFlags& o) {
   options.seed = o.seed;
   options.progress = [&](std::uint64_t done) {
     if (done > 0) SecondTry::driver_works();
-    progress.update(
-        static_cast<double>(done) / static_cast<double>(o.rays), 0,
-        fmt::format("{}/{} rays, {:.3g} Mrays/s", done, o.rays, static_cast<double>(done) / 1e6 / seconds_since(start)));
+    progress.update(static_cast<double>(done) / static_cast<double>(o.rays), 0,
+                    fmt::format("{}/{} rays, {:.3g} Mrays/s", done, o.rays,
+                                static_cast<double>(done) / 1e6 / seconds_since(start)));
   };
   const verify::Report found = verify::verify(scene ? &*scene : nullptr, name, devices, options);
   const std::string label = scene_label({name, o.seed, 0});
-  fmt::print("{}", o.json ? report::json_text(found, label, options) : report::plain_text(found, label));
+  fmt::print("{}",
+             o.json ? report::json_text(found, label, options) : report::plain_text(found, label));
 
   std::size_t failures = 0;
   if (!o.failures.empty()) {
@@ -174,37 +183,47 @@ void run_verify(const VerifyFlags& o) {
 
 void add_verify(CLI::App& app) {
   const auto o = std::make_shared<VerifyFlags>();
-  CLI::App* command = app.add_subcommand(
-      "verify",
-      "Compare a device's hits with the host reference, ray by ray: exit code 3 when they disagree beyond the stated bounds");
+  CLI::App* command =
+      app.add_subcommand("verify",
+                         "Compare a device's hits with the host reference, ray by ray: exit code 3 "
+                         "when they disagree beyond the stated bounds");
   command
-      ->add_option(
-          "SCENE", o->scenes,
-          "Scene file, or several that make one scene (" + scene_extensions() + "); none: a built-in torture set of all shapes")
+      ->add_option("SCENE", o->scenes,
+                   "Scene file, or several that make one scene (" + scene_extensions() +
+                       "); none: a built-in torture set of all shapes")
       ->type_name("SCENE");
   command->option_defaults()->group("Rays");
   command->add_option("--rays", o->rays, "How many rays")
       ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1} << 40))
       ->capture_default_str()
       ->type_name("N");
-  command->add_option("--seed", o->seed, "Other rays, and another torture set")->capture_default_str()->type_name("S");
+  command->add_option("--seed", o->seed, "Other rays, and another torture set")
+      ->capture_default_str()
+      ->type_name("S");
   command->option_defaults()->group("Devices");
   add_device(*command, o->device);
   add_encoding(*command, o->encoding);
-  command->add_flag("--all-devices", o->all_devices, "Every device there is, and one against the other");
+  command->add_flag("--all-devices", o->all_devices,
+                    "Every device there is, and one against the other");
   command->option_defaults()->group("Output");
   command->add_flag("--json", o->json, "Print a JSON object for machines");
-  command->add_option("--heatmap", o->heatmap, "Also write a picture of how far off each pixel is, in units of the bounds")
+  command
+      ->add_option("--heatmap", o->heatmap,
+                   "Also write a picture of how far off each pixel is, in units of the bounds")
       ->type_name("OUT.exr");
   command->add_option("--size", o->size, "Size of that picture, as in `render`")->type_name("WxH");
-  command->add_option("--save-failures", o->failures, "Folder for rays that disagree, one file each (at most 100 a device)")
+  command
+      ->add_option("--save-failures", o->failures,
+                   "Folder for rays that disagree, one file each (at most 100 a device)")
       ->type_name("DIR");
   command->option_defaults()->group("Rays");
-  command->add_option("--replay", o->replay, "Ask saved rays again: one file, or a folder of them")->type_name("FILE|DIR");
+  command->add_option("--replay", o->replay, "Ask saved rays again: one file, or a folder of them")
+      ->type_name("FILE|DIR");
   command->option_defaults()->group("Output");
   command->add_flag("-q,--quiet", o->quiet, "Only warnings and errors");
   add_import_options(*command, o->import_options);
-  command->footer(footer_with({"caplet verify --rays 100000", "caplet verify scene.pbrt --all-devices"}));
+  command->footer(
+      footer_with({"caplet verify --rays 100000", "caplet verify scene.pbrt --all-devices"}));
   command->callback([o] { run_verify(*o); });
 }
 

@@ -70,13 +70,17 @@ view::Keeper::ReadAs read_as(const ImportOptions& options) {
 /// Describes what others can do if they reach the address.
 std::string opened_to(const ViewFlags& options, bool saves, std::uint16_t port) {
   std::vector<std::string> where;
-  for (const std::string& address : view::addresses_reached(options.host)) where.push_back(view::authority_of(address, port));
+  for (const std::string& address : view::addresses_reached(options.host))
+    where.push_back(view::authority_of(address, port));
   const char* what = options.read_only ? "can look at the scene"
-                     : saves           ? "can look at the scene, change it, and save it as files in its folder"
-                                       : "can look at the scene and change it";
+                     : saves
+                         ? "can look at the scene, change it, and save it as files in its folder"
+                         : "can look at the scene and change it";
   return fmt::format(
-      "--host {}: every machine that reaches this one at {} and knows the page's address {}{}; nothing is encrypted",
-      options.host, fmt::join(where, ", "), what, options.read_only ? "" : " (--read-only: look alone)");
+      "--host {}: every machine that reaches this one at {} and knows the page's address {}{}; "
+      "nothing is encrypted",
+      options.host, fmt::join(where, ", "), what,
+      options.read_only ? "" : " (--read-only: look alone)");
 }
 
 void run_view(const ViewFlags& options) {
@@ -90,7 +94,8 @@ void run_view(const ViewFlags& options) {
   // If several files make one scene, its changes belong to none of them.
   if (!options.read_only && options.scenes.size() == 1 && std::filesystem::is_regular_file(name))
     keeper = std::make_unique<view::Keeper>(name, read_as(options.import_options));
-  Scene scene = import_files(keeper ? std::vector{keeper->base().string()} : options.scenes, options.import_options);
+  Scene scene = import_files(keeper ? std::vector{keeper->base().string()} : options.scenes,
+                             options.import_options);
   if (keeper) {
     scene.source = name;
     keeper->has_read(noted_inputs());
@@ -103,52 +108,69 @@ void run_view(const ViewFlags& options) {
   view::ViewerOptions viewer_options;
   viewer_options.server.host = options.host;
   viewer_options.server.port = options.port;
-  viewer_options.server.token = options.port ? view::kept_token(options.host, options.port, name) : view::random_token();
+  viewer_options.server.token =
+      options.port ? view::kept_token(options.host, options.port, name) : view::random_token();
   viewer_options.read_only = options.read_only;
   viewer_options.samples = options.samples;
   const bool saves = keeper != nullptr;
   view::Viewer viewer(std::move(live), device, viewer_options, std::move(keeper));
   SecondTry::driver_works();
-  if (!view::is_this_machine_alone(options.host)) log::warn("{}", opened_to(options, saves, viewer.port()));
+  if (!view::is_this_machine_alone(options.host))
+    log::warn("{}", opened_to(options, saves, viewer.port()));
   fmt::print("{}\n", viewer.address());
   std::fflush(stdout);
   log::info("{} is at the address above, on {}; Ctrl-C ends it", name, device.info().name);
   if (!options.no_browser) open_browser(viewer.address());
   while (!interrupt_requested()) viewer.wait(0.1);
   if (const auto kept = viewer.end())
-    log::info("changes that are not saved are kept in {}: the next `caplet view` of this scene has them again", kept->string());
+    log::info(
+        "changes that are not saved are kept in {}: the next `caplet view` of this scene has them "
+        "again",
+        kept->string());
 }
 
 }  // namespace
 
 void add_view(CLI::App& app) {
   const auto o = std::make_shared<ViewFlags>();
-  CLI::App* command = app.add_subcommand("view", "Show a scene live in a browser: orbit, pick, every crossing of a ray");
+  CLI::App* command = app.add_subcommand(
+      "view", "Show a scene live in a browser: orbit, pick, every crossing of a ray");
   add_scene_files(*command, o->scenes);
   command->option_defaults()->group("Server");
   command
-      ->add_option("--host", o->host, "Address to listen at; 127.0.0.1 is for this machine alone, 0.0.0.0 for all that reach it")
+      ->add_option("--host", o->host,
+                   "Address to listen at; 127.0.0.1 is for this machine alone, 0.0.0.0 for all "
+                   "that reach it")
       ->capture_default_str()
       ->type_name("ADDRESS");
-  command->add_option("--port", o->port, "Port to listen at; 0: any that is free")->capture_default_str()->type_name("N");
+  command->add_option("--port", o->port, "Port to listen at; 0: any that is free")
+      ->capture_default_str()
+      ->type_name("N");
   command->add_flag("--no-browser", o->no_browser, "Print the address, and open no browser");
   command->add_flag("--read-only", o->read_only, "Let nobody change the scene");
   command->option_defaults()->group("Picture");
-  command->add_option("--spp", o->samples, "Samples per pixel at which the picture is done (default: the scene's own)")
+  command
+      ->add_option("--spp", o->samples,
+                   "Samples per pixel at which the picture is done (default: the scene's own)")
       ->check(CLI::Range(1, 1 << 24))
       ->type_name("N");
-  command->add_option("--size", o->size, "Size in pixels of the first picture; the page asks for its own")->type_name("WxH");
+  command
+      ->add_option("--size", o->size,
+                   "Size in pixels of the first picture; the page asks for its own")
+      ->type_name("WxH");
   command->option_defaults()->group("Device");
   add_device(*command, o->device);
   add_encoding(*command, o->encoding);
   command->option_defaults()->group("Server");
   command->add_flag("-q,--quiet", o->quiet, "Only warnings and errors");
   add_import_options(*command, o->import_options);
-  command->footer(footer_with(
-      {"caplet view scene.pbrt", "caplet view scene.pbrt --port 8080 --no-browser"},
-      "Whoever knows the address sees the scene. Its first part is drawn anew at each start; with --port it stays, so that open "
-      "pages go on when the program is started again. Unsaved changes are kept beside the scene and are there at the next "
-      "start."));
+  command->footer(
+      footer_with({"caplet view scene.pbrt", "caplet view scene.pbrt --port 8080 --no-browser"},
+                  "Whoever knows the address sees the scene. Its first part is drawn anew at each "
+                  "start; with --port it stays, so that open "
+                  "pages go on when the program is started again. Unsaved changes are kept beside "
+                  "the scene and are there at the next "
+                  "start."));
   command->callback([o] { run_view(*o); });
 }
 

@@ -20,7 +20,8 @@ void require_memory(const DeviceInfo& info, std::uint64_t bytes, std::uint64_t a
   const std::uint64_t left = info.global_bytes - std::min(info.global_bytes, alive);
   if (bytes <= info.max_allocation_bytes && bytes <= left) return;
   throw RunError(
-      fmt::format("a buffer needs {} bytes, the device allows {} bytes in one buffer and {} bytes in all, {} of them in use "
+      fmt::format("a buffer needs {} bytes, the device allows {} bytes in one buffer and {} bytes "
+                  "in all, {} of them in use "
                   "(device '{}')",
                   bytes, info.max_allocation_bytes, info.global_bytes, alive, info.name));
 }
@@ -33,12 +34,16 @@ RawBuffer::RawBuffer(const Device& device, std::size_t bytes, bool read_only, co
   require_memory(device.info(), size, device.bytes_allocated());
   cl_call(fmt::format("buffer of {} bytes", bytes), device.info().name, [&] {
     buffer_ = on_huge_pages(device, read_only, size);
-    if (!buffer_()) buffer_ = cl::Buffer(device.context(), read_only ? CL_MEM_READ_ONLY : CL_MEM_READ_WRITE, size);
-    if (contents && bytes > 0) device.queue().enqueueWriteBuffer(buffer_, CL_TRUE, 0, bytes, contents);
+    if (!buffer_())
+      buffer_ =
+          cl::Buffer(device.context(), read_only ? CL_MEM_READ_ONLY : CL_MEM_READ_WRITE, size);
+    if (contents && bytes > 0)
+      device.queue().enqueueWriteBuffer(buffer_, CL_TRUE, 0, bytes, contents);
   });
   const std::shared_ptr<Device::Accounting> accounting = device.accounting_;
   accounting->add(size);
-  accounted_ = std::shared_ptr<void>(nullptr, [accounting, size](void*) { accounting->remove(size); });
+  accounted_ =
+      std::shared_ptr<void>(nullptr, [accounting, size](void*) { accounting->remove(size); });
 }
 
 void RawBuffer::read(void* to, std::size_t offset, std::size_t bytes) const {

@@ -67,7 +67,8 @@ std::vector<cl::Platform> load_platforms() {
   using Address = void*(CL_API_CALL*)(const char*);
   using Platforms = cl_int(CL_API_CALL*)(cl_uint, cl_platform_id*, cl_uint*);
   const auto address = reinterpret_cast<Address>(::dlsym(library, "clGetExtensionFunctionAddress"));
-  const auto ask = reinterpret_cast<Platforms>(address ? address("clIcdGetPlatformIDsKHR") : nullptr);
+  const auto ask =
+      reinterpret_cast<Platforms>(address ? address("clIcdGetPlatformIDsKHR") : nullptr);
   cl_platform_id id = nullptr;
   if (ask == nullptr || ask(1, &id, nullptr) != CL_SUCCESS || id == nullptr) return {};
   return {cl::Platform(id)};
@@ -75,7 +76,8 @@ std::vector<cl::Platform> load_platforms() {
 
 }  // namespace
 
-BundledDriver bundled_driver(const fs::path& file, const std::function<std::string(const std::string&)>& variable) {
+BundledDriver bundled_driver(const fs::path& file,
+                             const std::function<std::string(const std::string&)>& variable) {
   const std::string named = variable("CAPLET_BUNDLED_DRIVER");
   const fs::path beside = file.parent_path();
   std::vector<fs::path> folders;
@@ -85,7 +87,8 @@ BundledDriver bundled_driver(const fs::path& file, const std::function<std::stri
     folders = {beside / "pocl", beside.parent_path() / "pocl"};
   std::error_code error;
   for (const fs::path& folder : folders)
-    if (fs::is_regular_file(folder / library_in_folder, error)) return {folder, folder / library_in_folder, folder / "bin"};
+    if (fs::is_regular_file(folder / library_in_folder, error))
+      return {folder, folder / library_in_folder, folder / "bin"};
   return {};
 }
 
@@ -99,9 +102,11 @@ std::vector<cl::Platform> bundled_platforms() {
 std::vector<cl::Device> bundled_devices(const cl::Platform& platform) {
   const fs::path cache = bundled_cache_folder(variable_of_process);
   std::optional<ScopedVariable> own_cache;
-  if (!cache.empty() && why_unwritable(cache).empty()) own_cache.emplace("POCL_CACHE_DIR", cache.string());
+  if (!cache.empty() && why_unwritable(cache).empty())
+    own_cache.emplace("POCL_CACHE_DIR", cache.string());
   std::optional<ScopedVariable> level;
-  if (const std::string name = bundled_level(__builtin_cpu_supports("avx2") != 0, __builtin_cpu_supports("avx") != 0);
+  if (const std::string name =
+          bundled_level(__builtin_cpu_supports("avx2") != 0, __builtin_cpu_supports("avx") != 0);
       !name.empty() && variable_of_process("POCL_KERNELLIB_NAME").empty())
     level.emplace("POCL_KERNELLIB_NAME", name);
   // Plugins are built for the machine's hwloc, which may have another version.

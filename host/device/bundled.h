@@ -29,7 +29,8 @@ struct BundledDriver {
 /// beside its folder. The variable CAPLET_BUNDLED_DRIVER names another folder; if that has no
 /// driver (0), there is none. `variable` returns an environment variable, empty when it is not set.
 /// Nothing is loaded.
-BundledDriver bundled_driver(const std::filesystem::path& file, const std::function<std::string(const std::string&)>& variable);
+BundledDriver bundled_driver(const std::filesystem::path& file,
+                             const std::function<std::string(const std::string&)>& variable);
 
 /// Returns the driver of this program or library, in this environment.
 BundledDriver bundled_driver();
@@ -48,7 +49,8 @@ std::vector<cl::Device> bundled_devices(const cl::Platform& platform);
 
 /// Returns where it keeps compiled kernels: $POCL_CACHE_DIR, else "pocl" in Caplet's cache folder;
 /// empty where there is none.
-std::filesystem::path bundled_cache_folder(const std::function<std::string(const std::string&)>& variable);
+std::filesystem::path bundled_cache_folder(
+    const std::function<std::string(const std::string&)>& variable);
 
 /// PoCL's compiled functions are bundled for some kinds of processors only. Where PoCL would choose
 /// functions that are not bundled, this returns the value of POCL_KERNELLIB_NAME; it is empty if

@@ -41,8 +41,10 @@ fs::path environment_path(const char* name) {
 
 fs::path cache_folder() {
   if (fs::path named = environment_path("CAPLET_CACHE"); !named.empty()) return named;
-  if (const fs::path base = environment_path("XDG_CACHE_HOME"); !base.empty()) return base / "caplet";
-  if (const fs::path home = environment_path("HOME"); !home.empty()) return home / ".cache" / "caplet";
+  if (const fs::path base = environment_path("XDG_CACHE_HOME"); !base.empty())
+    return base / "caplet";
+  if (const fs::path home = environment_path("HOME"); !home.empty())
+    return home / ".cache" / "caplet";
   return {};
 }
 
@@ -52,7 +54,8 @@ std::string content_hash(std::string_view bytes) {
   Wide hash = (static_cast<Wide>(0x6c62272e07bb0142u) << 64) | 0x62b821756295c58du;
   const Wide prime = (static_cast<Wide>(1) << 88) | 0x13bu;
   for (const char c : bytes) hash = (hash ^ static_cast<unsigned char>(c)) * prime;
-  return fmt::format("{:016x}{:016x}", static_cast<std::uint64_t>(hash >> 64), static_cast<std::uint64_t>(hash));
+  return fmt::format("{:016x}{:016x}", static_cast<std::uint64_t>(hash >> 64),
+                     static_cast<std::uint64_t>(hash));
 }
 
 fs::path cache_file(std::string_view key, std::string_view extension) {
@@ -60,11 +63,13 @@ fs::path cache_file(std::string_view key, std::string_view extension) {
   return folder.empty() ? folder : folder / fmt::format("{}.{}", content_hash(key), extension);
 }
 
-std::optional<std::vector<unsigned char>> cache_load(std::string_view key, std::string_view extension) {
+std::optional<std::vector<unsigned char>> cache_load(std::string_view key,
+                                                     std::string_view extension) {
   const fs::path path = cache_file(key, extension);
   if (path.empty()) return std::nullopt;
   std::error_code error;
-  if (!fs::is_regular_file(path, error)) return std::nullopt;  // a folder would be opened, and throw when it is read
+  if (!fs::is_regular_file(path, error))
+    return std::nullopt;  // a folder would be opened, and throw when it is read
   std::ifstream in(path, std::ios::binary);
   if (!in) return std::nullopt;
   const std::string file{std::istreambuf_iterator<char>(in), {}};
@@ -74,19 +79,22 @@ std::optional<std::vector<unsigned char>> cache_load(std::string_view key, std::
     if (begin == std::string::npos) return std::nullopt;
     ++begin;
   }
-  const std::vector<unsigned char> contents(file.begin() + static_cast<std::ptrdiff_t>(begin), file.end());
+  const std::vector<unsigned char> contents(file.begin() + static_cast<std::ptrdiff_t>(begin),
+                                            file.end());
   if (std::string_view(file).substr(0, begin) != header(key, contents)) return std::nullopt;
   return contents;
 }
 
-bool cache_store(std::string_view key, std::string_view extension, const std::vector<unsigned char>& contents) {
+bool cache_store(std::string_view key, std::string_view extension,
+                 const std::vector<unsigned char>& contents) {
   static std::mutex one_writer;
   const std::lock_guard lock(one_writer);
   const fs::path path = cache_file(key, extension);
   if (path.empty()) return false;
   static std::atomic<bool> is_told = false;
   const auto tell = [](const std::string& why) {
-    if (!is_told.exchange(true)) log::warn("nothing can be kept in the cache: {} (CAPLET_CACHE names another folder)", why);
+    if (!is_told.exchange(true))
+      log::warn("nothing can be kept in the cache: {} (CAPLET_CACHE names another folder)", why);
     return false;
   };
   std::error_code error;
@@ -96,7 +104,8 @@ bool cache_store(std::string_view key, std::string_view extension, const std::ve
     write_atomically(path, [&](const fs::path& temporary) {
       std::ofstream out(temporary, std::ios::binary);
       out << header(key, contents);
-      out.write(reinterpret_cast<const char*>(contents.data()), static_cast<std::streamsize>(contents.size()));
+      out.write(reinterpret_cast<const char*>(contents.data()),
+                static_cast<std::streamsize>(contents.size()));
       out.close();
       if (!out) throw RunError(fmt::format("{}: cannot be written", temporary.string()));
     });

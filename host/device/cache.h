@@ -23,9 +23,11 @@ std::string content_hash(std::string_view bytes);
 
 /// Returns what was stored under `key` (any text), or nothing when the file is missing, of another
 /// version or key, cut short or altered.
-std::optional<std::vector<unsigned char>> cache_load(std::string_view key, std::string_view extension);
+std::optional<std::vector<unsigned char>> cache_load(std::string_view key,
+                                                     std::string_view extension);
 /// Returns false when it could not be stored.
-bool cache_store(std::string_view key, std::string_view extension, const std::vector<unsigned char>& contents);
+bool cache_store(std::string_view key, std::string_view extension,
+                 const std::vector<unsigned char>& contents);
 /// Returns the file that holds `key`; empty without a folder.
 std::filesystem::path cache_file(std::string_view key, std::string_view extension);
 

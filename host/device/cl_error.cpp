@@ -78,8 +78,10 @@ std::string cl_error_name(cl_int code) {
 #undef CAPLET_CL_ERROR
 }
 
-void throw_cl_error(const cl::Error& error, const std::string& place, const std::string& device_name) {
-  throw DriverError(fmt::format("{}: {}: {} (device '{}')", place, error.what(), cl_error_name(error.err()), device_name),
+void throw_cl_error(const cl::Error& error, const std::string& place,
+                    const std::string& device_name) {
+  throw DriverError(fmt::format("{}: {}: {} (device '{}')", place, error.what(),
+                                cl_error_name(error.err()), device_name),
                     error.err());
 }
 

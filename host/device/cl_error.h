@@ -13,7 +13,8 @@ namespace caplet {
 /// Returns "CL_INVALID_VALUE" for -30; "error -12345" for a code without a name.
 std::string cl_error_name(cl_int code);
 
-[[noreturn]] void throw_cl_error(const cl::Error& error, const std::string& place, const std::string& device_name);
+[[noreturn]] void throw_cl_error(const cl::Error& error, const std::string& place,
+                                 const std::string& device_name);
 
 /// Calls `function`; a cl::Error becomes a RunError "PLACE: CALL: NAME (device 'DEVICE')".
 template <class Function>

@@ -49,7 +49,8 @@ struct DeviceInfo {
   std::string name, vendor, driver, version, platform;
   std::string type;  // "cpu", "gpu", "accelerator", "other"
   unsigned compute_units = 0;
-  unsigned native_float_width = 0;  // floats of a vector as the device computes with them (CL_DEVICE_NATIVE_VECTOR_WIDTH_FLOAT)
+  unsigned native_float_width = 0;  // floats of a vector as the device computes with them
+                                    // (CL_DEVICE_NATIVE_VECTOR_WIDTH_FLOAT)
   std::uint64_t global_bytes = 0, max_allocation_bytes = 0;
   bool bundled = false;  // of the driver that came with this program (bundled.h)
 };
@@ -93,7 +94,8 @@ class Device {
 
   /// Chooses several devices: "all" (the bundled one only where the machine has no CPU), or such
   /// choices between commas, none of them twice; errors as choose.
-  static std::vector<Device> choose_several(const std::string& choice, Encoding encoding = Encoding::automatic);
+  static std::vector<Device> choose_several(const std::string& choice,
+                                            Encoding encoding = Encoding::automatic);
 
   /// Returns that many devices, each with a share of this one's compute units, as even as possible.
   /// Throws RunError where the driver cannot divide it, or there are fewer units than parts.
@@ -104,8 +106,8 @@ class Device {
   /// Returns wide or single.
   Encoding encoding() const { return encoding_; }
   Profile profile() const { return profile_; }
-  /// PoCL compiles a kernel when it is first launched, again for each local size and each class of global size, and
-  /// keeps the results on disk itself.
+  /// PoCL compiles a kernel when it is first launched, again for each local size and each class of
+  /// global size, and keeps the results on disk itself.
   bool is_pocl() const { return info_.platform.starts_with("Portable Computing Language"); }
   const cl::Context& context() const { return context_; }
   const cl::Device& handle() const { return device_; }
@@ -141,7 +143,7 @@ class RawBuffer {
   RawBuffer(const Device& device, std::size_t bytes, bool read_only, const void* contents);
   void read(void* to, std::size_t offset, std::size_t bytes) const;     // blocking
   void write(const void* from, std::size_t offset, std::size_t bytes);  // blocking
-  void clear();                                                         // zeros, in the order of the queue
+  void clear();  // zeros, in the order of the queue
   std::size_t bytes() const { return bytes_; }
   const cl::Buffer& handle() const { return buffer_; }
 
@@ -156,8 +158,10 @@ template <class T>
 class Buffer : public RawBuffer {
  public:
   Buffer() = default;
-  Buffer(const Device& device, std::size_t count) : RawBuffer(device, count * sizeof(T), false, nullptr) {}
-  Buffer(const Device& device, std::span<const T> contents) : RawBuffer(device, contents.size_bytes(), true, contents.data()) {}
+  Buffer(const Device& device, std::size_t count)
+      : RawBuffer(device, count * sizeof(T), false, nullptr) {}
+  Buffer(const Device& device, std::span<const T> contents)
+      : RawBuffer(device, contents.size_bytes(), true, contents.data()) {}
   std::size_t size() const { return bytes() / sizeof(T); }
   std::vector<T> read() const {
     std::vector<T> out(size());
@@ -179,7 +183,8 @@ std::string kernel_source(std::string_view name);
 std::string flatten_kernels(const std::string& text, const RowMasks& rows = {});
 
 enum class BinaryCache {
-  automatic,  // not on PoCL, which caches by itself and would compile every kernel twice to hand out a binary
+  automatic,  // not on PoCL, which caches by itself and would compile every kernel twice to hand
+              // out a binary
   always
 };
 
@@ -193,7 +198,8 @@ class Program {
   /// added. Throws RunError with the build log.
   Program(const Device& device, const std::string& name, const std::string& options);
   /// Compiles a text that is not embedded (tests, the probe).
-  static Program from_source(const Device& device, const std::string& name, const std::string& source, const std::string& options,
+  static Program from_source(const Device& device, const std::string& name,
+                             const std::string& source, const std::string& options,
                              BinaryCache cache = BinaryCache::automatic);
   cl::Kernel kernel(const std::string& name) const;
   /// Makes PoCL compile the kernel for this local size now rather than at its first launch, by
@@ -216,7 +222,8 @@ class Program {
 };
 
 namespace detail {
-void set_argument(const Device& device, cl::Kernel& kernel, cl_uint index, const void* value, std::size_t bytes);
+void set_argument(const Device& device, cl::Kernel& kernel, cl_uint index, const void* value,
+                  std::size_t bytes);
 
 template <class Value>
 void set_argument(const Device& device, cl::Kernel& kernel, cl_uint index, const Value& value) {
@@ -230,31 +237,34 @@ void set_argument(const Device& device, cl::Kernel& kernel, cl_uint index, const
 }
 }  // namespace detail
 
-/// Sets the kernel's arguments 0, 1, ... from buffers and scalars (cl_uint, cl_float...). Throws RunError naming kernel and
-/// argument.
+/// Sets the kernel's arguments 0, 1, ... from buffers and scalars (cl_uint, cl_float...). Throws
+/// RunError naming kernel and argument.
 template <class... Values>
 void set_arguments(const Device& device, cl::Kernel& kernel, const Values&... values) {
   cl_uint index = 0;
   (detail::set_argument(device, kernel, index++, values), ...);
 }
 
-/// Enqueues `kernel` over work-items `first` to `first` + `count` (which is rounded up to `local`; the kernel checks its index).
-/// Throws RunError naming the kernel.
-void launch(const Device& device, const cl::Kernel& kernel, std::size_t count, std::size_t local, std::size_t first = 0);
+/// Enqueues `kernel` over work-items `first` to `first` + `count` (which is rounded up to `local`;
+/// the kernel checks its index). Throws RunError naming the kernel.
+void launch(const Device& device, const cl::Kernel& kernel, std::size_t count, std::size_t local,
+            std::size_t first = 0);
 
 /// Returns the most work-items of a group, up to `wanted`, in halves of it, with which the device
 /// can run the kernel.
 std::size_t local_size_for(const Device& device, const cl::Kernel& kernel, std::size_t wanted);
 
-/// Enqueues a kernel whose work-items share `count` items equally (kernels/stages/items.cl), in groups of one: as many as keep
-/// the device's units busy to the end. Throws RunError naming the kernel.
+/// Enqueues a kernel whose work-items share `count` items equally (kernels/stages/items.cl), in
+/// groups of one: as many as keep the device's units busy to the end. Throws RunError naming the
+/// kernel.
 void launch_shares(const Device& device, const cl::Kernel& kernel, std::size_t count);
 /// Returns the number of these work-items.
 std::size_t share_count(const Device& device, std::size_t count);
 
-/// Compiles and runs a small kernel that checks arithmetic, vload8, clz, atomics and the record layout on this device; once per
-/// device and driver (remembered in the cache). The environment variable CAPLET_SELF_TEST leaves it out (0) or forces it (1).
-/// Throws RunError that says what is wrong.
+/// Compiles and runs a small kernel that checks arithmetic, vload8, clz, atomics and the record
+/// layout on this device; once per device and driver (remembered in the cache). The environment
+/// variable CAPLET_SELF_TEST leaves it out (0) or forces it (1). Throws RunError that says what is
+/// wrong.
 void self_test(const Device& device);
 
 }  // namespace caplet

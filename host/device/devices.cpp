@@ -91,8 +91,8 @@ std::vector<cl::Device> devices_of(const FoundPlatform& platform) {
 }
 
 std::string platform_name(const FoundPlatform& found) {
-  return found.platform.getInfo<CL_PLATFORM_NAME>() + " " + found.platform.getInfo<CL_PLATFORM_VERSION>() +
-         (found.bundled ? bundled_mark : "");
+  return found.platform.getInfo<CL_PLATFORM_NAME>() + " " +
+         found.platform.getInfo<CL_PLATFORM_VERSION>() + (found.bundled ? bundled_mark : "");
 }
 
 DeviceInfo describe(const cl::Device& device, const std::string& platform) {
@@ -132,10 +132,14 @@ Encoding parse_encoding(const std::string& text, const char* place) {
 }
 
 std::string name_of(Encoding encoding) {
-  return encoding == Encoding::wide ? "wide" : encoding == Encoding::single ? "single" : "automatic";
+  return encoding == Encoding::wide     ? "wide"
+         : encoding == Encoding::single ? "single"
+                                        : "automatic";
 }
 
-Device Device::choose(const std::string& choice, Encoding encoding) { return chosen(choice, encoding, false).front(); }
+Device Device::choose(const std::string& choice, Encoding encoding) {
+  return chosen(choice, encoding, false).front();
+}
 
 std::vector<Device> Device::choose_several(const std::string& choice, Encoding encoding) {
   return chosen(choice, encoding, true);
@@ -147,7 +151,8 @@ std::vector<Device> Device::chosen(const std::string& choice, Encoding encoding,
     encoding = parse_encoding(named, variable);
   // The bundled driver is loaded only where the choice may name it.
   std::vector<Found> devices = find_devices(Drivers::machine);
-  std::optional<std::vector<std::size_t>> selected = select_machine_devices(infos_of(devices), choice, several);
+  std::optional<std::vector<std::size_t>> selected =
+      select_machine_devices(infos_of(devices), choice, several);
   if (!selected) {
     devices = find_devices(Drivers::all);
     const std::vector<DeviceInfo> infos = infos_of(devices);
@@ -156,8 +161,10 @@ std::vector<Device> Device::chosen(const std::string& choice, Encoding encoding,
   std::vector<Device> out;
   for (const std::size_t index : *selected) {
     const Found& found = devices[index];
-    const Encoding natural = profile_of(found.info) == Profile::gpu ? Encoding::single : natural_encoding(found.info);
-    out.push_back(open(found.device, found.info, encoding == Encoding::automatic ? natural : encoding));
+    const Encoding natural =
+        profile_of(found.info) == Profile::gpu ? Encoding::single : natural_encoding(found.info);
+    out.push_back(
+        open(found.device, found.info, encoding == Encoding::automatic ? natural : encoding));
   }
   return out;
 }
@@ -183,13 +190,16 @@ std::vector<Device> Device::split(std::size_t parts) const {
   CHECK_LT_(std::size_t{0}, parts);
   const std::size_t units = info_.compute_units;
   if (units < parts)
-    throw RunError(fmt::format("device '{}' has {} compute units and cannot be divided into {}", info_.name, units, parts));
+    throw RunError(fmt::format("device '{}' has {} compute units and cannot be divided into {}",
+                               info_.name, units, parts));
   std::vector<cl_device_partition_property> properties{CL_DEVICE_PARTITION_BY_COUNTS};
   for (std::size_t i = 0; i < parts; ++i)
-    properties.push_back(static_cast<cl_device_partition_property>(units / parts + (i < units % parts ? 1 : 0)));
+    properties.push_back(
+        static_cast<cl_device_partition_property>(units / parts + (i < units % parts ? 1 : 0)));
   properties.insert(properties.end(), {CL_DEVICE_PARTITION_BY_COUNTS_LIST_END, 0});
   std::vector<cl::Device> devices;
-  cl_call("dividing the device", info_.name, [&] { cl::Device(device_).createSubDevices(properties.data(), &devices); });
+  cl_call("dividing the device", info_.name,
+          [&] { cl::Device(device_).createSubDevices(properties.data(), &devices); });
   std::vector<Device> out;
   for (const cl::Device& device : devices) {
     DeviceInfo info = info_;

@@ -41,7 +41,8 @@ Directive directive_of(std::string_view line) {
 class HostText {
  public:
   void see(const Directive& directive) {
-    const bool about_host = directive.rest.substr(0, directive.rest.find_first_of(" \t/")) == "__cplusplus";
+    const bool about_host =
+        directive.rest.substr(0, directive.rest.find_first_of(" \t/")) == "__cplusplus";
     if (directive.name == "ifdef")
       stack_.push_back({about_host, about_host});
     else if (directive.name == "ifndef")
@@ -69,10 +70,13 @@ class HostText {
 std::string_view entry_of(std::string_view line) {
   std::size_t end = 0;
   while (end < line.size() && ((line[end] >= 'A' && line[end] <= 'Z') || line[end] == '_')) ++end;
-  return end > 0 && end < line.size() && line[end] == '(' ? line.substr(0, end) : std::string_view();
+  return end > 0 && end < line.size() && line[end] == '(' ? line.substr(0, end)
+                                                          : std::string_view();
 }
 
-bool begins_row(std::string_view entry) { return !entry.empty() && entry != "FIELD" && !entry.ends_with("_END"); }
+bool begins_row(std::string_view entry) {
+  return !entry.empty() && entry != "FIELD" && !entry.ends_with("_END");
+}
 
 /// Returns the name of an include guard around the whole file; empty where there is none.
 std::string_view guard_of(std::string_view text) {
@@ -86,7 +90,9 @@ std::string_view guard_of(std::string_view text) {
     if (name.empty() && directive.name == "ifndef")
       name = directive.rest;
     else
-      return !name.empty() && directive.name == "define" && directive.rest == name ? name : std::string_view();
+      return !name.empty() && directive.name == "define" && directive.rest == name
+                 ? name
+                 : std::string_view();
   }
   return {};
 }
@@ -124,12 +130,15 @@ class Flattener {
   std::string take() {
     std::string masks;
     for (const auto& [list, mask] : rows_)
-      if (out_.find(mask_name(list)) != std::string::npos) masks += fmt::format("#define {} 0x{:x}UL\n", mask_name(list), mask);
+      if (out_.find(mask_name(list)) != std::string::npos)
+        masks += fmt::format("#define {} 0x{:x}UL\n", mask_name(list), mask);
     return masks + out_;
   }
 
  private:
-  void mark(int line, const std::string& label) { out_ += fmt::format("#line {} \"{}\"\n", line, label); }
+  void mark(int line, const std::string& label) {
+    out_ += fmt::format("#line {} \"{}\"\n", line, label);
+  }
 
   static std::string mask_name(std::string_view list) {
     std::string name = "CAPLET_";
@@ -145,7 +154,8 @@ class Flattener {
     const std::string path(operand.substr(1, close - 1));
     constexpr std::string_view present = "rows/", list_end = ".def";
     if (path.starts_with(present) && path.ends_with(list_end)) {
-      const std::string list = path.substr(present.size(), path.size() - present.size() - list_end.size());
+      const std::string list =
+          path.substr(present.size(), path.size() - present.size() - list_end.size());
       mark(1, "kernels/shared/" + list + ".def");
       out_ += present_rows(list, label, line);
       return true;
@@ -155,7 +165,8 @@ class Flattener {
       const std::string list = path.substr(open_brace + 1, close_brace - open_brace - 1);
       bool some = false;
       for (const std::string& name : names_with_files(list, label, line))
-        some |= include_file(path.substr(0, open_brace) + name + path.substr(close_brace + 1), label, line);
+        some |= include_file(path.substr(0, open_brace) + name + path.substr(close_brace + 1),
+                             label, line);
       return some;
     }
     return include_file(path, label, line);
@@ -165,7 +176,8 @@ class Flattener {
     if (std::count(open_.begin(), open_.end(), path) > 0 || open_.size() >= max_depth) {
       std::string chain;
       for (const std::string& name : open_) chain += name + " -> ";
-      throw std::logic_error(fmt::format("{}:{}: #include goes round in a circle: {}{}", label, line, chain, path));
+      throw std::logic_error(
+          fmt::format("{}:{}: #include goes round in a circle: {}{}", label, line, chain, path));
     }
     if (once_.contains(path)) return false;
     const std::string text = text_of(path, label, line);
@@ -194,7 +206,8 @@ class Flattener {
       const std::string_view one = rest.substr(0, end);
       rest.remove_prefix(std::min(end + 1, rest.size()));
       const std::string_view entry = entry_of(one);
-      if (begins_row(entry) && ++row == 64) throw std::logic_error(fmt::format("shared/{}.def has more than 64 rows", list));
+      if (begins_row(entry) && ++row == 64)
+        throw std::logic_error(fmt::format("shared/{}.def has more than 64 rows", list));
       visit(one, entry, row < 0 || (mask >> row & 1) != 0);
     }
   }
@@ -208,7 +221,8 @@ class Flattener {
     return out;
   }
 
-  std::vector<std::string> names_with_files(const std::string& list, const std::string& label, int line) const {
+  std::vector<std::string> names_with_files(const std::string& list, const std::string& label,
+                                            int line) const {
     std::vector<std::string> names;
     each_line(list, label, line, [&](std::string_view one, std::string_view entry, bool present) {
       if (!present || !begins_row(entry) || entry == "COMPOUND") return;
@@ -228,7 +242,8 @@ class Flattener {
 
 }  // namespace
 
-std::string flatten(const std::string& text, const std::string& label, const FileReader& read, const RowMasks& rows) {
+std::string flatten(const std::string& text, const std::string& label, const FileReader& read,
+                    const RowMasks& rows) {
   Flattener flattener(read, rows);
   flattener.add(text, label);
   return flattener.take();

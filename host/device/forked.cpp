@@ -26,8 +26,10 @@ void in_child() {
 void begin_opencl() {
   if (is_forked)
     throw RunError(
-        "this process was forked from one that had used OpenCL, which does not work in it: start processes by spawn "
-        "(in Python: multiprocessing.set_start_method(\"spawn\")), or use no device before the fork");
+        "this process was forked from one that had used OpenCL, which does not work in it: start "
+        "processes by spawn "
+        "(in Python: multiprocessing.set_start_method(\"spawn\")), or use no device before the "
+        "fork");
   if (!is_used.load(std::memory_order_relaxed)) is_used = true;
 }
 

@@ -26,7 +26,8 @@ struct Pages {
   std::size_t size = 0;
 
   explicit Pages(std::size_t bytes) : size((bytes + page - 1) / page * page) {
-    void* const all = mmap(nullptr, size + page, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+    void* const all = mmap(nullptr, size + page, PROT_READ | PROT_WRITE,
+                           MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
     if (all == MAP_FAILED) return;
     char* const first = static_cast<char*>(all);
     const std::size_t before = (page - reinterpret_cast<std::uintptr_t>(all) % page) % page;
@@ -55,7 +56,8 @@ cl::Buffer on_huge_pages(const Device& device, bool read_only, std::size_t size)
   if (size < pays_from || !device.is_cpu() || !are_wanted()) return {};
   auto pages = std::make_unique<Pages>(size);
   if (pages->begin == MAP_FAILED) return {};
-  cl::Buffer buffer(device.context(), (read_only ? CL_MEM_READ_ONLY : CL_MEM_READ_WRITE) | CL_MEM_USE_HOST_PTR, size,
+  cl::Buffer buffer(device.context(),
+                    (read_only ? CL_MEM_READ_ONLY : CL_MEM_READ_WRITE) | CL_MEM_USE_HOST_PTR, size,
                     pages->begin);
   buffer.setDestructorCallback(give_back, pages.get());
   (void)pages.release();

@@ -45,7 +45,9 @@ std::string flatten_kernels(const std::string& text, const RowMasks& rows) {
 }
 
 std::string kernel_source(std::string_view name) {
-  const std::string path = name.find('/') == std::string_view::npos ? fmt::format("stages/{}.cl", name) : std::string(name);
+  const std::string path = name.find('/') == std::string_view::npos
+                               ? fmt::format("stages/{}.cl", name)
+                               : std::string(name);
   const FileReader read = kernel_reader();
   const std::optional<std::string> text = read(path);
   if (!text) throw std::logic_error(fmt::format("there is no kernel file '{}'", path));

@@ -63,13 +63,16 @@ std::string other_name(const std::vector<RecordLayout>& layouts) {
     for (const FieldLayout& field : record.fields) wanted.push_back(record.name + "." + field.name);
   }
   const std::string text = kernel_source("shared/records.def");
-  static const std::regex entry(R"(^(?:RECORD_BEGIN\((\w+)\)|(?:FIELD|ARRAY)\(\w+, *(\w+)))", std::regex::multiline);
+  static const std::regex entry(R"(^(?:RECORD_BEGIN\((\w+)\)|(?:FIELD|ARRAY)\(\w+, *(\w+)))",
+                                std::regex::multiline);
   std::string record;
   std::size_t i = 0;
-  for (std::sregex_iterator at(text.begin(), text.end(), entry); at != std::sregex_iterator() && i < wanted.size(); ++at, ++i) {
+  for (std::sregex_iterator at(text.begin(), text.end(), entry);
+       at != std::sregex_iterator() && i < wanted.size(); ++at, ++i) {
     if ((*at)[1].matched) record = (*at)[1];
     const std::string name = (*at)[1].matched ? record : record + "." + (*at)[2].str();
-    if (name != wanted[i]) return fmt::format("the device has {} where the host has {}", name, wanted[i]);
+    if (name != wanted[i])
+      return fmt::format("the device has {} where the host has {}", name, wanted[i]);
   }
   return {};
 }
@@ -82,8 +85,9 @@ std::vector<RecordLayout> host_layout() {
   {                        \
     using Record = name;   \
     RecordLayout layout{#name, narrow<std::uint32_t>(sizeof(Record)), {}};
-#define FIELD(type, name) \
-  layout.fields.push_back({#name, narrow<std::uint32_t>(offsetof(Record, name)), narrow<std::uint32_t>(sizeof(Record::name))});
+#define FIELD(type, name)                                                        \
+  layout.fields.push_back({#name, narrow<std::uint32_t>(offsetof(Record, name)), \
+                           narrow<std::uint32_t>(sizeof(Record::name))});
 #define ARRAY(type, name, count) FIELD(type, name)
 #define RECORD_END(name, bytes) \
   out.push_back(layout);        \
@@ -96,7 +100,8 @@ std::vector<RecordLayout> host_layout() {
   return out;
 }
 
-std::vector<std::string> compare_layout(const Device& device, const std::vector<RecordLayout>& expected) {
+std::vector<std::string> compare_layout(const Device& device,
+                                        const std::vector<RecordLayout>& expected) {
   const Expectation wanted = expectation(expected);
   // There is room for a device list that is longer than the host's, as it can be with
   // CAPLET_KERNELS.
@@ -106,7 +111,8 @@ std::vector<std::string> compare_layout(const Device& device, const std::vector<
   std::vector<cl_uint> words(2 * largest_record_bytes / sizeof(cl_uint));
   for (std::size_t i = 0; i < words.size(); ++i) words[i] = 0x40000000u + narrow<cl_uint>(4 * i);
 
-  const Program program = Program::from_source(device, "layout", kernel_source("probe/layout.cl"), "");
+  const Program program =
+      Program::from_source(device, "layout", kernel_source("probe/layout.cl"), "");
   Buffer<cl_uint> out(device, capacity);
   const Buffer<cl_uint> in(device, std::span<const cl_uint>(words));
   cl::Kernel kernel = program.kernel("layout");
@@ -117,15 +123,18 @@ std::vector<std::string> compare_layout(const Device& device, const std::vector<
   std::vector<std::string> mismatches;
   if (const std::string other = other_name(expected); !other.empty()) mismatches.push_back(other);
   if (seen[0] != wanted.values.size() + 1)
-    mismatches.push_back(fmt::format("the device lists {} sizes and offsets, the host {}", seen[0] - 1, wanted.values.size()));
+    mismatches.push_back(fmt::format("the device lists {} sizes and offsets, the host {}",
+                                     seen[0] - 1, wanted.values.size()));
   const std::size_t comparable = std::min<std::size_t>(seen[0] - 1, wanted.values.size());
   for (std::size_t i = 0; i < comparable; ++i)
     if (seen[i + 1] != wanted.values[i])
-      mismatches.push_back(
-          fmt::format("{} is {} on the device, {} on the host", wanted.meanings[i], seen[i + 1], wanted.values[i]));
+      mismatches.push_back(fmt::format("{} is {} on the device, {} on the host", wanted.meanings[i],
+                                       seen[i + 1], wanted.values[i]));
   return mismatches;
 }
 
-std::vector<std::string> compare_layout(const Device& device) { return compare_layout(device, host_layout()); }
+std::vector<std::string> compare_layout(const Device& device) {
+  return compare_layout(device, host_layout());
+}
 
 }  // namespace caplet

@@ -26,7 +26,8 @@ void tell_of_pocl_cache();
 /// Returns where PoCL keeps compiled kernels: $POCL_CACHE_DIR, else $XDG_CACHE_HOME/pocl/kcache,
 /// else $HOME/.cache/pocl/kcache; empty when none of them is set. `variable` returns an environment
 /// variable, empty when it is not set.
-std::filesystem::path pocl_cache_folder(const std::function<std::string(const std::string&)>& variable);
+std::filesystem::path pocl_cache_folder(
+    const std::function<std::string(const std::string&)>& variable);
 
 /// Returns why no folder or file can be made at that place; it is empty if one can. Leaves nothing
 /// behind.

@@ -22,9 +22,11 @@ using Binary = std::vector<unsigned char>;
 
 constexpr double noticeable_seconds = 0.5;
 
-std::string cache_key(const DeviceInfo& info, const std::string& options, const std::string& source) {
+std::string cache_key(const DeviceInfo& info, const std::string& options,
+                      const std::string& source) {
   std::string key = "program";
-  for (const std::string* part : {&info.name, &info.driver, &info.version, &info.platform, &options, &source}) {
+  for (const std::string* part :
+       {&info.name, &info.driver, &info.version, &info.platform, &options, &source}) {
     key += '\0';
     key += *part;
   }
@@ -32,7 +34,8 @@ std::string cache_key(const DeviceInfo& info, const std::string& options, const 
 }
 
 /// Makes a program from a cached binary; returns nothing when the driver refuses it.
-std::optional<cl::Program> from_binary(const Device& device, const Binary& binary, const std::string& options) {
+std::optional<cl::Program> from_binary(const Device& device, const Binary& binary,
+                                       const std::string& options) {
   try {
     cl::Program program(device.context(), {device.handle()}, {binary});
     program.build({device.handle()}, options.c_str());
@@ -42,17 +45,19 @@ std::optional<cl::Program> from_binary(const Device& device, const Binary& binar
   }
 }
 
-cl::Program from_text(const Device& device, const std::string& name, const std::string& source, const std::string& options) {
+cl::Program from_text(const Device& device, const std::string& name, const std::string& source,
+                      const std::string& options) {
   const std::string& device_name = device.info().name;
-  cl::Program program =
-      cl_call(fmt::format("program '{}'", name), device_name, [&] { return cl::Program(device.context(), source); });
+  cl::Program program = cl_call(fmt::format("program '{}'", name), device_name,
+                                [&] { return cl::Program(device.context(), source); });
   try {
     program.build({device.handle()}, options.c_str());
   } catch (const cl::BuildError& error) {
     std::string log;
     for (const auto& [of, text] : error.getBuildLog()) log += text;
-    throw RunError(fmt::format("program '{}': {}: {} (device '{}', options '{}'); the build log says:\n{}", name, error.what(),
-                               cl_error_name(error.err()), device_name, options, log));
+    throw RunError(
+        fmt::format("program '{}': {}: {} (device '{}', options '{}'); the build log says:\n{}",
+                    name, error.what(), cl_error_name(error.err()), device_name, options, log));
   } catch (const cl::Error& error) {
     throw_cl_error(error, fmt::format("program '{}'", name), device_name);
   }
@@ -70,19 +75,23 @@ Binary binary_of(const cl::Program& program) {
 }
 
 std::string kernel_name(const Device& device, const cl::Kernel& kernel) {
-  return cl_call("a kernel's name", device.info().name, [&] { return kernel.getInfo<CL_KERNEL_FUNCTION_NAME>(); });
+  return cl_call("a kernel's name", device.info().name,
+                 [&] { return kernel.getInfo<CL_KERNEL_FUNCTION_NAME>(); });
 }
 
 /// Sets null for pointers, zero for scalars and vectors. Which is which is found by trying: the
 /// query of argument types needs an option that would change the program.
 void set_null_arguments(const Device& device, cl::Kernel& kernel) {
-  const cl_uint count = cl_call("a kernel's arguments", device.info().name, [&] { return kernel.getInfo<CL_KERNEL_NUM_ARGS>(); });
+  const cl_uint count = cl_call("a kernel's arguments", device.info().name,
+                                [&] { return kernel.getInfo<CL_KERNEL_NUM_ARGS>(); });
   constexpr unsigned char zeros[128] = {};
   for (cl_uint i = 0; i < count; ++i) {
     bool set = clSetKernelArg(kernel(), i, sizeof(cl_mem), nullptr) == CL_SUCCESS;
     for (std::size_t bytes = 1; !set && bytes <= sizeof(zeros); bytes *= 2)
       set = clSetKernelArg(kernel(), i, bytes, zeros) == CL_SUCCESS;
-    if (!set) throw RunError(fmt::format("argument {} of kernel '{}' cannot be zero", i, kernel_name(device, kernel)));
+    if (!set)
+      throw RunError(
+          fmt::format("argument {} of kernel '{}' cannot be zero", i, kernel_name(device, kernel)));
   }
 }
 
@@ -91,7 +100,8 @@ void set_null_arguments(const Device& device, cl::Kernel& kernel) {
 Program::Program(const Device& device, const std::string& name, const std::string& options)
     : Program(from_source(device, name, kernel_source(name), options)) {}
 
-Program Program::from_source(const Device& device, const std::string& name, const std::string& source, const std::string& options,
+Program Program::from_source(const Device& device, const std::string& name,
+                             const std::string& source, const std::string& options,
                              BinaryCache cache) {
   begin_opencl();
   const auto start = Clock::now();
@@ -112,7 +122,8 @@ Program Program::from_source(const Device& device, const std::string& name, cons
       return out;
     }
   }
-  if (const std::optional<Binary> binary = keeps_binary ? cache_load(key, "program") : std::nullopt) {
+  if (const std::optional<Binary> binary =
+          keeps_binary ? cache_load(key, "program") : std::nullopt) {
     if (std::optional<cl::Program> program = from_binary(device, *binary, all_options)) {
       out.program_ = std::move(*program);
       out.from_cache_ = true;
@@ -121,7 +132,8 @@ Program Program::from_source(const Device& device, const std::string& name, cons
   if (!out.from_cache_) {
     out.program_ = from_text(device, name, source, all_options);
     if (keeps_binary)
-      if (const Binary binary = binary_of(out.program_); !binary.empty()) cache_store(key, "program", binary);
+      if (const Binary binary = binary_of(out.program_); !binary.empty())
+        cache_store(key, "program", binary);
   }
   if (shares) {
     const std::lock_guard lock(device.programs_->mutex);
@@ -134,7 +146,8 @@ Program Program::from_source(const Device& device, const std::string& name, cons
 }
 
 double Program::prepare(const std::string& kernel_name, std::size_t local, std::size_t most) {
-  constexpr std::size_t pocl_large_grid = 65536;  // PoCL 3.1's grid width specialization limit of its CPU devices, plus one
+  constexpr std::size_t pocl_large_grid =
+      65536;  // PoCL 3.1's grid width specialization limit of its CPU devices, plus one
   if (!device_.is_pocl()) return 0;
   const auto start = Clock::now();
   cl::Kernel prepared = kernel(kernel_name);
@@ -145,7 +158,8 @@ double Program::prepare(const std::string& kernel_name, std::size_t local, std::
   const double seconds = seconds_since(start);
   build_seconds_ += seconds;
   if (seconds >= noticeable_seconds)
-    log::info("compiled {} for {} in groups of {} in {:.1f} s", kernel_name, device_.info().name, local, seconds);
+    log::info("compiled {} for {} in groups of {} in {:.1f} s", kernel_name, device_.info().name,
+              local, seconds);
   return seconds;
 }
 
@@ -154,27 +168,34 @@ cl::Kernel Program::kernel(const std::string& name) const {
                  [&] { return cl::Kernel(program_, name.c_str()); });
 }
 
-void detail::set_argument(const Device& device, cl::Kernel& kernel, cl_uint index, const void* value, std::size_t bytes) {
+void detail::set_argument(const Device& device, cl::Kernel& kernel, cl_uint index,
+                          const void* value, std::size_t bytes) {
   const std::string& device_name = device.info().name;
   const std::string name = kernel_name(device, kernel);
-  cl_call(fmt::format("argument {} of kernel '{}'", index, name), device_name, [&] { kernel.setArg(index, bytes, value); });
+  cl_call(fmt::format("argument {} of kernel '{}'", index, name), device_name,
+          [&] { kernel.setArg(index, bytes, value); });
 }
 
-void launch(const Device& device, const cl::Kernel& kernel, std::size_t count, std::size_t local, std::size_t first) {
+void launch(const Device& device, const cl::Kernel& kernel, std::size_t count, std::size_t local,
+            std::size_t first) {
   if (count == 0) return;
   CHECK_LT_(std::size_t{0}, local);
   const std::string& device_name = device.info().name;
-  const std::string name = cl_call("a kernel's name", device_name, [&] { return kernel.getInfo<CL_KERNEL_FUNCTION_NAME>(); });
+  const std::string name = cl_call("a kernel's name", device_name,
+                                   [&] { return kernel.getInfo<CL_KERNEL_FUNCTION_NAME>(); });
   const std::size_t global = (count + local - 1) / local * local;
-  cl_call(fmt::format("kernel '{}' over {} work-items in groups of {}", name, count, local), device_name, [&] {
-    device.queue().enqueueNDRangeKernel(kernel, first > 0 ? cl::NDRange(first) : cl::NullRange, cl::NDRange(global),
-                                        cl::NDRange(local));
-  });
+  cl_call(fmt::format("kernel '{}' over {} work-items in groups of {}", name, count, local),
+          device_name, [&] {
+            device.queue().enqueueNDRangeKernel(kernel,
+                                                first > 0 ? cl::NDRange(first) : cl::NullRange,
+                                                cl::NDRange(global), cl::NDRange(local));
+          });
 }
 
 std::size_t local_size_for(const Device& device, const cl::Kernel& kernel, std::size_t wanted) {
-  const std::size_t most = cl_call("a kernel's work-group size", device.info().name,
-                                   [&] { return kernel.getWorkGroupInfo<CL_KERNEL_WORK_GROUP_SIZE>(device.handle()); });
+  const std::size_t most = cl_call("a kernel's work-group size", device.info().name, [&] {
+    return kernel.getWorkGroupInfo<CL_KERNEL_WORK_GROUP_SIZE>(device.handle());
+  });
   while (wanted > 1 && wanted > most) wanted /= 2;
   return wanted;
 }
@@ -183,7 +204,8 @@ std::size_t share_count(const Device& device, std::size_t count) {
   // A share is long enough to keep a pool of rays full, and short enough that units which finish
   // early find other shares.
   constexpr std::size_t most_items = 1024, least_items = 128, shares_a_unit = 8;
-  const std::size_t wanted = std::max(count / most_items, std::size_t{device.info().compute_units} * shares_a_unit);
+  const std::size_t wanted =
+      std::max(count / most_items, std::size_t{device.info().compute_units} * shares_a_unit);
   return std::max<std::size_t>(1, std::min(wanted, count / least_items));
 }
 

@@ -26,8 +26,10 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr const char* marker = "CAPLET_DRIVER_FAILED";       // set for the second process: the first one's signal, 0 for an error
-constexpr const char* cache_marker = "CAPLET_DRIVER_CACHE";  // likewise: the cache folder that the driver used
+constexpr const char* marker =
+    "CAPLET_DRIVER_FAILED";  // set for the second process: the first one's signal, 0 for an error
+constexpr const char* cache_marker =
+    "CAPLET_DRIVER_CACHE";  // likewise: the cache folder that the driver used
 constexpr int signals[] = {SIGABRT, SIGBUS, SIGSEGV, SIGILL};
 
 enum State : int { off, guarded, second, ending };
@@ -44,7 +46,8 @@ std::vector<char*> environment;
 char* signal_digits = nullptr;  // two, within `variables`
 sigset_t mask;
 constexpr char in_vain[] =
-    "caplet: error: the driver failed with a fresh cache folder as well, so PoCL's cache is not the reason; `caplet doctor` "
+    "caplet: error: the driver failed with a fresh cache folder as well, so PoCL's cache is not "
+    "the reason; `caplet doctor` "
     "tells "
     "more\n";
 
@@ -77,7 +80,8 @@ void on_crash(int number) {
   ::raise(number);
 }
 
-/// PoCL's LLVM has handlers of its own, which end the process; they are put back where a crash is no longer this program's.
+/// PoCL's LLVM has handlers of its own, which end the process; they are put back where a crash is
+/// no longer this program's.
 void handle_signals(bool on) {
   struct sigaction ours {};
   ours.sa_handler = on_crash;
@@ -96,8 +100,8 @@ void handle_signals(bool on) {
 void prepare(const Device& device) {
   variables.clear();
   for (char** one = environ; *one; ++one) variables.emplace_back(*one);
-  const fs::path cache =
-      device.info().bundled ? bundled_cache_folder(variable_of_process) : pocl_cache_folder(variable_of_process);
+  const fs::path cache = device.info().bundled ? bundled_cache_folder(variable_of_process)
+                                               : pocl_cache_folder(variable_of_process);
   variables.push_back(fmt::format("{}={}", cache_marker, cache.string()));
   variables.push_back(fmt::format("{}=00", marker));
   environment.clear();
@@ -128,7 +132,8 @@ bool may_be_the_cache(cl_int code) {
 FreshPoclCache::FreshPoclCache() {
   std::error_code error;
   std::string name = (fs::temp_directory_path(error) / "caplet-pocl-XXXXXX").string();
-  if (!::mkdtemp(name.data())) throw RunError(fmt::format("{}: no fresh cache folder: {}", name, std::strerror(errno)));
+  if (!::mkdtemp(name.data()))
+    throw RunError(fmt::format("{}: no fresh cache folder: {}", name, std::strerror(errno)));
   folder_ = name;
   if (const char* before = std::getenv("POCL_CACHE_DIR")) before_ = before;
   ::setenv("POCL_CACHE_DIR", name.c_str(), 1);
@@ -154,7 +159,8 @@ SecondTry::SecondTry(char** arguments) {
   fresh_.emplace();
   const int number = std::atoi(failed.c_str());
   log::warn("PoCL failed{}: trying once more with a fresh cache folder in place of '{}'",
-            number > 0 ? fmt::format(" with signal {} ({})", number, ::strsignal(number)) : "", damaged);
+            number > 0 ? fmt::format(" with signal {} ({})", number, ::strsignal(number)) : "",
+            damaged);
 }
 
 SecondTry::~SecondTry() {
@@ -175,7 +181,9 @@ void SecondTry::driver_works() {
   const int was = state.exchange(off);
   if (was == off) return;
   handle_signals(false);
-  if (was == second) log::warn("PoCL works with a fresh cache folder, so its own is damaged: delete it (rm -r '{}')", damaged);
+  if (was == second)
+    log::warn("PoCL works with a fresh cache folder, so its own is damaged: delete it (rm -r '{}')",
+              damaged);
 }
 
 void SecondTry::after(const DriverError& error) {

@@ -39,8 +39,8 @@ class SecondTry {
   SecondTry(const SecondTry&) = delete;
   SecondTry& operator=(const SecondTry&) = delete;
 
-  /// From this call to driver_works() a crash of PoCL starts the second process, whatever signal handlers PoCL has set.
-  /// Does nothing on other platforms, and without a SecondTry.
+  /// From this call to driver_works() a crash of PoCL starts the second process, whatever signal
+  /// handlers PoCL has set. Does nothing on other platforms, and without a SecondTry.
   static void guard(const Device& device);
   /// Call this once the driver has run the kernels: later crashes are not caused by its cache. In
   /// the second process it says which folder to delete.

@@ -19,14 +19,15 @@ using Devices = std::vector<DeviceInfo>;
 [[noreturn]] void refuse(const std::string& message, const Devices& devices) {
   std::string list;
   for (const DeviceInfo& info : devices)
-    list += fmt::format("{}{} '{}' ({}{})", list.empty() ? "" : ", ", info.index, info.name, info.type,
-                        info.bundled ? ", bundled" : "");
+    list += fmt::format("{}{} '{}' ({}{})", list.empty() ? "" : ", ", info.index, info.name,
+                        info.type, info.bundled ? ", bundled" : "");
   throw UnknownDevice(fmt::format("{}; the devices are {}", message, list));
 }
 
 /// Returns devices.size() when there is none.
 std::size_t first_of_type(const Devices& devices, const std::string& type) {
-  const auto at = std::find_if(devices.begin(), devices.end(), [&](const DeviceInfo& info) { return info.type == type; });
+  const auto at = std::find_if(devices.begin(), devices.end(),
+                               [&](const DeviceInfo& info) { return info.type == type; });
   return static_cast<std::size_t>(at - devices.begin());
 }
 
@@ -47,13 +48,15 @@ std::vector<std::size_t> matches_of(const Devices& devices, const std::string& w
 }
 
 bool has_processor(const Devices& devices) {
-  return std::ranges::any_of(devices, [](const DeviceInfo& info) { return !info.bundled && info.type == "cpu"; });
+  return std::ranges::any_of(
+      devices, [](const DeviceInfo& info) { return !info.bundled && info.type == "cpu"; });
 }
 
 std::size_t by_name(const Devices& devices, const std::string& choice) {
   const std::vector<std::size_t> matches = matches_of(devices, lower_case(choice));
   if (matches.empty()) refuse(fmt::format("no device has '{}' in its name", choice), devices);
-  if (matches.size() > 1) refuse(fmt::format("more than one device has '{}' in its name", choice), devices);
+  if (matches.size() > 1)
+    refuse(fmt::format("more than one device has '{}' in its name", choice), devices);
   return matches.front();
 }
 
@@ -61,17 +64,21 @@ std::size_t by_name(const Devices& devices, const std::string& choice) {
 
 std::size_t select_device(const Devices& devices, const std::string& choice) {
   if (devices.empty())
-    throw NoDevice("no OpenCL device was found; install one, for instance the Debian package pocl-opencl-icd (any CPU)");
+    throw NoDevice(
+        "no OpenCL device was found; install one, for instance the Debian package pocl-opencl-icd "
+        "(any CPU)");
   if (choice.empty()) return first_of_type(devices, "gpu") % devices.size();
   std::size_t index = 0;
   const auto [end, error] = std::from_chars(choice.data(), choice.data() + choice.size(), index);
   if (end == choice.data() + choice.size()) {
-    if (error != std::errc() || index >= devices.size()) refuse(fmt::format("no device has the index {}", choice), devices);
+    if (error != std::errc() || index >= devices.size())
+      refuse(fmt::format("no device has the index {}", choice), devices);
     return index;
   }
   const std::string type = lower_case(choice);
   if (type == "bundled") {
-    const auto at = std::ranges::find_if(devices, [](const DeviceInfo& info) { return info.bundled; });
+    const auto at =
+        std::ranges::find_if(devices, [](const DeviceInfo& info) { return info.bundled; });
     if (at == devices.end()) refuse("no OpenCL driver came with this program", devices);
     return static_cast<std::size_t>(at - devices.begin());
   }
@@ -92,14 +99,16 @@ std::vector<std::size_t> select_devices(const Devices& devices, const std::strin
   }
   // A name may have a comma in it.
   const auto named = [&] {
-    return std::ranges::any_of(
-        devices, [&](const DeviceInfo& info) { return lower_case(info.name).find(lower_case(choice)) != std::string::npos; });
+    return std::ranges::any_of(devices, [&](const DeviceInfo& info) {
+      return lower_case(info.name).find(lower_case(choice)) != std::string::npos;
+    });
   };
   if (choice.find(',') == std::string::npos || named()) return {select_device(devices, choice)};
   for (std::string_view rest = choice;;) {
     const std::size_t comma = rest.find(',');
     const std::string one(rest.substr(0, comma));
-    if (one.empty()) throw UnknownDevice(fmt::format("'{}' is no list of devices, like 0,1", choice));
+    if (one.empty())
+      throw UnknownDevice(fmt::format("'{}' is no list of devices, like 0,1", choice));
     const std::size_t index = select_device(devices, one);
     if (std::ranges::find(out, index) != out.end())
       refuse(fmt::format("device {} is named twice in '{}'", index, choice), devices);
@@ -109,8 +118,11 @@ std::vector<std::size_t> select_devices(const Devices& devices, const std::strin
   }
 }
 
-std::optional<std::vector<std::size_t>> select_machine_devices(const Devices& machine, const std::string& choice, bool several) {
-  if (machine.empty() || (several && lower_case(choice) == "all" && !has_processor(machine))) return std::nullopt;
+std::optional<std::vector<std::size_t>> select_machine_devices(const Devices& machine,
+                                                               const std::string& choice,
+                                                               bool several) {
+  if (machine.empty() || (several && lower_case(choice) == "all" && !has_processor(machine)))
+    return std::nullopt;
   try {
     return several ? select_devices(machine, choice) : std::vector{select_device(machine, choice)};
   } catch (const UnknownDevice&) {

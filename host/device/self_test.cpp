@@ -25,7 +25,8 @@ namespace {
 
 constexpr std::size_t local_size = 8;
 
-/// Collects failures, at most one for each kind of check so that a broken device gives a readable message.
+/// Collects failures, at most one for each kind of check so that a broken device gives a readable
+/// message.
 class Failures {
  public:
   void add(const std::string& check, const std::string& detail) {
@@ -71,25 +72,31 @@ std::vector<float> float_pairs() {
   return pairs;
 }
 
-/// Checks one result against the correctly rounded `expected`; NaN matches any NaN; `any_zero_sign`: a zero may have
-/// either sign, as that of fmin(+0, -0) has.
-void check_value(Failures& failures, const std::string& what, float a, float b, float seen, float expected,
-                 bool any_zero_sign = false) {
+/// Checks one result against the correctly rounded `expected`; NaN matches any NaN;
+/// `any_zero_sign`: a zero may have either sign, as that of fmin(+0, -0) has.
+void check_value(Failures& failures, const std::string& what, float a, float b, float seen,
+                 float expected, bool any_zero_sign = false) {
   const bool same = std::isnan(expected) ? std::isnan(seen)
-                    : any_zero_sign      ? seen == expected
-                                         : std::bit_cast<cl_uint>(seen) == std::bit_cast<cl_uint>(expected);
-  if (!same) failures.add(what, fmt::format("with a = {}, b = {} the device gives {}, not {}", a, b, seen, expected));
+                    : any_zero_sign
+                        ? seen == expected
+                        : std::bit_cast<cl_uint>(seen) == std::bit_cast<cl_uint>(expected);
+  if (!same)
+    failures.add(
+        what, fmt::format("with a = {}, b = {} the device gives {}, not {}", a, b, seen, expected));
 }
 
 /// Does the same as check_value, but finite results may be off by `bound` ulp of `exact`.
-void check_rounded(Failures& failures, const std::string& what, float a, float b, float seen, double exact, double bound) {
+void check_rounded(Failures& failures, const std::string& what, float a, float b, float seen,
+                   double exact, double bound) {
   const auto rounded = static_cast<float>(exact);
   if (may_be_flushed(rounded)) return;
-  if (!std::isfinite(rounded) || exact == 0) return check_value(failures, what, a, b, seen, rounded, exact == 0);
+  if (!std::isfinite(rounded) || exact == 0)
+    return check_value(failures, what, a, b, seen, rounded, exact == 0);
   // Beyond the largest number, results within the bound of it may also have become infinite.
   if (std::isinf(seen) && std::abs(exact) > FLT_MAX * (1 - 4e-7)) return;
   if (!(error_in_ulp(seen, exact) <= bound))
-    failures.add(what, fmt::format("with a = {}, b = {} the device gives {}, not {} within {} ulp", a, b, seen, exact, bound));
+    failures.add(what, fmt::format("with a = {}, b = {} the device gives {}, not {} within {} ulp",
+                                   a, b, seen, exact, bound));
 }
 
 void check_arithmetic(const Device& device, const Program& program, Failures& failures) {
@@ -152,12 +159,14 @@ void check_comparisons(const Device& device, const Program& program, Failures& f
                                      "any(isnan(float8))"};
     for (std::size_t bit = 0; bit < std::size(answers); ++bit)
       if ((seen[i] >> bit & 1u) != (answers[bit] ? 1u : 0u))
-        failures.add(names[bit], fmt::format("with a = {}, b = {} the device says {}", a, b, !answers[bit]));
+        failures.add(names[bit],
+                     fmt::format("with a = {}, b = {} the device says {}", a, b, !answers[bit]));
   }
 }
 
 void check_integers(const Device& device, const Program& program, Failures& failures) {
-  std::vector<cl_uint> pairs = {0, 0, 1, 31, 0x80000000u, 31, 0xffffffffu, 1, 0x7fffffffu, 4, 0x80000001u, 8};
+  std::vector<cl_uint> pairs = {0,           0, 1,           31, 0x80000000u, 31,
+                                0xffffffffu, 1, 0x7fffffffu, 4,  0x80000001u, 8};
   std::mt19937 random(2);
   for (int i = 0; i < 200; ++i) pairs.push_back(static_cast<cl_uint>(random()));
   const std::size_t count = pairs.size() / 2;
@@ -177,20 +186,24 @@ void check_integers(const Device& device, const Program& program, Failures& fail
                                 static_cast<cl_uint>(std::uint64_t{a} * b >> 32),
                                 std::rotl(a, static_cast<int>(b & 31u)),
                                 a * b};
-    constexpr const char* names[] = {"clz(a)",      "popcount(a)",  "a << b",       "a >> b",
-                                     "(int)a >> b", "mul_hi(a, b)", "rotate(a, b)", "a * b of integers"};
+    constexpr const char* names[] = {"clz(a)",       "popcount(a)",      "a << b",
+                                     "a >> b",       "(int)a >> b",      "mul_hi(a, b)",
+                                     "rotate(a, b)", "a * b of integers"};
     for (std::size_t j = 0; j < 8; ++j)
       if (seen[8 * i + j] != expected[j])
-        failures.add(names[j], fmt::format("with a = {:#x}, b = {:#x} the device gives {:#x}, not {:#x}", a, b, seen[8 * i + j],
-                                           expected[j]));
+        failures.add(names[j],
+                     fmt::format("with a = {:#x}, b = {:#x} the device gives {:#x}, not {:#x}", a,
+                                 b, seen[8 * i + j], expected[j]));
   }
 }
 
 void check_lanes(const Device& device, const Program& program, Failures& failures) {
   constexpr std::size_t count = 37;
   std::vector<float> in(8 * count + 8), expected(8 * count + 2, -1.0f);
-  for (std::size_t i = 0; i < in.size(); ++i) in[i] = static_cast<float>(i) * (i % 3 == 0 ? -1.0f : 1.0f);
-  for (std::size_t i = 0; i < 8 * count; ++i) expected[i + 1] = in[i + 1] < 0 ? in[i + 3] : in[i + 1];
+  for (std::size_t i = 0; i < in.size(); ++i)
+    in[i] = static_cast<float>(i) * (i % 3 == 0 ? -1.0f : 1.0f);
+  for (std::size_t i = 0; i < 8 * count; ++i)
+    expected[i + 1] = in[i + 1] < 0 ? in[i + 3] : in[i + 1];
   const Buffer<float> from(device, std::span<const float>(in));
   Buffer<float> to(device, expected.size());
   to.write(std::vector<float>(expected.size(), -1.0f));
@@ -200,7 +213,8 @@ void check_lanes(const Device& device, const Program& program, Failures& failure
   const std::vector<float> seen = to.read();
   const auto [at, wanted] = std::mismatch(seen.begin(), seen.end(), expected.begin());
   if (at != seen.end())
-    failures.add("vload8, select, vstore8", fmt::format("float {} is {}, not {}", at - seen.begin(), *at, *wanted));
+    failures.add("vload8, select, vstore8",
+                 fmt::format("float {} is {}, not {}", at - seen.begin(), *at, *wanted));
 }
 
 void check_groups(const Device& device, const Program& program, Failures& failures) {
@@ -214,7 +228,8 @@ void check_groups(const Device& device, const Program& program, Failures& failur
   const std::vector<cl_uint> expected = {count, count * (count - 1) / 2, count - 1, 0xffffffffu};
   constexpr const char* names[] = {"atomic_inc", "atomic_add", "atomic_max", "atomic_or"};
   for (std::size_t i = 0; i < 4; ++i)
-    if (sums[i] != expected[i]) failures.add(names[i], fmt::format("gives {}, not {}", sums[i], expected[i]));
+    if (sums[i] != expected[i])
+      failures.add(names[i], fmt::format("gives {}, not {}", sums[i], expected[i]));
   std::vector<cl_uint> order = tickets.read();
   std::sort(order.begin(), order.end());
   std::vector<cl_uint> all(count);
@@ -242,7 +257,8 @@ When when_to_test() {
 std::string trial_key(const Device& device, const std::vector<std::string>& texts) {
   const DeviceInfo& info = device.info();
   std::string key = "self test";
-  for (const std::string& part : {info.name, info.driver, info.version, info.platform}) key += '\0' + part;
+  for (const std::string& part : {info.name, info.driver, info.version, info.platform})
+    key += '\0' + part;
   for (const std::string& text : texts) key += '\0' + text;
   return key;
 }
@@ -262,7 +278,8 @@ std::vector<std::string> self_test_failures(const Device& device, const std::str
 
 bool self_test_is_due(const Device& device, const std::vector<std::string>& texts) {
   const When when = when_to_test();
-  return when == When::always || (when == When::unless_passed && !cache_load(trial_key(device, texts), "passed"));
+  return when == When::always ||
+         (when == When::unless_passed && !cache_load(trial_key(device, texts), "passed"));
 }
 
 void remember_self_test(const Device& device, const std::vector<std::string>& texts) {
@@ -271,8 +288,9 @@ void remember_self_test(const Device& device, const std::vector<std::string>& te
 
 void refuse_device(const Device& device, const std::vector<std::string>& failures) {
   const DeviceInfo& info = device.info();
-  std::string message =
-      fmt::format("device '{}' (driver {}) computes wrongly, so that pictures would be wrong:", info.name, info.driver);
+  std::string message = fmt::format(
+      "device '{}' (driver {}) computes wrongly, so that pictures would be wrong:", info.name,
+      info.driver);
   for (const std::string& failure : failures) message += "\n  " + failure;
   throw WrongDevice(message + "\nCAPLET_SELF_TEST=0 leaves this test out");
 }

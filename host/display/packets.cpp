@@ -25,9 +25,12 @@ class Packet {
   }
   template <class Whole>
   void whole(Whole value) {
-    for (std::size_t i = 0; i < sizeof value; ++i) bytes_ += static_cast<char>(static_cast<std::uint64_t>(value) >> (8 * i));
+    for (std::size_t i = 0; i < sizeof value; ++i)
+      bytes_ += static_cast<char>(static_cast<std::uint64_t>(value) >> (8 * i));
   }
-  void text(const std::string& value) { bytes_.append(value.c_str(), std::strlen(value.c_str()) + 1); }
+  void text(const std::string& value) {
+    bytes_.append(value.c_str(), std::strlen(value.c_str()) + 1);
+  }
   void number(float value) { whole(std::bit_cast<std::uint32_t>(value)); }
   std::string take() {
     const auto length = static_cast<std::uint32_t>(bytes_.size());
@@ -74,13 +77,15 @@ std::string update_packet(const std::string& name, const LayeredImage& image, co
   name_channels(packet, image);
   for (const int value : {tile.x, tile.y, tile.width, tile.height}) packet.whole(value);
   const std::int64_t pixels = std::int64_t{tile.width} * tile.height;
-  for (std::size_t i = 0; i < image.channels.size(); ++i) packet.whole(static_cast<std::int64_t>(i) * pixels);
+  for (std::size_t i = 0; i < image.channels.size(); ++i)
+    packet.whole(static_cast<std::int64_t>(i) * pixels);
   for (std::size_t i = 0; i < image.channels.size(); ++i) packet.whole(std::int64_t{1});
   for (const Channel& channel : image.channels)
     for (int y = tile.y; y < tile.y + tile.height; ++y) {
       const std::size_t row = index_of(image, tile.x, y);
       for (std::size_t x = row; x < row + static_cast<std::size_t>(tile.width); ++x)
-        packet.number(channel.uints.empty() ? channel.floats[x] : static_cast<float>(channel.uints[x]));
+        packet.number(channel.uints.empty() ? channel.floats[x]
+                                            : static_cast<float>(channel.uints[x]));
     }
   return packet.take();
 }
@@ -89,11 +94,13 @@ std::vector<Tile> changed_tiles(const LayeredImage& before, const LayeredImage& 
   std::vector<Tile> out;
   for (int y = now.y; y < now.y + now.data_height; y += tile_side)
     for (int x = now.x; x < now.x + now.data_width; x += tile_side) {
-      const Tile tile{x, y, std::min(tile_side, now.x + now.data_width - x), std::min(tile_side, now.y + now.data_height - y)};
+      const Tile tile{x, y, std::min(tile_side, now.x + now.data_width - x),
+                      std::min(tile_side, now.y + now.data_height - y)};
       bool is_same = before.channels.size() == now.channels.size();
       for (std::size_t c = 0; c < now.channels.size() && is_same; ++c)
         for (int row = 0; row < tile.height && is_same; ++row)
-          is_same = same(before.channels[c], now.channels[c], index_of(now, x, y + row), static_cast<std::size_t>(tile.width));
+          is_same = same(before.channels[c], now.channels[c], index_of(now, x, y + row),
+                         static_cast<std::size_t>(tile.width));
       if (!is_same) out.push_back(tile);
     }
   return out;

@@ -47,7 +47,8 @@ class Connection {
     std::string problem = "no address";
     for (const addrinfo* one = addresses; one; one = one->ai_next) {
       if (socket_ >= 0) ::close(socket_);
-      socket_ = ::socket(one->ai_family, one->ai_socktype | SOCK_CLOEXEC | SOCK_NONBLOCK, one->ai_protocol);
+      socket_ = ::socket(one->ai_family, one->ai_socktype | SOCK_CLOEXEC | SOCK_NONBLOCK,
+                         one->ai_protocol);
       if (socket_ < 0) {
         problem = std::strerror(errno);
         continue;
@@ -91,7 +92,8 @@ class Connection {
     while (!given_up) {
       pollfd one{socket_, POLLOUT, 0};
       if (::poll(&one, 1, wait_milliseconds) > 0) return true;
-      if (seconds && std::chrono::duration<double>(Clock::now() - start).count() > *seconds) return false;
+      if (seconds && std::chrono::duration<double>(Clock::now() - start).count() > *seconds)
+        return false;
     }
     return false;
   }
@@ -123,7 +125,8 @@ struct TevDisplay::State {
 
   void run() {
     Connection connection;
-    if (const std::string problem = connection.open(addresses, given_up); !problem.empty()) return end(problem);
+    if (const std::string problem = connection.open(addresses, given_up); !problem.empty())
+      return end(problem);
     LayeredImage shown;
     for (;;) {
       LayeredImage next;
@@ -137,7 +140,8 @@ struct TevDisplay::State {
         waiting.reset();
         is_busy = true;
       }
-      if (const std::string problem = update(connection, shown, next); !problem.empty()) return end(problem);
+      if (const std::string problem = update(connection, shown, next); !problem.empty())
+        return end(problem);
       shown = std::move(next);
     }
   }
@@ -166,19 +170,24 @@ TevAddress parse_tev_address(const std::string& text, const std::string& flag) {
     if (out.host.size() > 2 && out.host.front() == '[' && out.host.back() == ']')
       out.host = out.host.substr(1, out.host.size() - 2);
   }
-  const bool is_number =
-      !out.port.empty() && out.port.size() <= 5 && out.port.find_first_not_of("0123456789") == std::string::npos;
+  const bool is_number = !out.port.empty() && out.port.size() <= 5 &&
+                         out.port.find_first_not_of("0123456789") == std::string::npos;
   if (!is_number || std::stoi(out.port) < 1 || std::stoi(out.port) > 65535)
-    throw InputError(SourceLocation{flag}, "'" + text + "' is no HOST:PORT, such as 127.0.0.1:14158");
+    throw InputError(SourceLocation{flag},
+                     "'" + text + "' is no HOST:PORT, such as 127.0.0.1:14158");
   return out;
 }
 
-TevDisplay::TevDisplay(const TevAddress& address, const std::string& name) : state_(std::make_shared<State>()) {
+TevDisplay::TevDisplay(const TevAddress& address, const std::string& name)
+    : state_(std::make_shared<State>()) {
   addrinfo hints{};
   hints.ai_family = AF_UNSPEC;
   hints.ai_socktype = SOCK_STREAM;
-  if (const int error = ::getaddrinfo(address.host.c_str(), address.port.c_str(), &hints, &state_->addresses); error != 0)
-    throw InputError("tev: there is no host '" + address.host + "' (" + ::gai_strerror(error) + ")");
+  if (const int error =
+          ::getaddrinfo(address.host.c_str(), address.port.c_str(), &hints, &state_->addresses);
+      error != 0)
+    throw InputError("tev: there is no host '" + address.host + "' (" + ::gai_strerror(error) +
+                     ")");
   state_->name = name;
   state_->where = address.host + ":" + address.port;
   state_->is_busy = true;  // until it is connected

@@ -26,7 +26,8 @@ constexpr int exit_threw = 100;
 
 struct Pipe {
   Pipe() {
-    if (::pipe2(ends.data(), O_CLOEXEC) != 0) throw RunError(fmt::format("no pipe: {}", std::strerror(errno)));
+    if (::pipe2(ends.data(), O_CLOEXEC) != 0)
+      throw RunError(fmt::format("no pipe: {}", std::strerror(errno)));
   }
   ~Pipe() {
     close_read();
@@ -58,7 +59,8 @@ void write_all(int to, const std::string& text) {
   }
 }
 
-[[noreturn]] void be_child(const std::function<std::string()>& work, pid_t parent, const Pipe& answer, const Pipe& noise) {
+[[noreturn]] void be_child(const std::function<std::string()>& work, pid_t parent,
+                           const Pipe& answer, const Pipe& noise) {
   ::setpgid(0, 0);
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (::getppid() != parent) ::_exit(exit_threw);  // the parent ended before prctl
@@ -79,12 +81,14 @@ std::string last_line(const std::string& text) {
   const std::size_t end = text.find_last_not_of(" \r\n");
   if (end == std::string::npos) return {};
   const std::size_t begin = text.rfind('\n', end);
-  return text.substr(begin == std::string::npos ? 0 : begin + 1, end - (begin == std::string::npos ? 0 : begin + 1) + 1);
+  return text.substr(begin == std::string::npos ? 0 : begin + 1,
+                     end - (begin == std::string::npos ? 0 : begin + 1) + 1);
 }
 
 }  // namespace
 
-ChildEnd in_child(const std::function<std::string()>& work, double seconds, const std::function<bool()>& stop) {
+ChildEnd in_child(const std::function<std::string()>& work, double seconds,
+                  const std::function<bool()>& stop) {
   Pipe answer, noise;
   const pid_t parent = ::getpid();
   const pid_t child = ::fork();
@@ -97,7 +101,8 @@ ChildEnd in_child(const std::function<std::string()>& work, double seconds, cons
 
   ChildEnd out;
   std::string printed;
-  const auto deadline = Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
+  const auto deadline = Clock::now() + std::chrono::duration_cast<Clock::duration>(
+                                           std::chrono::duration<double>(seconds));
   int status = 0;
   bool late = false, stopped = false;
   constexpr int milliseconds = 20;
@@ -109,17 +114,21 @@ ChildEnd in_child(const std::function<std::string()>& work, double seconds, cons
       ::waitpid(child, &status, 0);
       break;
     }
-    std::array<pollfd, 2> waiting{pollfd{answer.ends[0], POLLIN, 0}, pollfd{noise.ends[0], POLLIN, 0}};
+    std::array<pollfd, 2> waiting{pollfd{answer.ends[0], POLLIN, 0},
+                                  pollfd{noise.ends[0], POLLIN, 0}};
     ::poll(waiting.data(), waiting.size(), milliseconds);
     if (waiting[0].revents & POLLIN) answer.take(out.answer);
     if (waiting[1].revents & POLLIN) noise.take(printed);
     // If a driver closed its end of the pipe, poll would return at once.
-    if (((waiting[0].revents | waiting[1].revents) & POLLIN) == 0 && (waiting[0].revents | waiting[1].revents) != 0)
+    if (((waiting[0].revents | waiting[1].revents) & POLLIN) == 0 &&
+        (waiting[0].revents | waiting[1].revents) != 0)
       ::poll(nullptr, 0, milliseconds);
   }
   ::kill(-child, SIGKILL);  // and every process that it started
-  for (std::size_t before = 0; answer.take(out.answer) && out.answer.size() != before;) before = out.answer.size();
-  for (std::size_t before = 0; noise.take(printed) && printed.size() != before;) before = printed.size();
+  for (std::size_t before = 0; answer.take(out.answer) && out.answer.size() != before;)
+    before = out.answer.size();
+  for (std::size_t before = 0; noise.take(printed) && printed.size() != before;)
+    before = printed.size();
   out.said = last_line(printed);
   if (WIFEXITED(status)) out.exit_code = WEXITSTATUS(status);
   if (stopped)
@@ -127,7 +136,8 @@ ChildEnd in_child(const std::function<std::string()>& work, double seconds, cons
   else if (late)
     out.how = fmt::format("gave no answer in {:g} s", seconds);
   else if (WIFSIGNALED(status))
-    out.how = fmt::format("ended with signal {} ({})", WTERMSIG(status), ::strsignal(WTERMSIG(status)));
+    out.how =
+        fmt::format("ended with signal {} ({})", WTERMSIG(status), ::strsignal(WTERMSIG(status)));
   else if (WEXITSTATUS(status) == exit_threw)
     out.how = out.answer.empty() ? "failed" : out.answer;
   else if (WEXITSTATUS(status) != 0)

@@ -32,40 +32,54 @@ struct Quirk {
 };
 
 constexpr Quirk quirks[] = {
-    // https://github.com/pocl/pocl/issues/1958 (compiled at the launch), https://github.com/pocl/pocl/pull/738 (small grids)
+    // https://github.com/pocl/pocl/issues/1958 (compiled at the launch),
+    // https://github.com/pocl/pocl/pull/738 (small grids)
     {"Portable Computing Language", "", "", "",
-     "compiles a kernel when it is launched, not when the program is built, and again for 65536 work-items or more: the first "
+     "compiles a kernel when it is launched, not when the program is built, and again for 65536 "
+     "work-items or more: the first "
      "render waits for it, later ones find it in PoCL's cache"},
     // host/device/program.cpp
     {"Portable Computing Language", "", "", "",
      "keeps compiled kernels itself; Caplet's cache holds only what the self-test said"},
-    // https://github.com/pocl/pocl/issues/1608; kernels/trace/trace.cl. Single: `shade` of scenes/neuron.swc
+    // https://github.com/pocl/pocl/issues/1608; kernels/trace/trace.cl. Single: `shade` of
+    // scenes/neuron.swc
     {"Portable Computing Language", "", "6.0", "6.1",
-     "has a compiler that may abort the process (\"Instruction Combining did not reach a fixpoint\"); Caplet's kernels are "
-     "written so that it does not in the wide encoding, which is its own; in the single one it does for some scenes"},
-    // Seen with 2025.0.4 (which calls itself 2024.18.12) and later, not with 2024.2.1 (2024.18.7); kernels/stages/kernel.cl
+     "has a compiler that may abort the process (\"Instruction Combining did not reach a "
+     "fixpoint\"); Caplet's kernels are "
+     "written so that it does not in the wide encoding, which is its own; in the single one it "
+     "does for some scenes"},
+    // Seen with 2025.0.4 (which calls itself 2024.18.12) and later, not with 2024.2.1 (2024.18.7);
+    // kernels/stages/kernel.cl
     {"Intel(R) OpenCL", "Intel(R)", "2024.18.8", "",
-     "may put several work-items into one vector, which is slow, and wrong where functions are called; Caplet's kernels ask it "
+     "may put several work-items into one vector, which is slow, and wrong where functions are "
+     "called; Caplet's kernels ask it "
      "not to, others (CAPLET_KERNELS) must, too"},
     // Seen with 2023.2.4, which calls itself 2024.16.
     {"Intel(R) OpenCL", "Intel(R)", "2023", "2024.17",
-     "has a compiler that crashed on earlier kernels of the single encoding: stay with the wide one, which is its own; and "
-     "lacks functions of its own vector library (__ocl_svml_...), so that some scenes do not build: 2024.1 has them"},
+     "has a compiler that crashed on earlier kernels of the single encoding: stay with the wide "
+     "one, which is its own; and "
+     "lacks functions of its own vector library (__ocl_svml_...), so that some scenes do not "
+     "build: 2024.1 has them"},
     // https://docs.mesa3d.org/rusticl
     {"rusticl", "", "", "",
-     "offers only the devices of the drivers that RUSTICL_ENABLE names (RUSTICL_ENABLE=radeonsi, iris, llvmpipe)"},
+     "offers only the devices of the drivers that RUSTICL_ENABLE names (RUSTICL_ENABLE=radeonsi, "
+     "iris, llvmpipe)"},
     {"rusticl", "llvmpipe", "", "",
-     "runs a work-item in each lane of the processor's vectors: the wide encoding takes minutes to compile and is slower than "
+     "runs a work-item in each lane of the processor's vectors: the wide encoding takes minutes to "
+     "compile and is slower than "
      "the single one, which is its own"},
     // Seen with 22.3 and 25.0: fma(-0, 0, +0) is -0.
-    {"rusticl", "", "", "", "may give a zero of fma() the wrong sign; no kernel of Caplet's takes it"},
+    {"rusticl", "", "", "",
+     "may give a zero of fma() the wrong sign; no kernel of Caplet's takes it"},
     // Seen with Debian's oclgrind 21.10-3: the self-test's comparisons of float8.
     {"Oclgrind", "", "21.10", "21.11",
-     "is a simulator for debugging, and compares vectors wrongly: it cannot render (unless kernels are built as "
+     "is a simulator for debugging, and compares vectors wrongly: it cannot render (unless kernels "
+     "are built as "
      "tools/oclgrind.sh does)"},
 };
 
-/// Returns the numbers of a text's first version: "Oclgrind 21.10" has 21 and 10, "2024.18.7.0.11_160000" 2024, 18, 7, 0 and 11.
+/// Returns the numbers of a text's first version: "Oclgrind 21.10" has 21 and 10,
+/// "2024.18.7.0.11_160000" 2024, 18, 7, 0 and 11.
 std::vector<int> version_numbers(std::string_view text) {
   std::vector<int> out;
   const auto digit = [](char c) { return c >= '0' && c <= '9'; };
@@ -93,7 +107,9 @@ bool concerns(const Quirk& quirk, const PlatformFacts& platform) {
   });
 }
 
-std::string printed(const ChildEnd& end) { return end.said.empty() ? "" : fmt::format(" (it printed: {})", end.said); }
+std::string printed(const ChildEnd& end) {
+  return end.said.empty() ? "" : fmt::format(" (it printed: {})", end.said);
+}
 
 /// Accepts "OpenCL 1.2 ..." and later versions.
 bool at_least_1_2(const std::string& version) {
@@ -110,14 +126,19 @@ std::string remove_text(const Driver& driver) {
   return fmt::format("sudo mv '{0}' '{0}.off'", driver.from);
 }
 
-bool is_pocl(const DeviceInfo& info) { return info.platform.starts_with("Portable Computing Language"); }
+bool is_pocl(const DeviceInfo& info) {
+  return info.platform.starts_with("Portable Computing Language");
+}
 
-std::string title(const DeviceInfo& info) { return fmt::format("device {} {}", info.index, info.name); }
+std::string title(const DeviceInfo& info) {
+  return fmt::format("device {} {}", info.index, info.name);
+}
 
 /// Makes all checks in order.
 class Examination {
  public:
-  Examination(const Surroundings& machine, const Options& options, const std::function<void(const Finding&)>& tell)
+  Examination(const Surroundings& machine, const Options& options,
+              const std::function<void(const Finding&)>& tell)
       : machine_(machine), options_(options), tell_(tell) {}
 
   Diagnosis run() {
@@ -125,7 +146,8 @@ class Examination {
     ask_drivers();
     add(check_permissions(machine_));
     add(check_sys(machine_));
-    add(check_nvidia(machine_, registry_, loader_, has_nvidia(machine_) && can_load("libnvidia-opencl.so.1", options_.seconds)));
+    add(check_nvidia(machine_, registry_, loader_,
+                     has_nvidia(machine_) && can_load("libnvidia-opencl.so.1", options_.seconds)));
     ask_platforms();
     add(check_unused_gpus(machine_, out_.platforms));
     add(check_memory(machine_));
@@ -153,67 +175,79 @@ class Examination {
 
   void find_loader() {
     loader_ = ask_loader();
-    add(Finding{
-        State::ok, "ICD loader",
-        loader_.name.empty() ? "does not say its name" : fmt::format("{} {} ({})", loader_.name, loader_.version, loader_.vendor),
-        ""});
+    add(Finding{State::ok, "ICD loader",
+                loader_.name.empty()
+                    ? "does not say its name"
+                    : fmt::format("{} {} ({})", loader_.name, loader_.version, loader_.vendor),
+                ""});
     registry_ = read_registry(machine_, loader_);
     add(check_registry(registry_, static_cast<bool>(bundled_driver())));
   }
 
   void ask_drivers() {
     for (const Driver& driver : registry_.drivers)
-      if (driver.problem.empty()) answers_.push_back({driver, ask_driver(driver, loader_, options_.seconds)});
+      if (driver.problem.empty())
+        answers_.push_back({driver, ask_driver(driver, loader_, options_.seconds)});
     if (const BundledDriver bundled = bundled_driver()) {
-      answers_.push_back({{about_bundled, bundled.library.string(), ""}, ask_bundled(options_.seconds)});
+      answers_.push_back(
+          {{about_bundled, bundled.library.string(), ""}, ask_bundled(options_.seconds)});
       bundled_devices_ = answers_.back().second.has_devices();
     }
     for (const auto& [driver, answer] : answers_) {
-      const bool needed =
-          std::none_of(answers_.begin(), answers_.end(), [](const auto& each) { return each.second.has_devices(); });
+      const bool needed = std::none_of(answers_.begin(), answers_.end(),
+                                       [](const auto& each) { return each.second.has_devices(); });
       add(judge_driver(driver, answer, machine_, needed));
-      has_pocl_ = has_pocl_ || (driver.from != about_bundled && driver.library.find("pocl") != std::string::npos);
+      has_pocl_ = has_pocl_ || (driver.from != about_bundled &&
+                                driver.library.find("pocl") != std::string::npos);
     }
   }
 
-  /// Asks all platforms at once, as other commands do; if a driver crashes or hangs, asks one driver after the other.
+  /// Asks all platforms at once, as other commands do; if a driver crashes or hangs, asks one
+  /// driver after the other.
   void ask_platforms() {
-    const bool broken = std::any_of(answers_.begin(), answers_.end(), [](const auto& each) { return !each.second.end.finished; });
+    const bool broken = std::any_of(answers_.begin(), answers_.end(),
+                                    [](const auto& each) { return !each.second.end.finished; });
     if (!broken) {
       Answer all = ask_all({}, options_.seconds);
       if (!all.end.finished)
-        add(Finding{State::wrong, "platforms", "the drivers together: " + all.end.how + printed(all.end),
+        add(Finding{State::wrong, "platforms",
+                    "the drivers together: " + all.end.how + printed(all.end),
                     "use one driver alone: " + only_text("LIBRARY", loader_) + " caplet ..."});
       take(all.platforms, {});
     } else {
       for (const auto& [driver, answer] : answers_)
         if (answer.end.finished)
-          take(answer.platforms, only(driver.from == about_bundled ? "/nonexistent" : driver.library, loader_));
+          take(answer.platforms,
+               only(driver.from == about_bundled ? "/nonexistent" : driver.library, loader_));
     }
     if (out_.platforms.empty() && !registry_.drivers.empty())
-      add(Finding{State::wrong, "platforms", "no driver answers: there is no OpenCL platform", install_a_driver});
-    const bool none =
-        std::none_of(out_.platforms.begin(), out_.platforms.end(), [](const auto& each) { return !each.devices.empty(); });
+      add(Finding{State::wrong, "platforms", "no driver answers: there is no OpenCL platform",
+                  install_a_driver});
+    const bool none = std::none_of(out_.platforms.begin(), out_.platforms.end(),
+                                   [](const auto& each) { return !each.devices.empty(); });
     for (const PlatformFacts& platform : out_.platforms) {
       add(judge_platform(platform, none));
       for (const DeviceFacts& device : platform.devices)
         add(judge_device(device, options_.least_bytes(device.info.type == "cpu")));
     }
     if (broken && !none)
-      add(Finding{State::note, "platforms", "asked one driver at a time: a broken one prevents every other use",
+      add(Finding{State::note, "platforms",
+                  "asked one driver at a time: a broken one prevents every other use",
                   "until it is mended: " + working_driver() + " caplet ..."});
   }
 
   std::string working_driver() const {
     for (const auto& [driver, answer] : answers_)
-      if (answer.has_devices()) return only_text(driver.from == about_bundled ? "/nonexistent" : driver.library, loader_);
+      if (answer.has_devices())
+        return only_text(driver.from == about_bundled ? "/nonexistent" : driver.library, loader_);
     return {};
   }
 
   void take(const std::vector<PlatformFacts>& platforms, const Variables& variables) {
     for (const PlatformFacts& platform : platforms) {
       out_.platforms.push_back(platform);
-      for (const DeviceFacts& device : platform.devices) devices_.push_back({device.info, variables});
+      for (const DeviceFacts& device : platform.devices)
+        devices_.push_back({device.info, variables});
     }
   }
 
@@ -226,26 +260,32 @@ class Examination {
       chosen = {devices_[select_device(infos, options_.device)]};
     }
     for (const Testable& device : chosen) {
-      const ChildEnd end = test_device(device.info.index, device.variables, options_.test, 4 * options_.seconds);
+      const ChildEnd end =
+          test_device(device.info.index, device.variables, options_.test, 4 * options_.seconds);
       if (end.finished)
         add(Finding{State::ok, title(device.info), "passes the self-test", ""});
       else if (is_pocl(device.info) && passes_with_fresh_cache(device)) {
-        const std::string folder =
-            (device.info.bundled ? bundled_cache_folder(machine_.variable) : pocl_cache_folder(machine_.variable)).string();
+        const std::string folder = (device.info.bundled ? bundled_cache_folder(machine_.variable)
+                                                        : pocl_cache_folder(machine_.variable))
+                                       .string();
         add(Finding{State::wrong, "PoCL's cache",
-                    fmt::format("{} is damaged: with it, {} fails the self-test ({}{}); with a fresh folder it passes", folder,
-                                title(device.info), end.how, printed(end)),
+                    fmt::format("{} is damaged: with it, {} fails the self-test ({}{}); with a "
+                                "fresh folder it passes",
+                                folder, title(device.info), end.how, printed(end)),
                     fmt::format("rm -r '{}'", folder)});
       } else
-        add(Finding{State::wrong, title(device.info), "fails the self-test: " + end.how + printed(end),
-                    fmt::format("update the driver ({}), or use another device; then report it to the driver's makers",
+        add(Finding{State::wrong, title(device.info),
+                    "fails the self-test: " + end.how + printed(end),
+                    fmt::format("update the driver ({}), or use another device; then report it to "
+                                "the driver's makers",
                                 device.info.driver)});
     }
   }
 
   bool passes_with_fresh_cache(const Testable& device) const {
     const FreshPoclCache fresh;
-    return test_device(device.info.index, device.variables, options_.test, 4 * options_.seconds).finished;
+    return test_device(device.info.index, device.variables, options_.test, 4 * options_.seconds)
+        .finished;
   }
 
   const Surroundings& machine_;
@@ -261,32 +301,37 @@ class Examination {
 
 }  // namespace
 
-Finding judge_driver(const Driver& driver, const Answer& answer, const Surroundings& machine, bool needed) {
+Finding judge_driver(const Driver& driver, const Answer& answer, const Surroundings& machine,
+                     bool needed) {
   if (!answer.end.finished)
     return {State::wrong, driver.from,
-            fmt::format("the driver {} {}{}; so does every program that uses OpenCL", driver.library, answer.end.how,
-                        printed(answer.end)),
+            fmt::format("the driver {} {}{}; so does every program that uses OpenCL",
+                        driver.library, answer.end.how, printed(answer.end)),
             "update or reinstall this driver, or take it out: " + remove_text(driver)};
   // Mangled names of the C++ namespace tbb begin with this.
   if (answer.load_error.find("undefined symbol: _ZN3tbb") != std::string::npos)
     return {State::wrong, driver.from,
-            fmt::format("the driver {} needs a newer libtbb.so.12 than the one that Caplet has loaded: {}", driver.library,
-                        answer.load_error),
-            "make a folder that holds nothing but the libtbb.so.12 that came with the driver, and name it: "
+            fmt::format(
+                "the driver {} needs a newer libtbb.so.12 than the one that Caplet has loaded: {}",
+                driver.library, answer.load_error),
+            "make a folder that holds nothing but the libtbb.so.12 that came with the driver, and "
+            "name it: "
             "LD_LIBRARY_PATH=FOLDER caplet ..."};
   if (!answer.load_error.empty())
-    return {State::wrong, driver.from, fmt::format("the driver {} cannot be loaded: {}", driver.library, answer.load_error),
+    return {State::wrong, driver.from,
+            fmt::format("the driver {} cannot be loaded: {}", driver.library, answer.load_error),
             "reinstall the package of this driver, or take it out: " + remove_text(driver)};
   if (!answer.platforms.empty())
     return {State::ok, driver.from,
-            fmt::format("the driver {} offers {} platform{}", driver.library, answer.platforms.size(),
-                        answer.platforms.size() == 1 ? "" : "s"),
+            fmt::format("the driver {} offers {} platform{}", driver.library,
+                        answer.platforms.size(), answer.platforms.size() == 1 ? "" : "s"),
             ""};
   const std::string what = fmt::format("the driver {} offers no platform", driver.library);
   if (driver.library.find("nvidia") != std::string::npos && has_nvidia(machine))
     return {State::wrong, driver.from, what + ", though the GPU's kernel driver is here",
             "nvidia-smi tells what is amiss; after an update of the driver: sudo reboot"};
-  return {needed ? State::wrong : State::note, driver.from, what + ": it finds no hardware of its kind, or may not use it",
+  return {needed ? State::wrong : State::note, driver.from,
+          what + ": it finds no hardware of its kind, or may not use it",
           needed ? install_a_driver : ""};
 }
 
@@ -294,15 +339,22 @@ Finding judge_platform(const PlatformFacts& platform, bool needed) {
   const std::string about = "platform " + platform.name;
   if (!platform.devices.empty() && platform.devices_error.empty())
     return {State::ok, about,
-            fmt::format("{}, {} device{}", platform.version, platform.devices.size(), platform.devices.size() == 1 ? "" : "s"),
+            fmt::format("{}, {} device{}", platform.version, platform.devices.size(),
+                        platform.devices.size() == 1 ? "" : "s"),
             ""};
-  const std::string what = platform.devices_error.empty() ? "has no device" : "offers no device: " + platform.devices_error;
+  const std::string what = platform.devices_error.empty()
+                               ? "has no device"
+                               : "offers no device: " + platform.devices_error;
   const State state = needed ? State::wrong : State::note;
   if (platform.name == "rusticl")
-    return {state, about, what, "export RUSTICL_ENABLE=DRIVER (radeonsi, iris, llvmpipe...; docs.mesa3d.org/rusticl)"};
+    return {state, about, what,
+            "export RUSTICL_ENABLE=DRIVER (radeonsi, iris, llvmpipe...; docs.mesa3d.org/rusticl)"};
   if (platform.name.starts_with("Portable Computing Language"))
-    return {state, about, what, "let PoCL write its cache folder (POCL_CACHE_DIR) and have memory (ulimit -v unlimited)"};
-  return {state, about, what, "check the permissions above, update its driver, or " + std::string(install_a_driver)};
+    return {
+        state, about, what,
+        "let PoCL write its cache folder (POCL_CACHE_DIR) and have memory (ulimit -v unlimited)"};
+  return {state, about, what,
+          "check the permissions above, update its driver, or " + std::string(install_a_driver)};
 }
 
 Findings judge_device(const DeviceFacts& device, std::uint64_t least_bytes) {
@@ -310,15 +362,20 @@ Findings judge_device(const DeviceFacts& device, std::uint64_t least_bytes) {
   const std::string about = title(info);
   Findings out;
   const std::string other = "use another device, or update the driver " + info.driver;
-  const auto lacks = [&](const std::string& what, const std::string& fix) { out.push_back({State::wrong, about, what, fix}); };
+  const auto lacks = [&](const std::string& what, const std::string& fix) {
+    out.push_back({State::wrong, about, what, fix});
+  };
   if (!device.available) lacks("is not available", "end the program that holds it, or " + other);
   if (!device.compiler) lacks("has no compiler for OpenCL C", other);
-  if (!at_least_1_2(info.version)) lacks(fmt::format("has '{}', and OpenCL 1.2 is needed", info.version), other);
+  if (!at_least_1_2(info.version))
+    lacks(fmt::format("has '{}', and OpenCL 1.2 is needed", info.version), other);
   if (device.profile != "FULL_PROFILE")
     lacks(fmt::format("has the profile {}, which may round differently", device.profile), other);
   if (!device.little_endian) lacks("is big-endian, and records are written little-endian", other);
-  // OpenCL 1.2, table 4.3, requires at least 1/4 of the memory, and 128 MiB. Some devices report less.
-  if (const std::uint64_t least = std::min<std::uint64_t>(info.global_bytes / 4, std::uint64_t{128} << 20);
+  // OpenCL 1.2, table 4.3, requires at least 1/4 of the memory, and 128 MiB. Some devices report
+  // less.
+  if (const std::uint64_t least =
+          std::min<std::uint64_t>(info.global_bytes / 4, std::uint64_t{128} << 20);
       info.max_allocation_bytes < least)
     out.push_back({State::note, about,
                    fmt::format("allocates at most {:.0f} MB at once: large scenes do not fit",
@@ -326,28 +383,34 @@ Findings judge_device(const DeviceFacts& device, std::uint64_t least_bytes) {
                    ""});
   if (info.global_bytes < least_bytes)
     lacks(fmt::format("has {:.0f} MB of memory, and a batch of paths takes {:.0f} MB",
-                      static_cast<double>(info.global_bytes) * 1e-6, static_cast<double>(least_bytes) * 1e-6),
+                      static_cast<double>(info.global_bytes) * 1e-6,
+                      static_cast<double>(least_bytes) * 1e-6),
           "use another device");
-  out.insert(out.begin(), Finding{State::ok, about,
-                                  fmt::format("{}, {}, driver {}, {} compute units, {:.1f} GB", info.type, info.version,
-                                              info.driver, info.compute_units, static_cast<double>(info.global_bytes) * 1e-9),
-                                  ""});
+  out.insert(out.begin(),
+             Finding{State::ok, about,
+                     fmt::format("{}, {}, driver {}, {} compute units, {:.1f} GB", info.type,
+                                 info.version, info.driver, info.compute_units,
+                                 static_cast<double>(info.global_bytes) * 1e-9),
+                     ""});
   return out;
 }
 
 Findings known_quirks(const std::vector<PlatformFacts>& platforms) {
   Findings out;
   for (const Quirk& quirk : quirks)
-    if (std::ranges::any_of(platforms, [&](const PlatformFacts& platform) { return concerns(quirk, platform); }))
+    if (std::ranges::any_of(
+            platforms, [&](const PlatformFacts& platform) { return concerns(quirk, platform); }))
       out.push_back({State::note, quirk.platform, quirk.what, ""});
   return out;
 }
 
 bool Diagnosis::anything_wrong() const {
-  return std::any_of(findings.begin(), findings.end(), [](const Finding& finding) { return finding.state == State::wrong; });
+  return std::any_of(findings.begin(), findings.end(),
+                     [](const Finding& finding) { return finding.state == State::wrong; });
 }
 
-Diagnosis diagnose(const Surroundings& machine, const Options& options, const std::function<void(const Finding&)>& tell) {
+Diagnosis diagnose(const Surroundings& machine, const Options& options,
+                   const std::function<void(const Finding&)>& tell) {
   return Examination(machine, options, tell).run();
 }
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// `caplet doctor`: checks the machine, the drivers, the platforms and the devices, and reports problems. Drivers are loaded only
-// in child processes, so that a crash or hang becomes a finding.
+// `caplet doctor`: checks the machine, the drivers, the platforms and the devices, and reports
+// problems. Drivers are loaded only in child processes, so that a crash or hang becomes a finding.
 #pragma once
 
 #include <functional>
@@ -16,8 +16,10 @@
 
 namespace caplet::doctor {
 
-/// Judges one driver. `needed`: no other driver offers a device, so one without a platform is wrong and not just unused.
-Finding judge_driver(const Driver& driver, const Answer& answer, const Surroundings& machine, bool needed);
+/// Judges one driver. `needed`: no other driver offers a device, so one without a platform is wrong
+/// and not just unused.
+Finding judge_driver(const Driver& driver, const Answer& answer, const Surroundings& machine,
+                     bool needed);
 /// Judges a platform by its number of devices. `needed` is as above.
 Finding judge_platform(const PlatformFacts& platform, bool needed);
 /// Describes a device, then what it lacks. `least_bytes`: the least device memory of a render.
@@ -27,7 +29,8 @@ Findings known_quirks(const std::vector<PlatformFacts>& platforms);
 
 struct Options {
   std::string device;   // tests only this one, chosen as in Device::choose; empty: all
-  double seconds = 30;  // time limit for an answer of a driver; the self-test, which compiles, has four times as long
+  double seconds = 30;  // time limit for an answer of a driver; the self-test, which compiles, has
+                        // four times as long
   /// Returns the bytes of device memory for a full batch of paths, on a CPU or on another device.
   std::function<std::uint64_t(bool cpu)> least_bytes = [](bool) { return std::uint64_t{0}; };
   /// Throws RunError that describes what a device computes wrong.
@@ -40,8 +43,9 @@ struct Diagnosis {
   bool anything_wrong() const;
 };
 
-/// `tell` is called with each finding as soon as it is known. Throws InputError when devices exist but `options.device` matches
-/// none of them.
-Diagnosis diagnose(const Surroundings& machine, const Options& options, const std::function<void(const Finding&)>& tell);
+/// `tell` is called with each finding as soon as it is known. Throws InputError when devices exist
+/// but `options.device` matches none of them.
+Diagnosis diagnose(const Surroundings& machine, const Options& options,
+                   const std::function<void(const Finding&)>& tell);
 
 }  // namespace caplet::doctor

@@ -21,6 +21,8 @@ struct Finding {
 using Findings = std::vector<Finding>;
 
 /// "ok", "note" or "wrong".
-inline const char* name_of(State state) { return state == State::ok ? "ok" : state == State::note ? "note" : "wrong"; }
+inline const char* name_of(State state) {
+  return state == State::ok ? "ok" : state == State::note ? "note" : "wrong";
+}
 
 }  // namespace caplet::doctor

@@ -15,8 +15,9 @@
 #include "device/describe.h"
 
 namespace caplet {
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(DeviceInfo, index, name, vendor, driver, version, platform, type, compute_units,
-                                   native_float_width, global_bytes, max_allocation_bytes, bundled)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(DeviceInfo, index, name, vendor, driver, version, platform, type,
+                                   compute_units, native_float_width, global_bytes,
+                                   max_allocation_bytes, bundled)
 }
 
 namespace caplet::doctor {
@@ -44,7 +45,8 @@ DeviceFacts facts_of(const cl::Device& device, const FoundPlatform& platform) {
   return out;
 }
 
-/// Indices are those of list_devices(): if a query to a platform fails, its devices before the failure still count.
+/// Indices are those of list_devices(): if a query to a platform fails, its devices before the
+/// failure still count.
 std::vector<PlatformFacts> platforms_here(Drivers drivers) {
   std::vector<PlatformFacts> out;
   int index = 0;
@@ -53,7 +55,8 @@ std::vector<PlatformFacts> platforms_here(Drivers drivers) {
     try {
       facts.name = platform.platform.getInfo<CL_PLATFORM_NAME>();
       facts.vendor = platform.platform.getInfo<CL_PLATFORM_VENDOR>();
-      facts.version = platform.platform.getInfo<CL_PLATFORM_VERSION>() + (platform.bundled ? bundled_mark : "");
+      facts.version =
+          platform.platform.getInfo<CL_PLATFORM_VERSION>() + (platform.bundled ? bundled_mark : "");
       for (const cl::Device& device : devices_of(platform)) {
         DeviceFacts found = facts_of(device, platform);
         found.info.index = index++;
@@ -96,13 +99,17 @@ Loader ask_loader() {
         using Ask = cl_int(CL_API_CALL*)(cl_uint, std::size_t, void*, std::size_t*);
         // These are CL_ICDL_VERSION, CL_ICDL_NAME, CL_ICDL_VENDOR of the extension cl_loader_info.
         constexpr cl_uint version = 2, name = 3, vendor = 4;
-        // The function is looked up because the headers mark it as deprecated, although loaders use it for their own extensions.
+        // The function is looked up because the headers mark it as deprecated, although loaders use
+        // it for their own extensions.
         using Address = void*(CL_API_CALL*)(const char*);
-        const auto address = reinterpret_cast<Address>(::dlsym(RTLD_DEFAULT, "clGetExtensionFunctionAddress"));
-        const auto ask = reinterpret_cast<Ask>(address ? address("clGetICDLoaderInfoOCLICD") : nullptr);
+        const auto address =
+            reinterpret_cast<Address>(::dlsym(RTLD_DEFAULT, "clGetExtensionFunctionAddress"));
+        const auto ask =
+            reinterpret_cast<Ask>(address ? address("clGetICDLoaderInfoOCLICD") : nullptr);
         const auto text = [&](cl_uint what) {
           std::array<char, 256> out{};
-          if (!ask || ask(what, out.size() - 1, out.data(), nullptr) != CL_SUCCESS) return std::string();
+          if (!ask || ask(what, out.size() - 1, out.data(), nullptr) != CL_SUCCESS)
+            return std::string();
           return std::string(out.data());
         };
         return json_dump(Json(Loader{text(name), text(vendor), text(version)}));
@@ -146,10 +153,13 @@ Answer ask_bundled(double seconds) {
 }
 
 bool can_load(const std::string& library, double seconds) {
-  return in_child([&] { return ::dlopen(library.c_str(), RTLD_LAZY | RTLD_LOCAL) ? "yes" : ""; }, seconds).answer == "yes";
+  return in_child([&] { return ::dlopen(library.c_str(), RTLD_LAZY | RTLD_LOCAL) ? "yes" : ""; },
+                  seconds)
+             .answer == "yes";
 }
 
-ChildEnd test_device(int index, const Variables& variables, const std::function<void(const Device&)>& test, double seconds) {
+ChildEnd test_device(int index, const Variables& variables,
+                     const std::function<void(const Device&)>& test, double seconds) {
   return in_child(
       [&] {
         set(variables);

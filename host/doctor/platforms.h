@@ -49,6 +49,7 @@ Answer ask_all(const Variables& variables, double seconds);
 /// Returns whether dlopen finds a library; false also when it crashes.
 bool can_load(const std::string& library, double seconds);
 /// Runs `test`, with CAPLET_SELF_TEST=1, on the device of this index.
-ChildEnd test_device(int index, const Variables& variables, const std::function<void(const Device&)>& test, double seconds);
+ChildEnd test_device(int index, const Variables& variables,
+                     const std::function<void(const Device&)>& test, double seconds);
 
 }  // namespace caplet::doctor

@@ -13,7 +13,8 @@ namespace caplet::doctor {
 namespace fs = std::filesystem;
 
 const char* const install_a_driver =
-    "sudo apt-get install pocl-opencl-icd (any CPU), or the driver of your GPU with its OpenCL package";
+    "sudo apt-get install pocl-opencl-icd (any CPU), or the driver of your GPU with its OpenCL "
+    "package";
 
 namespace {
 
@@ -44,7 +45,8 @@ void read_folder(const Surroundings& machine, const fs::path& folder, Registry& 
     to.problem = "does not exist";
   } else if (!fs::is_directory(status)) {
     to.problem = "is not a folder";
-  } else if (fs::directory_iterator entries(folder, error); error || !machine.may(folder, R_OK | X_OK)) {
+  } else if (fs::directory_iterator entries(folder, error);
+             error || !machine.may(folder, R_OK | X_OK)) {
     to.problem = "cannot be read";
   } else {
     std::vector<fs::path> files;
@@ -58,7 +60,8 @@ void read_folder(const Surroundings& machine, const fs::path& folder, Registry& 
 
 Registry as_ocl_icd(const Surroundings& machine) {
   Registry out;
-  const std::string named = machine.variable("OCL_ICD_VENDORS"), path = machine.variable("OPENCL_VENDOR_PATH");
+  const std::string named = machine.variable("OCL_ICD_VENDORS"),
+                    path = machine.variable("OPENCL_VENDOR_PATH");
   const fs::path folder = path.empty() ? machine.root / "etc/OpenCL/vendors" : fs::path(path);
   out.variable = !named.empty() ? "OCL_ICD_VENDORS" : !path.empty() ? "OPENCL_VENDOR_PATH" : "";
   std::error_code error;
@@ -100,41 +103,49 @@ Registry read_registry(const Surroundings& machine, const Loader& loader) {
 
 Findings check_registry(const Registry& registry, bool has_bundled) {
   Findings out;
-  const std::string about = registry.variable.empty() ? registry.place : registry.variable + "=" + registry.place;
+  const std::string about =
+      registry.variable.empty() ? registry.place : registry.variable + "=" + registry.place;
   if (!registry.problem.empty()) {
-    const std::string fix = registry.problem == "cannot be read" ? fmt::format("sudo chmod a+rX '{}'", registry.place)
-                            : registry.variable.empty()          ? install_a_driver
-                                                        : fmt::format("unset {}, or {}", registry.variable, install_a_driver);
-    out.push_back(
-        {has_bundled ? State::note : State::wrong, about,
-         fmt::format("no OpenCL driver is registered: the {} {}{}", registry.problem == "is not a folder" ? "path" : "folder",
-                     registry.problem, has_bundled ? "; the bundled one is used" : ""),
-         fix});
+    const std::string fix =
+        registry.problem == "cannot be read" ? fmt::format("sudo chmod a+rX '{}'", registry.place)
+        : registry.variable.empty()
+            ? install_a_driver
+            : fmt::format("unset {}, or {}", registry.variable, install_a_driver);
+    out.push_back({has_bundled ? State::note : State::wrong, about,
+                   fmt::format("no OpenCL driver is registered: the {} {}{}",
+                               registry.problem == "is not a folder" ? "path" : "folder",
+                               registry.problem, has_bundled ? "; the bundled one is used" : ""),
+                   fix});
   } else {
     out.push_back({State::ok, about,
-                   fmt::format("{} driver{} registered here", registry.drivers.size(), registry.drivers.size() == 1 ? "" : "s"),
+                   fmt::format("{} driver{} registered here", registry.drivers.size(),
+                               registry.drivers.size() == 1 ? "" : "s"),
                    ""});
   }
   for (const Driver& driver : registry.drivers) {
     if (driver.problem.empty()) continue;
-    const std::string fix = driver.problem == "cannot be read" ? fmt::format("sudo chmod a+r '{}'", driver.from)
-                            : driver.problem == "does not exist"
-                                ? fmt::format("unset {}", registry.variable)
-                                : "write the name of the driver's library, and nothing else, into its first line";
+    const std::string fix =
+        driver.problem == "cannot be read" ? fmt::format("sudo chmod a+r '{}'", driver.from)
+        : driver.problem == "does not exist"
+            ? fmt::format("unset {}", registry.variable)
+            : "write the name of the driver's library, and nothing else, into its first line";
     out.push_back({State::wrong, driver.from, "this file " + driver.problem, fix});
   }
   return out;
 }
 
-std::vector<std::pair<std::string, std::string>> only(const std::string& library, const Loader& loader) {
-  // ocl-icd takes the library itself in this variable; Khronos's adds the library to a folder, here one that does not exist.
+std::vector<std::pair<std::string, std::string>> only(const std::string& library,
+                                                      const Loader& loader) {
+  // ocl-icd takes the library itself in this variable; Khronos's adds the library to a folder, here
+  // one that does not exist.
   if (loader.is_ocl_icd()) return {{"OCL_ICD_VENDORS", library}};
   return {{"OCL_ICD_FILENAMES", library}, {"OCL_ICD_VENDORS", "/nonexistent"}};
 }
 
 std::string only_text(const std::string& library, const Loader& loader) {
   std::string out;
-  for (const auto& [name, value] : only(library, loader)) out += fmt::format("{}{}={}", out.empty() ? "" : " ", name, value);
+  for (const auto& [name, value] : only(library, loader))
+    out += fmt::format("{}{}={}", out.empty() ? "" : " ", name, value);
   return out;
 }
 

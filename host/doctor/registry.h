@@ -3,8 +3,8 @@
 //
 // Finds where the ICD loader looks for drivers, and what is registered there.
 //
-// Sources: for ocl-icd its manual page libOpenCL(7); for Khronos the README of github.com/KhronosGroup/OpenCL-ICD-Loader and
-// loader/linux/icd_linux.c.
+// Sources: for ocl-icd its manual page libOpenCL(7); for Khronos the README of
+// github.com/KhronosGroup/OpenCL-ICD-Loader and loader/linux/icd_linux.c.
 #pragma once
 
 #include <string>
@@ -36,14 +36,16 @@ struct Registry {
 
 Registry read_registry(const Surroundings& machine, const Loader& loader);
 
-/// Judges the place and the .icd files, not the libraries. A place without drivers is wrong, or only a note if there is a bundled
-/// driver (`has_bundled`).
+/// Judges the place and the .icd files, not the libraries. A place without drivers is wrong, or
+/// only a note if there is a bundled driver (`has_bundled`).
 Findings check_registry(const Registry& registry, bool has_bundled = false);
 
 /// Returns the variables that make the loader use only `library`.
-std::vector<std::pair<std::string, std::string>> only(const std::string& library, const Loader& loader);
+std::vector<std::pair<std::string, std::string>> only(const std::string& library,
+                                                      const Loader& loader);
 
-/// Returns the text to type before a command to use only this library: "OCL_ICD_VENDORS=libpocl.so.2".
+/// Returns the text to type before a command to use only this library:
+/// "OCL_ICD_VENDORS=libpocl.so.2".
 std::string only_text(const std::string& library, const Loader& loader);
 
 extern const char* const install_a_driver;

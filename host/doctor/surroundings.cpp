@@ -36,7 +36,8 @@ Surroundings this_machine() {
   const passwd* user = ::getpwuid(::getuid());
   out.user = user ? user->pw_name : std::to_string(::getuid());
   rlimit limit{};
-  if (::getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY) out.address_space = limit.rlim_cur;
+  if (::getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY)
+    out.address_space = limit.rlim_cur;
   return out;
 }
 

@@ -13,11 +13,13 @@
 namespace caplet::doctor {
 
 struct Surroundings {
-  std::filesystem::path root = "/";                                      // the parent of dev, etc, proc and sys
+  std::filesystem::path root = "/";  // the parent of dev, etc, proc and sys
   std::function<std::string(const std::string& name)> variable;          // empty when it is not set
   std::function<bool(const std::filesystem::path& path, int mode)> may;  // as access(2)
-  std::function<std::string(const std::filesystem::path& path)> group;   // the owning group; empty: unknown
-  std::function<std::optional<std::uint64_t>(const std::filesystem::path& folder)> free_bytes;  // of its file system
+  std::function<std::string(const std::filesystem::path& path)>
+      group;  // the owning group; empty: unknown
+  std::function<std::optional<std::uint64_t>(const std::filesystem::path& folder)>
+      free_bytes;  // of its file system
   std::string user;
   std::optional<std::uint64_t> address_space;  // RLIMIT_AS in bytes
 };

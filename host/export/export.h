@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Writes scenes as files: pbrt-v4 text of the whole model, which importers read back to the same picture, bit for bit
-// (docs/formats/pbrt.md, "Written by Caplet").
+// Writes scenes as files: pbrt-v4 text of the whole model, which importers read back to the same
+// picture, bit for bit (docs/formats/pbrt.md, "Written by Caplet").
 #pragma once
 
 #include <filesystem>
@@ -16,15 +16,18 @@ namespace caplet {
 /// The first line of every scene that is written.
 inline constexpr std::string_view written_first_line = "# pbrt-v4 text with Caplet's shapes\n";
 
-/// Replaces `file` (.pbrt, or what is no regular file) as write_atomically does. Images and other files that the scene was read
-/// from are named relative to the file's folder where they share a folder with it other than the root, else by their paths.
-/// `cancelled` is called regularly; when it returns true, RunError is thrown and nothing is written.
-/// Throws InputError, at its place, for anything that text cannot express: an image that is in no file, what validate() refuses,
-/// a name with control characters; RunError when writing fails.
-void write_scene(const Scene& scene, const std::filesystem::path& file, const std::function<bool()>& cancelled = {});
+/// Replaces `file` (.pbrt, or what is no regular file) as write_atomically does. Images and other
+/// files that the scene was read from are named relative to the file's folder where they share a
+/// folder with it other than the root, else by their paths. `cancelled` is called regularly; when
+/// it returns true, RunError is thrown and nothing is written. Throws InputError, at its place, for
+/// anything that text cannot express: an image that is in no file, what validate() refuses, a name
+/// with control characters; RunError when writing fails.
+void write_scene(const Scene& scene, const std::filesystem::path& file,
+                 const std::function<bool()>& cancelled = {});
 
 /// Passes the text for a file in `folder` on in pieces of bounded size.
-void write_pbrt(const Scene& scene, const std::filesystem::path& folder, const std::function<void(std::string_view)>& sink,
+void write_pbrt(const Scene& scene, const std::filesystem::path& folder,
+                const std::function<void(std::string_view)>& sink,
                 const std::function<bool()>& cancelled = {});
 
 }  // namespace caplet

@@ -16,13 +16,15 @@ namespace caplet::pbrt_text {
 namespace {
 
 void transform(Statement& to, const glm::dmat4& matrix) {
-  if (!has_inverse(matrix) || !is_affine(matrix)) refuse(to.where(), "the transform has no inverse");
+  if (!has_inverse(matrix) || !is_affine(matrix))
+    refuse(to.where(), "the transform has no inverse");
   if (matrix != glm::dmat4(1)) to.within("Transform " + matrix_text(matrix) + "\n");
 }
 
 std::string encoding_name(const ImageEncoding& encoding) {
   if (encoding.kind == ImageEncoding::Kind::linear) return "linear";
-  return encoding.kind == ImageEncoding::Kind::srgb ? "sRGB" : "gamma " + number_text(encoding.gamma);
+  return encoding.kind == ImageEncoding::Kind::srgb ? "sRGB"
+                                                    : "gamma " + number_text(encoding.gamma);
 }
 
 /// Writes the fields of scene/textures.def.
@@ -67,12 +69,14 @@ struct TextureWriter : IgnoresFields {
     place(of.texture_from_world);
   }
   void place(const glm::dmat4& inverse) {
-    if ((texture_from_world && *texture_from_world != inverse) || is_turned) refuse(to.where(), "the texture has two places");
+    if ((texture_from_world && *texture_from_world != inverse) || is_turned)
+      refuse(to.where(), "the texture has two places");
     texture_from_world = inverse;
   }
   void direction(const Field& field, const glm::dvec3& value) {
     if (texture_from_world) refuse(to.where(), "the texture has two places");
-    if (!is_unit(glm::length(value))) refuse(to.where(), "the texture's direction is not of unit length");
+    if (!is_unit(glm::length(value)))
+      refuse(to.where(), "the texture's direction is not of unit length");
     is_turned = true;
     to.vector(field.name, value);
   }
@@ -80,7 +84,8 @@ struct TextureWriter : IgnoresFields {
 
 /// Writes the fields of scene/materials.def.
 struct MaterialWriter : CompositesInParts<MaterialWriter> {
-  MaterialWriter(Statement& statement, const Material& of, const Names& all) : to(statement), material(of), names(all) {}
+  MaterialWriter(Statement& statement, const Material& of, const Names& all)
+      : to(statement), material(of), names(all) {}
   Statement& to;
   const Material& material;
   const Names& names;
@@ -144,10 +149,15 @@ struct MediumWriter {
   void counts(const GridCounts& of) {
     for (std::size_t k = 0; k < 3; ++k) to.whole(grid_count_names[k], of[k]);
   }
-  void grid(const Field& field, const FloatGrid& of, const GridCounts&, bool) { list("float", field.name, of, {}); }
-  void grid(const Field& field, const ColorGrid& of, const GridCounts&) { list("rgb", field.name, of.rgb, of.space); }
+  void grid(const Field& field, const FloatGrid& of, const GridCounts&, bool) {
+    list("float", field.name, of, {});
+  }
+  void grid(const Field& field, const ColorGrid& of, const GridCounts&) {
+    list("rgb", field.name, of.rgb, of.space);
+  }
   void number(const Field& field, double value) { to.number(field.name, value); }
-  void volume(const SparseGridPointer& density, const SparseGridPointer& temperature, const glm::dmat4& world_from_medium) {
+  void volume(const SparseGridPointer& density, const SparseGridPointer& temperature,
+              const glm::dmat4& world_from_medium) {
     if (temperature && temperature->file != density->file)
       refuse(to.where(), "the medium's density and temperature are of different files");
     transform(to, world_from_medium);
@@ -157,7 +167,8 @@ struct MediumWriter {
   void any_of(const ColorGrid&, const ColorGrid&, const ColorGrid&) {}
 
  private:
-  void list(const char* type, const char* name, const FloatGrid& of, std::optional<ColorSpace> space) {
+  void list(const char* type, const char* name, const FloatGrid& of,
+            std::optional<ColorSpace> space) {
     if (of)
       to.list(
           type, name, of->size(), [of](Text& text, std::size_t i) { text << (*of)[i]; }, space);
@@ -178,14 +189,16 @@ struct LightWriter {
     position_name = field.name;
   }
   void direction(const Field&, const Field& towards, const glm::dvec3& value) {
-    if (!is_unit(glm::length(value))) refuse(to.where(), "the light's direction is not of unit length");
+    if (!is_unit(glm::length(value)))
+      refuse(to.where(), "the light's direction is not of unit length");
     transform(to, glm::translate(glm::dmat4(1), position_));
     is_placed = true;
     to.point(towards.name, value);
   }
   void number(const Field& field, double value) { to.number(field.name, value); }
   void place(const glm::dvec3& at, const glm::dmat3& turn) {
-    if (!is_unit(glm::length(turn[0]))) refuse(to.where(), "the light's rotation is not of unit length");
+    if (!is_unit(glm::length(turn[0])))
+      refuse(to.where(), "the light's rotation is not of unit length");
     glm::dmat4 matrix(turn);
     matrix[3] = glm::dvec4(at, 1);
     transform(to, matrix);
@@ -194,14 +207,17 @@ struct LightWriter {
   void image(const Field& field, const std::shared_ptr<const EnvironmentImage>& of) {
     to.file(field.name, of->file, "the light's image", stream);
   }
-  void directions(const Field& field, const std::shared_ptr<const EnvironmentImage>& of) { image(field, of); }
+  void directions(const Field& field, const std::shared_ptr<const EnvironmentImage>& of) {
+    image(field, of);
+  }
   void profile(const Field& field, const std::shared_ptr<const IesProfile>& of) {
     to.file(field.name, of->file, "the light's profile", stream);
   }
   void cone(double total_angle, double falloff_start_angle) {
     const double cone = degrees_of(total_angle);
     to.number(SpotLight::cone_field.name, cone);
-    to.number(SpotLight::delta_field.name, degrees_below(cone, std::min(falloff_start_angle, total_angle)));
+    to.number(SpotLight::delta_field.name,
+              degrees_below(cone, std::min(falloff_start_angle, total_angle)));
   }
   void sky(const InfiniteLight& light) {
     if (light.image) {
@@ -216,7 +232,8 @@ struct LightWriter {
     if (!light.portal) return;
     const LightPortal& p = *light.portal;
     to.numbers("point3", InfiniteLight::portal_field.name,
-               {p[0].x, p[0].y, p[0].z, p[1].x, p[1].y, p[1].z, p[2].x, p[2].y, p[2].z, p[3].x, p[3].y, p[3].z});
+               {p[0].x, p[0].y, p[0].z, p[1].x, p[1].y, p[1].z, p[2].x, p[2].y, p[2].z, p[3].x,
+                p[3].y, p[3].z});
   }
   void finish() {
     if (!position_name.empty() && !is_placed) to.point(position_name, position_);
@@ -225,7 +242,9 @@ struct LightWriter {
 
 /// Importers fold textures of constants into a constant, which would remove the texture.
 bool is_constant(const ScaleTexture& of) { return !of.tex.texture && !of.scale.texture; }
-bool is_constant(const MixTexture& of) { return !of.tex1.texture && !of.tex2.texture && !of.amount.texture; }
+bool is_constant(const MixTexture& of) {
+  return !of.tex1.texture && !of.tex2.texture && !of.amount.texture;
+}
 template <class Model>
 bool is_constant(const Model&) {
   return false;
@@ -233,7 +252,8 @@ bool is_constant(const Model&) {
 
 }  // namespace
 
-std::optional<Statement> texture_statement(const Scene& scene, std::uint32_t texture, const Names& names, const Stream& stream) {
+std::optional<Statement> texture_statement(const Scene& scene, std::uint32_t texture,
+                                           const Names& names, const Stream& stream) {
   const auto& [model, is_float, name, where] = scene.textures[texture];
   static constexpr const char* classes[] = {
 #define TEXTURE_MODEL(row, Type) #row,
@@ -242,9 +262,10 @@ std::optional<Statement> texture_statement(const Scene& scene, std::uint32_t tex
   };
   const char* const texture_class = classes[model.index()];
   if (!texture_class) return std::nullopt;
-  if (std::visit([](const auto& m) { return is_constant(m); }, model)) refuse(where, "the texture is made of constants alone");
-  Statement out("Texture " + quoted(names.textures[texture], where) + (is_float ? " \"float\" \"" : " \"spectrum\" \"") +
-                    texture_class + "\"",
+  if (std::visit([](const auto& m) { return is_constant(m); }, model))
+    refuse(where, "the texture is made of constants alone");
+  Statement out("Texture " + quoted(names.textures[texture], where) +
+                    (is_float ? " \"float\" \"" : " \"spectrum\" \"") + texture_class + "\"",
                 "texture", where);
   TextureWriter writer(out, names, stream, is_float);
   std::visit([&](const auto& m) { m.fields(m, writer); }, model);
@@ -253,7 +274,8 @@ std::optional<Statement> texture_statement(const Scene& scene, std::uint32_t tex
   return out;
 }
 
-Statement material_statement(const Scene& scene, std::uint32_t material, const Names& names, const Stream& stream) {
+Statement material_statement(const Scene& scene, std::uint32_t material, const Names& names,
+                             const Stream& stream) {
   const auto& [model, name, where, textures, displacement, normalmap] = scene.materials[material];
   static constexpr const char* types[] = {
 #define MATERIAL_MODEL(row, Type) #row,
@@ -265,8 +287,8 @@ Statement material_statement(const Scene& scene, std::uint32_t material, const N
   std::visit([&](const auto& m) { m.fields(m, writer); }, model);
   if (displacement) out.texture("displacement", names.textures[*displacement]);
   if (normalmap)
-    out.file("normalmap", std::get<NormalmapTexture>(scene.textures[*normalmap].model).image->file, "the material's normal map",
-             stream);
+    out.file("normalmap", std::get<NormalmapTexture>(scene.textures[*normalmap].model).image->file,
+             "the material's normal map", stream);
   return out;
 }
 
@@ -297,13 +319,16 @@ Statement light_statement(const Light& light, const Stream& stream) {
   const LightUnit unit = std::visit([](const auto& m) { return m.unit; }, model);
   if ((power && (unit != LightUnit::power || !(*power > 0))) ||
       (illuminance && (unit != LightUnit::illuminance || !(*illuminance > 0))))
-    refuse(where, "the light has a power or an illuminance that its kind has not, or that is not positive");
+    refuse(
+        where,
+        "the light has a power or an illuminance that its kind has not, or that is not positive");
   if (power) out.number("power", *power);
   if (illuminance) out.number("illuminance", *illuminance);
   return out;
 }
 
-Statement area_statement(const AreaEmission& emission, const SourceLocation& where, const Stream& stream) {
+Statement area_statement(const AreaEmission& emission, const SourceLocation& where,
+                         const Stream& stream) {
   const auto& [radiance, image, scale, power, two_sided, surfaces] = emission;
   Statement out("AreaLightSource \"diffuse\"", "light", where);
   if (image)
@@ -315,7 +340,9 @@ Statement area_statement(const AreaEmission& emission, const SourceLocation& whe
   if (power) out.number("power", *power);
   if (two_sided) out.boolean("twosided", true);
   out.list("integer", "surfaces", surfaces.size(),
-           [&numbers = emission.surfaces](Text& text, std::size_t i) { text << std::int64_t{numbers[i]}; });
+           [&numbers = emission.surfaces](Text& text, std::size_t i) {
+             text << std::int64_t{numbers[i]};
+           });
   return out;
 }
 

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Orders the statements. Importers number some things by their own rules (media by use, parts of mixes first, interfaces last);
-// they are written in that order, so that a file that is read and written again is the same text.
+// Orders the statements. Importers number some things by their own rules (media by use, parts of
+// mixes first, interfaces last); they are written in that order, so that a file that is read and
+// written again is the same text.
 #include <algorithm>
 #include <cstdio>
 #include <map>
@@ -30,10 +31,12 @@ class SceneWriter {
   SceneWriter(const Scene& scene, Stream& stream) : scene_(scene), stream_(stream) {}
 
   void write() {
-    // This lists every field of the scene, so that a new one does not compile without its statement. Some only describe pictures
-    // and have no statement: the file's axes and the legend of its colours.
-    const auto& [textures, materials, media, shapes, objects, instances, lights, camera, filter, film, sampler, integrator,
-                 source, automatic_camera, has_no_up, framing, world_from_file, unit, legend] = scene_;
+    // This lists every field of the scene, so that a new one does not compile without its
+    // statement. Some only describe pictures and have no statement: the file's axes and the legend
+    // of its colours.
+    const auto& [textures, materials, media, shapes, objects, instances, lights, camera, filter,
+                 film, sampler, integrator, source, automatic_camera, has_no_up, framing,
+                 world_from_file, unit, legend] = scene_;
     order_materials();
     order_media();
     name_all();
@@ -45,10 +48,12 @@ class SceneWriter {
     write_sampler(sampler, integrator);
     stream_.text << "WorldBegin\n";
     if (camera.medium) stream_.text << "MediumInterface \"\" \"\"\n";
-    for (const std::uint32_t medium : media_) medium_statement(media[medium], names_.media[medium], stream_).write(stream_);
+    for (const std::uint32_t medium : media_)
+      medium_statement(media[medium], names_.media[medium], stream_).write(stream_);
     for (std::uint32_t i = 0; i < textures.size(); ++i)
       if (auto statement = texture_statement(scene_, i, names_, stream_)) statement->write(stream_);
-    for (const std::uint32_t i : materials_) material_statement(scene_, i, names_, stream_).write(stream_);
+    for (const std::uint32_t i : materials_)
+      material_statement(scene_, i, names_, stream_).write(stream_);
     for (const Light& light : lights) light_statement(light, stream_).write(stream_);
     for (std::uint32_t i = 0; i < objects.size(); ++i) write_object(i);
     for (const Shape& shape : shapes) ensure_operands(shape);
@@ -56,7 +61,8 @@ class SceneWriter {
     for (const auto& [object, world_from_object, where] : instances) {
       stream_.go_on();
       stream_.text << "AttributeBegin\n" << transform_of(world_from_object, where);
-      stream_.text << "ObjectInstance " << quoted(names_.objects[object], where) << "\nAttributeEnd\n";
+      stream_.text << "ObjectInstance " << quoted(names_.objects[object], where)
+                   << "\nAttributeEnd\n";
     }
   }
 
@@ -111,21 +117,26 @@ class SceneWriter {
     for (const Object& object : scene_.objects) std::ranges::for_each(object.shapes, visit);
   }
 
-  bool is_written(std::uint32_t object) const { return !scene_.objects[object].shapes.empty() || is_instanced_[object]; }
+  bool is_written(std::uint32_t object) const {
+    return !scene_.objects[object].shapes.empty() || is_instanced_[object];
+  }
 
   void name_all() {
     names_.textures.resize(scene_.textures.size());
     NameList of_textures[2], of_materials, of_media;
     for (std::size_t i = 0; i < scene_.textures.size(); ++i)
-      names_.textures[i] = of_textures[scene_.textures[i].is_float ? 1 : 0].take(scene_.textures[i].name, "texture");
+      names_.textures[i] =
+          of_textures[scene_.textures[i].is_float ? 1 : 0].take(scene_.textures[i].name, "texture");
     names_.materials.resize(scene_.materials.size());
     const std::string interface = of_materials.take("interface", "");
     for (const std::uint32_t i : materials_)
-      if (!is_interface(i)) names_.materials[i] = of_materials.take(scene_.materials[i].name, "material");
+      if (!is_interface(i))
+        names_.materials[i] = of_materials.take(scene_.materials[i].name, "material");
     for (std::uint32_t i = 0; i < scene_.materials.size(); ++i)
       if (is_interface(i)) names_.materials[i] = interface;
     names_.media.resize(scene_.media.size());
-    for (const std::uint32_t i : media_) names_.media[i] = of_media.take(scene_.media[i].name, "medium");
+    for (const std::uint32_t i : media_)
+      names_.media[i] = of_media.take(scene_.media[i].name, "medium");
     is_instanced_.resize(scene_.objects.size(), false);
     for (const Instance& instance : scene_.instances) is_instanced_[instance.object] = true;
     names_.objects.resize(scene_.objects.size());
@@ -138,13 +149,16 @@ class SceneWriter {
   std::string here() const { return scene_.source; }
 
   void write_camera(const Camera& camera) {
-    const auto& [world_from_camera, projection, frame_aspect_ratio, screen_window, lens_radius, focal_distance, medium] = camera;
+    const auto& [world_from_camera, projection, frame_aspect_ratio, screen_window, lens_radius,
+                 focal_distance, medium] = camera;
     const SourceLocation where{here()};
     stream_.text << inverse_text(world_from_camera);
-    if (medium) stream_.text << "MediumInterface \"\" " << quoted(names_.media[*medium], where) << "\n";
+    if (medium)
+      stream_.text << "MediumInterface \"\" " << quoted(names_.media[*medium], where) << "\n";
     const auto* perspective = std::get_if<PerspectiveProjection>(&projection);
     const auto* spherical = std::get_if<SphericalProjection>(&projection);
-    Statement out(std::string("Camera \"") + projection_names.at(projection.index()) + "\"", nullptr, where);
+    Statement out(std::string("Camera \"") + projection_names.at(projection.index()) + "\"",
+                  nullptr, where);
     if (perspective) out.number(fov_field.name, degrees_of(perspective->fov));
     if (spherical)
       out.text(SphericalProjection::mapping_field.name,
@@ -155,7 +169,8 @@ class SceneWriter {
       out.numbers("float", "screenwindow", {w[0], w[1], w[2], w[3]});
     }
     Camera::fields(camera, OptionWriter{out});
-    if (lens_radius != 0 && is_orthographic(camera)) out.boolean(Camera::parallel_lens_field.name, true);
+    if (lens_radius != 0 && is_orthographic(camera))
+      out.boolean(Camera::parallel_lens_field.name, true);
     if (scene_.film.exposure_time != 1) out.number("shutterclose", scene_.film.exposure_time);
     if (scene_.automatic_camera) out.boolean("automatic", true);
     if (scene_.has_no_up) out.boolean("noup", true);
@@ -166,22 +181,25 @@ class SceneWriter {
   }
 
   void write_film(const FilmSettings& film) {
-    const auto& [width, height, crop, filename, iso, exposure_time, max_component_value, white_balance, space, backdrop,
-                 least_width] = film;
+    const auto& [width, height, crop, filename, iso, exposure_time, max_component_value,
+                 white_balance, space, backdrop, least_width] = film;
     const SourceLocation where{here()};
     Statement out("Film \"rgb\"", nullptr, where);
     FilmSettings::fields(film, OptionWriter{out});
     if (crop) {
       const auto& c = *crop;
-      out.list("integer", "pixelbounds", c.size(), [&c](Text& text, std::size_t i) { text << std::int64_t{c[i]}; });
+      out.list("integer", "pixelbounds", c.size(),
+               [&c](Text& text, std::size_t i) { text << std::int64_t{c[i]}; });
     }
     out.text("filename", filename);
     if (backdrop) {
       static constexpr const char* kinds[] = {"transparent", "color", "image"};
       out.text("background", kinds[static_cast<std::size_t>(backdrop->kind)]);
       const glm::dvec3& c = backdrop->color;
-      if (backdrop->kind == Backdrop::Kind::color) out.numbers("float", "backgroundcolor", {c.x, c.y, c.z});
-      if (backdrop->kind == Backdrop::Kind::image) out.file("backgroundfile", backdrop->image->file, "the backdrop", stream_);
+      if (backdrop->kind == Backdrop::Kind::color)
+        out.numbers("float", "backgroundcolor", {c.x, c.y, c.z});
+      if (backdrop->kind == Backdrop::Kind::image)
+        out.file("backgroundfile", backdrop->image->file, "the backdrop", stream_);
     }
     out.write(stream_);
   }
@@ -215,21 +233,25 @@ class SceneWriter {
     sampler.x_strata = strata[0];
     sampler.y_strata = strata[1];
     write_option("Sampler", sampler_names[static_cast<std::size_t>(sampler.kind)], sampler);
-    write_option("Integrator", integrator_names[static_cast<std::size_t>(integrator.kind)], integrator);
+    write_option("Integrator", integrator_names[static_cast<std::size_t>(integrator.kind)],
+                 integrator);
   }
 
   // --- Shapes ---
 
   static std::string transform_of(const glm::dmat4& matrix, const SourceLocation& where) {
-    if (!has_inverse(matrix) || !is_affine(matrix)) refuse(where, "the transform has no inverse as importers see it");
+    if (!has_inverse(matrix) || !is_affine(matrix))
+      refuse(where, "the transform has no inverse as importers see it");
     return matrix == glm::dmat4(1) ? std::string() : "Transform " + matrix_text(matrix) + "\n";
   }
 
   /// Returns the material of the graphics state; none where no surface has it.
   std::optional<std::uint32_t> stated_material(const Shape& shape) const {
-    if (!shape.materials.empty() || std::holds_alternative<CsgShape>(shape.geometry)) return std::nullopt;
+    if (!shape.materials.empty() || std::holds_alternative<CsgShape>(shape.geometry))
+      return std::nullopt;
     const auto* capsules = std::get_if<CapsulesShape>(&shape.geometry);
-    if (capsules && capsules->p0.size() == 1 && !capsules->materials.empty()) return capsules->materials[0];
+    if (capsules && capsules->p0.size() == 1 && !capsules->materials.empty())
+      return capsules->materials[0];
     return shape.material;
   }
 
@@ -237,14 +259,17 @@ class SceneWriter {
     const auto interface = [&](std::uint32_t material) { return is_interface(material); };
     if (!shape.materials.empty()) return std::ranges::all_of(shape.materials, interface);
     if (const auto* csg = std::get_if<CsgShape>(&shape.geometry))
-      return std::ranges::all_of(csg->operands, [&](const auto& operand) { return is_all_interface(*operand); });
-    if (const auto* capsules = std::get_if<CapsulesShape>(&shape.geometry); capsules && !capsules->materials.empty())
+      return std::ranges::all_of(csg->operands,
+                                 [&](const auto& operand) { return is_all_interface(*operand); });
+    if (const auto* capsules = std::get_if<CapsulesShape>(&shape.geometry);
+        capsules && !capsules->materials.empty())
       return std::ranges::all_of(capsules->materials, interface);
     return is_interface(shape.material);
   }
 
   ShapeReferences references() {
-    return {scene_, names_, [this](const Shape& operand) { return operands_.at(operand_text(operand)); }};
+    return {scene_, names_,
+            [this](const Shape& operand) { return operands_.at(operand_text(operand)); }};
   }
 
   void use_material(const Shape& shape, std::string& current) {
@@ -259,14 +284,16 @@ class SceneWriter {
       refuse(shape.where, "a shape that is seen by nothing and parts no media, or emits");
     use_material(shape, material_);
     const std::string transform = transform_of(shape.world_from_object, shape.where);
-    const bool is_block = !transform.empty() || shape.emission || shape.reverse_orientation || shape.media != MediumSides{};
+    const bool is_block = !transform.empty() || shape.emission || shape.reverse_orientation ||
+                          shape.media != MediumSides{};
     const ColorSpace space = stream_.space;
     if (is_block) stream_.text << "AttributeBegin\n" << transform;
     if (shape.media != MediumSides{}) {
       const auto name = [&](const std::optional<std::uint32_t>& medium) {
         return quoted(medium ? names_.media[*medium] : std::string(), shape.where);
       };
-      stream_.text << "MediumInterface " << name(shape.media.inside) << " " << name(shape.media.outside) << "\n";
+      stream_.text << "MediumInterface " << name(shape.media.inside) << " "
+                   << name(shape.media.outside) << "\n";
     }
     if (shape.reverse_orientation) stream_.text << "ReverseOrientation\n";
     if (shape.emission) area_statement(*shape.emission, shape.where, stream_).write(stream_);
@@ -314,8 +341,9 @@ class SceneWriter {
     if (object.shapes.size() != 1) return false;
     const Shape& shape = object.shapes[0];
     const auto* capsules = std::get_if<CapsulesShape>(&shape.geometry);
-    return is_closed(shape) && !(capsules && capsules->p0.size() != 1) && !shape.emission && !shape.reverse_orientation &&
-           !shape.alpha && (!shape.one_sided || is_hair(scene_, shape));
+    return is_closed(shape) && !(capsules && capsules->p0.size() != 1) && !shape.emission &&
+           !shape.reverse_orientation && !shape.alpha &&
+           (!shape.one_sided || is_hair(scene_, shape));
   }
 
   void write_object(std::uint32_t index) {
@@ -327,7 +355,8 @@ class SceneWriter {
     for (const Shape& shape : shapes) write_shape(shape);
     material_ = outer;
     stream_.text << "ObjectEnd\n";
-    if (may_be_operand(scene_.objects[index])) operands_.try_emplace(operand_text(shapes[0]), names_.objects[index]);
+    if (may_be_operand(scene_.objects[index]))
+      operands_.try_emplace(operand_text(shapes[0]), names_.objects[index]);
   }
 
   const Scene& scene_;
@@ -345,7 +374,8 @@ class SceneWriter {
 
 }  // namespace pbrt_text
 
-void write_pbrt(const Scene& scene, const fs::path& folder, const std::function<void(std::string_view)>& sink,
+void write_pbrt(const Scene& scene, const fs::path& folder,
+                const std::function<void(std::string_view)>& sink,
                 const std::function<bool()>& cancelled) {
   Diagnostics diagnostics;
   validate(scene, diagnostics);
@@ -358,7 +388,8 @@ void write_pbrt(const Scene& scene, const fs::path& folder, const std::function<
 
 void write_scene(const Scene& scene, const fs::path& file, const std::function<bool()>& cancelled) {
   if (file.extension() != ".pbrt" && !is_stream(file))
-    throw InputError(SourceLocation{file.string()}, "scenes are written as pbrt text, to a file .pbrt");
+    throw InputError(SourceLocation{file.string()},
+                     "scenes are written as pbrt text, to a file .pbrt");
   const fs::path folder = is_stream(file) ? fs::path(".") : fs::absolute(file).parent_path();
   write_atomically(file, [&](const fs::path& path) {
     struct Close {
@@ -366,7 +397,8 @@ void write_scene(const Scene& scene, const fs::path& file, const std::function<b
     };
     std::unique_ptr<std::FILE, Close> out(std::fopen(path.c_str(), "wb"));
     const auto failed = [&] {
-      throw RunError(file.string() + ": cannot be written (" + std::generic_category().message(errno) + ")");
+      throw RunError(file.string() + ": cannot be written (" +
+                     std::generic_category().message(errno) + ")");
     };
     if (!out) failed();
     write_pbrt(

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Shape statements with the full geometry. A new geometry does not compile without its own function.
+// Shape statements with the full geometry. A new geometry does not compile without its own
+// function.
 #include <algorithm>
 #include <numbers>
 
@@ -28,7 +29,9 @@ struct GeometryWriter {
   const Shape& shape;
   const ShapeReferences& references;
 
-  Statement begin(const char* type) const { return {std::string("Shape \"") + type + "\"", "shape", shape.where}; }
+  Statement begin(const char* type) const {
+    return {std::string("Shape \"") + type + "\"", "shape", shape.where};
+  }
 
   template <FieldedShape Type>
   Statement write(const Type& of, const char* name) const {
@@ -122,7 +125,9 @@ struct GeometryWriter {
       }
     out.texts("capsulematerials", used);
     out.list("integer", "materialindices", of.materials.size(),
-             [&of, place = std::move(place)](Text& text, std::size_t i) { text << std::int64_t{place[of.materials[i]]}; });
+             [&of, place = std::move(place)](Text& text, std::size_t i) {
+               text << std::int64_t{place[of.materials[i]]};
+             });
     return out;
   }
 
@@ -132,14 +137,16 @@ struct GeometryWriter {
     points(out, "point3", "p0", of.p0);
     points(out, "point3", "p1", of.p1);
     const bool is_tapered = !of.radius1.empty() && of.radius1[0] != of.radius0[0];
-    out.list("float", "radius", is_tapered ? 2 : 1,
-             [&of](Text& text, std::size_t i) { text << (i == 0 ? of.radius0[0] : of.radius1[0]); });
+    out.list("float", "radius", is_tapered ? 2 : 1, [&of](Text& text, std::size_t i) {
+      text << (i == 0 ? of.radius0[0] : of.radius1[0]);
+    });
     chain(out, of);
     return out;
   }
   static void chain(Statement& to, const CapsulesShape& of) {
-    to.list("float", "u", 2 * of.u.size(),
-            [&of](Text& text, std::size_t i) { text << (i % 2 == 0 ? of.u[i / 2].x : of.u[i / 2].y); });
+    to.list("float", "u", 2 * of.u.size(), [&of](Text& text, std::size_t i) {
+      text << (i % 2 == 0 ? of.u[i / 2].x : of.u[i / 2].y);
+    });
   }
   template <class Part>
   static void part(Statement& to, const Part& of) {
@@ -156,11 +163,14 @@ struct GeometryWriter {
     to.point("p0", of.p0);
     to.point("p1", of.p1);
     if (of.caps[0] == Cap::flat && of.caps[1] == Cap::flat) return;
-    to.texts("caps", {cap_names[static_cast<std::size_t>(of.caps[0])], cap_names[static_cast<std::size_t>(of.caps[1])]});
+    to.texts("caps", {cap_names[static_cast<std::size_t>(of.caps[0])],
+                      cap_names[static_cast<std::size_t>(of.caps[1])]});
   }
   template <class Points>
   static void points(Statement& to, const char* type, const char* name, const Points& of) {
-    to.list(type, name, of.size(), [&of](Text& text, std::size_t i) { text << of[i].x << " " << of[i].y << " " << of[i].z; });
+    to.list(type, name, of.size(), [&of](Text& text, std::size_t i) {
+      text << of[i].x << " " << of[i].y << " " << of[i].z;
+    });
   }
   static void floats(Statement& to, const char* name, const std::vector<float>& of) {
     to.list("float", name, of.size(), [&of](Text& text, std::size_t i) { text << of[i]; });
@@ -175,31 +185,39 @@ struct GeometryWriter {
       }
     });
     points(to, "normal", "N", of.normals);
-    to.list("point2", "uv", of.uvs.size(), [&of](Text& text, std::size_t i) { text << of.uvs[i].x << " " << of.uvs[i].y; });
+    to.list("point2", "uv", of.uvs.size(),
+            [&of](Text& text, std::size_t i) { text << of.uvs[i].x << " " << of.uvs[i].y; });
   }
 };
 
 bool any_hair(const Scene& scene, const Shape& shape) {
-  const auto hair = [&](std::uint32_t material) { return std::holds_alternative<HairMaterial>(scene.materials[material].model); };
+  const auto hair = [&](std::uint32_t material) {
+    return std::holds_alternative<HairMaterial>(scene.materials[material].model);
+  };
   if (hair(shape.material) || std::ranges::any_of(shape.materials, hair)) return true;
-  if (const auto* capsules = std::get_if<CapsulesShape>(&shape.geometry)) return std::ranges::any_of(capsules->materials, hair);
+  if (const auto* capsules = std::get_if<CapsulesShape>(&shape.geometry))
+    return std::ranges::any_of(capsules->materials, hair);
   const auto* csg = std::get_if<CsgShape>(&shape.geometry);
-  return csg && std::ranges::any_of(csg->operands, [&](const auto& operand) { return any_hair(scene, *operand); });
+  return csg && std::ranges::any_of(csg->operands,
+                                    [&](const auto& operand) { return any_hair(scene, *operand); });
 }
 
 }  // namespace
 
-bool is_hair(const Scene& scene, const Shape& shape) { return is_closed(shape) && any_hair(scene, shape); }
+bool is_hair(const Scene& scene, const Shape& shape) {
+  return is_closed(shape) && any_hair(scene, shape);
+}
 
 Statement shape_statement(const Shape& shape, const ShapeReferences& references, bool as_operand) {
-  const auto& [geometry, world_from_object, material, materials, alpha, is_backdrop, one_sided, emission, reversed, media, name,
-               where] = shape;
+  const auto& [geometry, world_from_object, material, materials, alpha, is_backdrop, one_sided,
+               emission, reversed, media, name, where] = shape;
   const GeometryWriter writer{shape, references};
   static constexpr const char* types[] = {
 #define GEOMETRY(Type, row) #row,
 #include "scene/geometries.def"
   };
-  const char* const type = types[geometry.index()];  // clang 14 cannot capture a structured binding in a lambda
+  const char* const type =
+      types[geometry.index()];  // clang 14 cannot capture a structured binding in a lambda
   Statement out = std::visit([&](const auto& own) { return writer.write(own, type); }, geometry);
   if (!name.empty()) out.text("name", name);
   if (!materials.empty()) {

@@ -29,7 +29,8 @@ std::string name_of(const SampledSpectrum& spectrum) {
     return by_values;
   }();
   const auto found = named.find(spectrum.values);
-  return found != named.end() && found->second.first == spectrum.wavelengths ? found->second.second : std::string();
+  return found != named.end() && found->second.first == spectrum.wavelengths ? found->second.second
+                                                                             : std::string();
 }
 
 /// Returns the path relative to `folder` if both share a folder other than the root, else as it is.
@@ -53,10 +54,12 @@ void set_space(Stream& stream, ColorSpace space) {
 }
 
 void Statement::finite(double value, const std::string& name) const {
-  if (!std::isfinite(value)) throw InputError(where_, "\"" + name + "\" is not finite: it cannot be written");
+  if (!std::isfinite(value))
+    throw InputError(where_, "\"" + name + "\" is not finite: it cannot be written");
 }
 
-void Statement::add(const char* type, const std::string& name, std::string value, std::optional<ColorSpace> space) {
+void Statement::add(const char* type, const std::string& name, std::string value,
+                    std::optional<ColorSpace> space) {
   parameters_.push_back({"\"" + std::string(type) + " " + name + "\" ", std::move(value), space});
 }
 
@@ -67,11 +70,13 @@ void Statement::number(const std::string& name, double value) {
 
 void Statement::texts(const std::string& name, const std::vector<std::string>& values) {
   std::string all = "[";
-  for (const std::string& value : values) all += (all.size() > 1 ? " " : "") + quoted(value, where_);
+  for (const std::string& value : values)
+    all += (all.size() > 1 ? " " : "") + quoted(value, where_);
   add("string", name, all + "]");
 }
 
-void Statement::numbers(const char* type, const std::string& name, std::initializer_list<double> values) {
+void Statement::numbers(const char* type, const std::string& name,
+                        std::initializer_list<double> values) {
   std::string all = "[";
   for (const double value : values) {
     finite(value, name);
@@ -81,29 +86,36 @@ void Statement::numbers(const char* type, const std::string& name, std::initiali
 }
 
 void Statement::spectrum(const std::string& name, const Spectrum& value) {
-  if (const auto* constant = std::get_if<ConstantSpectrum>(&value)) return number(name, constant->value);
+  if (const auto* constant = std::get_if<ConstantSpectrum>(&value))
+    return number(name, constant->value);
   if (const auto* rgb = std::get_if<RgbSpectrum>(&value)) {
     numbers("rgb", name, {rgb->rgb.x, rgb->rgb.y, rgb->rgb.z});
     parameters_.back().space = rgb->space;
     return;
   }
-  if (const auto* black = std::get_if<BlackbodySpectrum>(&value)) return numbers("blackbody", name, {black->kelvin});
+  if (const auto* black = std::get_if<BlackbodySpectrum>(&value))
+    return numbers("blackbody", name, {black->kelvin});
   const auto& sampled = std::get<SampledSpectrum>(value);
-  if (const std::string known = name_of(sampled); !known.empty()) return add("spectrum", name, quoted(known, where_));
+  if (const std::string known = name_of(sampled); !known.empty())
+    return add("spectrum", name, quoted(known, where_));
   std::string all = "[";
   for (std::size_t i = 0; i < sampled.values.size(); ++i) {
     finite(sampled.values[i], name);
-    all += (i > 0 ? " " : "") + number_text(sampled.wavelengths[i]) + " " + number_text(sampled.values[i]);
+    all += (i > 0 ? " " : "") + number_text(sampled.wavelengths[i]) + " " +
+           number_text(sampled.values[i]);
   }
   add("spectrum", name, all + "]");
 }
 
-void Statement::file(const std::string& name, const std::string& path, const char* what, const Stream& stream) {
-  if (path.empty()) throw InputError(where_, std::string(what) + " was read from no file: it cannot be written");
+void Statement::file(const std::string& name, const std::string& path, const char* what,
+                     const Stream& stream) {
+  if (path.empty())
+    throw InputError(where_, std::string(what) + " was read from no file: it cannot be written");
   text(name, name_from(stream.folder, path));
 }
 
-void Statement::list(const char* type, const std::string& name, std::size_t count, std::function<void(Text&, std::size_t)> write,
+void Statement::list(const char* type, const std::string& name, std::size_t count,
+                     std::function<void(Text&, std::size_t)> write,
                      std::optional<ColorSpace> space) {
   if (count == 0) return;
   if (count <= few_values) {

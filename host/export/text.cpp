@@ -28,8 +28,8 @@ std::string_view shortest(Number value, std::array<char, longest_number>& digits
 
 double rounded_to(double value, int digits) {
   std::array<char, longest_number> text{};
-  const auto [end, error] =
-      std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::scientific, digits - 1);
+  const auto [end, error] = std::to_chars(text.data(), text.data() + text.size(), value,
+                                          std::chars_format::scientific, digits - 1);
   double out = 0;
   std::from_chars(text.data(), end, out);
   return out;
@@ -67,8 +67,8 @@ Text& Text::operator<<(double value) {
 }
 
 Text& Text::operator<<(float value) {
-  // Readers convert to a 64-bit number and round that. Where the digits lie so close to the middle between two floats that this
-  // gives the wrong one, more digits are needed.
+  // Readers convert to a 64-bit number and round that. Where the digits lie so close to the middle
+  // between two floats that this gives the wrong one, more digits are needed.
   std::array<char, longest_number> digits;
   const std::string_view text = shortest(value, digits);
   double read = 0;
@@ -105,7 +105,8 @@ std::string quoted(std::string_view text, const SourceLocation& where) {
 std::string matrix_text(const glm::dmat4& matrix) {
   return text_of([&](Text& text) {
     for (int column = 0; column < 4; ++column)
-      for (int row = 0; row < 4; ++row) text << (column + row == 0 ? "[" : " ") << matrix[column][row];
+      for (int row = 0; row < 4; ++row)
+        text << (column + row == 0 ? "[" : " ") << matrix[column][row];
     text << "]";
   });
 }
@@ -114,13 +115,16 @@ double degrees_of(double radians) {
   const double near = radians * 180 / std::numbers::pi;
   const auto read = [](double degrees) { return radians_of(degrees); };
   const double degrees = about(near, radians, read);
-  // The second pass starts from the value that will be read, so that writing it again gives the same text.
+  // The second pass starts from the value that will be read, so that writing it again gives the
+  // same text.
   return about(read(degrees) * 180 / std::numbers::pi, read(degrees), read);
 }
 
 double degrees_below(double degrees, double radians) {
   const auto read = [degrees](double less) { return radians_of(degrees - less); };
-  const auto near = [degrees](double of) { return std::max(0.0, degrees - of * 180 / std::numbers::pi); };
+  const auto near = [degrees](double of) {
+    return std::max(0.0, degrees - of * 180 / std::numbers::pi);
+  };
   const double less = about(near(radians), radians, read);
   return about(near(read(less)), read(less), read);
 }
@@ -129,7 +133,9 @@ double degrees_below(double degrees, double radians) {
 bool is_same(const glm::dmat4& a, const glm::dmat4& b) {
   for (int column = 0; column < 4; ++column)
     for (int row = 0; row < 4; ++row)
-      if (std::bit_cast<std::uint64_t>(a[column][row]) != std::bit_cast<std::uint64_t>(b[column][row])) return false;
+      if (std::bit_cast<std::uint64_t>(a[column][row]) !=
+          std::bit_cast<std::uint64_t>(b[column][row]))
+        return false;
   return true;
 }
 

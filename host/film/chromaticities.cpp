@@ -18,7 +18,8 @@ bool near(const std::array<double, 2>& a, const std::array<double, 2>& b) {
 
 std::array<double, 3> apply(const std::array<double, 9>& m, const std::array<double, 3>& v) {
   std::array<double, 3> out{};
-  for (std::size_t i = 0; i < 3; ++i) out[i] = m[3 * i] * v[0] + m[3 * i + 1] * v[1] + m[3 * i + 2] * v[2];
+  for (std::size_t i = 0; i < 3; ++i)
+    out[i] = m[3 * i] * v[0] + m[3 * i + 1] * v[1] + m[3 * i + 2] * v[2];
   return out;
 }
 
@@ -39,9 +40,11 @@ Chromaticities chromaticities_of(ColorSpace space) {
 }
 
 std::optional<ColorSpace> color_space_of(const Chromaticities& c) {
-  for (const ColorSpace space : {ColorSpace::srgb, ColorSpace::dci_p3, ColorSpace::rec2020, ColorSpace::aces2065_1}) {
+  for (const ColorSpace space :
+       {ColorSpace::srgb, ColorSpace::dci_p3, ColorSpace::rec2020, ColorSpace::aces2065_1}) {
     const Chromaticities known = chromaticities_of(space);
-    if (near(c.red, known.red) && near(c.green, known.green) && near(c.blue, known.blue) && near(c.white, known.white))
+    if (near(c.red, known.red) && near(c.green, known.green) && near(c.blue, known.blue) &&
+        near(c.white, known.white))
       return space;
   }
   return std::nullopt;
@@ -53,7 +56,8 @@ std::array<double, 9> inverse(const std::array<double, 9>& m) {
     return m[3 * r1 + c1] * m[3 * r2 + c2] - m[3 * r1 + c2] * m[3 * r2 + c1];
   };
   const double determinant = m[0] * minor(0, 0) + m[1] * minor(0, 1) + m[2] * minor(0, 2);
-  if (!(std::abs(determinant) > 1e-12)) throw InputError("chromaticities that span no colour space");
+  if (!(std::abs(determinant) > 1e-12))
+    throw InputError("chromaticities that span no colour space");
   std::array<double, 9> out{};
   for (std::size_t r = 0; r < 3; ++r)
     for (std::size_t c = 0; c < 3; ++c) out[3 * r + c] = minor(c, r) / determinant;
@@ -79,7 +83,8 @@ std::array<double, 9> xyz_from_rgb(const Chromaticities& c) {
                                         1 - c.green[0] - c.green[1],
                                         1 - c.blue[0] - c.blue[1]};
   if (!(c.white[1] > 0)) throw InputError("chromaticities with a white point of no luminance");
-  const std::array<double, 3> white{c.white[0] / c.white[1], 1, (1 - c.white[0] - c.white[1]) / c.white[1]};
+  const std::array<double, 3> white{c.white[0] / c.white[1], 1,
+                                    (1 - c.white[0] - c.white[1]) / c.white[1]};
   const std::array<double, 3> scale = caplet::apply(inverse(primaries), white);
   std::array<double, 9> out = primaries;
   for (std::size_t r = 0; r < 3; ++r)

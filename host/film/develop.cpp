@@ -20,7 +20,9 @@ namespace {
 
 using Vector = std::array<double, 3>;
 
-Vector operator*(double factor, const Vector& v) { return {factor * v[0], factor * v[1], factor * v[2]}; }
+Vector operator*(double factor, const Vector& v) {
+  return {factor * v[0], factor * v[1], factor * v[2]};
+}
 Vector operator*(const std::array<double, 9>& m, const Vector& v) {
   return {m[0] * v[0] + m[1] * v[1] + m[2] * v[2], m[3] * v[0] + m[4] * v[1] + m[5] * v[2],
           m[6] * v[0] + m[7] * v[1] + m[8] * v[2]};
@@ -34,7 +36,8 @@ float towards_zero(double value) {
 
 /// Returns infinity beyond the range of a float.
 float to_float(double value) {
-  if (std::abs(value) > double{std::numeric_limits<float>::max()}) return std::numeric_limits<float>::infinity();
+  if (std::abs(value) > double{std::numeric_limits<float>::max()})
+    return std::numeric_limits<float>::infinity();
   return static_cast<float>(value);
 }
 
@@ -92,7 +95,9 @@ class Developer {
         // Unit vectors as floats are up to 1e-7 too long, and so is their mean.
         const Vector n = per_hit_ * sums(layer);
         const double length = std::hypot(n[0], n[1], n[2]);
-        return length > 1 ? Vector{towards_zero(n[0] / length), towards_zero(n[1] / length), towards_zero(n[2] / length)} : n;
+        return length > 1 ? Vector{towards_zero(n[0] / length), towards_zero(n[1] / length),
+                                   towards_zero(n[2] / length)}
+                          : n;
       }
       case LayerHow::mean:
         return per_hit_ * sums(layer);
@@ -105,8 +110,9 @@ class Developer {
           // large for their sum.
           const double least = rgb_[c] * rgb_[c];
           const bool unknown = least > brightest_ * brightest_ && square[c] < 0.5 * least;
-          of_mean[c] = unknown ? std::numeric_limits<double>::infinity()
-                               : exposure_ * exposure_ * std::max(0.0, square[c] - least) / (samples_ - 1);
+          of_mean[c] =
+              unknown ? std::numeric_limits<double>::infinity()
+                      : exposure_ * exposure_ * std::max(0.0, square[c] - least) / (samples_ - 1);
         }
         return of_mean;
       }
@@ -146,13 +152,17 @@ void put_under(LayeredImage& image, const std::optional<Backdrop>& backdrop) {
   for (int y = 0; y < image.data_height; ++y)
     for (int x = 0; x < image.data_width; ++x, ++pixel) {
       if (coverage[pixel] == 1) continue;
-      const std::array<float, 3> color = under(*backdrop, image.width, image.height, image.x + x, image.y + y, image.space);
-      for (std::size_t c = 0; c < 3; ++c) rgb.at(c)->at(pixel) += (1 - coverage[pixel]) * color.at(c);
+      const std::array<float, 3> color =
+          under(*backdrop, image.width, image.height, image.x + x, image.y + y, image.space);
+      for (std::size_t c = 0; c < 3; ++c)
+        rgb.at(c)->at(pixel) += (1 - coverage[pixel]) * color.at(c);
     }
 }
 
 /// Returns what is written where a value is infinite or not a number.
-float instead_of(LayerHow how) { return how == LayerHow::variance ? std::numeric_limits<float>::max() : 0.0f; }
+float instead_of(LayerHow how) {
+  return how == LayerHow::variance ? std::numeric_limits<float>::max() : 0.0f;
+}
 
 }  // namespace
 
@@ -200,7 +210,9 @@ LayeredImage develop(const Film& film, const Scene& scene, Layers layers) {
 
 void NotFinite::warn() const {
   if (count > 0)
-    log::warn("{} of {} pixels are beyond the range of a float and written black (the first: {},{})", count, of, x, y);
+    log::warn(
+        "{} of {} pixels are beyond the range of a float and written black (the first: {},{})",
+        count, of, x, y);
 }
 
 }  // namespace caplet

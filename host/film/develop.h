@@ -28,18 +28,22 @@ struct NotFinite {
 
 /// Returns R G B A and the requested layers (docs/output.md) that the film has, for all its pixels,
 /// times the exposure of `scene`:
-/// R G B     mean of the samples, linear in the film's colour space, with its white balance; over the
+/// R G B     mean of the samples, linear in the film's colour space, with its white balance; over
+/// the
 ///           film's backdrop, by A
 /// A         coverage: share of the camera rays that hit something
-/// albedo    mean over all samples (0 where nothing is hit), linear in the film's colour space: 1 1 1
+/// albedo    mean over all samples (0 where nothing is hit), linear in the film's colour space: 1 1
+/// 1
 ///           is white in any light
-/// N, P, Z   mean over the samples that hit: shading normal (a mean of unit vectors, at most 1 long),
+/// N, P, Z   mean over the samples that hit: shading normal (a mean of unit vectors, at most 1
+/// long),
 ///           world position, distance; 0, 0 and depth_of_nothing without hits
 /// object.id, primitive.id   of the first sample; 2^32 - 1: nothing hit
-/// variance  variance of R G B's mean, (E[x^2] - E[x]^2) / (n - 1), at least 0; 0 for fewer than two
+/// variance  variance of R G B's mean, (E[x^2] - E[x]^2) / (n - 1), at least 0; 0 for fewer than
+/// two
 ///           samples
-/// All values are finite: where the exposure goes beyond a float, R G B are black and the variance is
-/// the greatest float (other layers: 0), and `not_finite` counts those pixels.
+/// All values are finite: where the exposure goes beyond a float, R G B are black and the variance
+/// is the greatest float (other layers: 0), and `not_finite` counts those pixels.
 LayeredImage develop(const Film& film, const Scene& scene, Layers layers, NotFinite& not_finite);
 
 /// Does the same and warns.

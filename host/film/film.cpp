@@ -21,7 +21,8 @@ constexpr const char* format_name = "caplet.film";
 constexpr const char* format_version = "1";
 
 std::size_t words_of(std::size_t layer) {
-  return static_cast<std::size_t>(layer_rows[layer].count) * static_cast<std::size_t>(layer_rows[layer].words);
+  return static_cast<std::size_t>(layer_rows[layer].count) *
+         static_cast<std::size_t>(layer_rows[layer].words);
 }
 
 bool in_common(const Window& a, const Window& b) {
@@ -29,7 +30,8 @@ bool in_common(const Window& a, const Window& b) {
 }
 
 bool in_common(const FilmPart& a, const FilmPart& b) {
-  return in_common(a.window, b.window) && a.sample_begin < std::uint64_t{b.sample_begin} + b.sample_count &&
+  return in_common(a.window, b.window) &&
+         a.sample_begin < std::uint64_t{b.sample_begin} + b.sample_count &&
          b.sample_begin < std::uint64_t{a.sample_begin} + a.sample_count;
 }
 
@@ -48,13 +50,15 @@ bool join(FilmPart& a, const FilmPart& b) {
   }
   if (a.sample_begin != b.sample_begin || a.sample_count != b.sample_count) return false;
   if (a.window.x == b.window.x && a.window.width == b.window.width) {
-    if (a.window.y + a.window.height != b.window.y && b.window.y + b.window.height != a.window.y) return false;
+    if (a.window.y + a.window.height != b.window.y && b.window.y + b.window.height != a.window.y)
+      return false;
     a.window.y = std::min(a.window.y, b.window.y);
     a.window.height += b.window.height;
     return true;
   }
   if (a.window.y == b.window.y && a.window.height == b.window.height) {
-    if (a.window.x + a.window.width != b.window.x && b.window.x + b.window.width != a.window.x) return false;
+    if (a.window.x + a.window.width != b.window.x && b.window.x + b.window.width != a.window.x)
+      return false;
     a.window.x = std::min(a.window.x, b.window.x);
     a.window.width += b.window.width;
     return true;
@@ -65,8 +69,8 @@ bool join(FilmPart& a, const FilmPart& b) {
 std::string text_of(const std::vector<FilmPart>& parts) {
   std::string out;
   for (const FilmPart& part : parts)
-    out += fmt::format("{}{} {} {} {} {} {}", out.empty() ? "" : ",", part.window.x, part.window.y, part.window.width,
-                       part.window.height, part.sample_begin, part.sample_count);
+    out += fmt::format("{}{} {} {} {} {} {}", out.empty() ? "" : ",", part.window.x, part.window.y,
+                       part.window.width, part.window.height, part.sample_begin, part.sample_count);
   return out;
 }
 
@@ -83,7 +87,8 @@ bool take_number(std::string_view& text, std::int64_t low, std::int64_t high, st
 
 class Metadata {
  public:
-  Metadata(const std::filesystem::path& path, const LayeredImage& image) : path_(path), image_(image) {}
+  Metadata(const std::filesystem::path& path, const LayeredImage& image)
+      : path_(path), image_(image) {}
 
   std::string_view text(const char* name) const {
     const auto found = image_.metadata.find(name);
@@ -109,19 +114,22 @@ class Metadata {
 }  // namespace
 
 bool Window::holds(const Window& other) const {
-  return x <= other.x && y <= other.y && other.x + other.width <= x + width && other.y + other.height <= y + height;
+  return x <= other.x && y <= other.y && other.x + other.width <= x + width &&
+         other.y + other.height <= y + height;
 }
 
 std::size_t FilmLayout::words_per_pixel() const {
   std::size_t words = 1;
-  for (std::size_t i = 0; i < layer_rows.size(); ++i) words += layers.has(static_cast<Layer>(i)) ? words_of(i) : 0;
+  for (std::size_t i = 0; i < layer_rows.size(); ++i)
+    words += layers.has(static_cast<Layer>(i)) ? words_of(i) : 0;
   return words;
 }
 
 std::size_t FilmLayout::first_word(Layer layer) const {
   CHECK_EQ_(layers.has(layer), true);
   std::size_t word = 1;
-  for (std::size_t i = 0; i < static_cast<std::size_t>(layer); ++i) word += layers.has(static_cast<Layer>(i)) ? words_of(i) : 0;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(layer); ++i)
+    word += layers.has(static_cast<Layer>(i)) ? words_of(i) : 0;
   return word;
 }
 
@@ -158,15 +166,21 @@ double value_of_words(const std::uint64_t* sum, int words, double unit) {
 }
 
 Film::Film(const FilmLayout& layout)
-    : Film(layout, std::vector<std::uint64_t>(layout.window.pixels() * layout.words_per_pixel()), {}) {}
+    : Film(layout, std::vector<std::uint64_t>(layout.window.pixels() * layout.words_per_pixel()),
+           {}) {}
 
 Film::Film(const FilmLayout& layout, std::vector<std::uint64_t> words, std::vector<FilmPart> parts)
-    : layout_(layout), words_per_pixel_(layout.words_per_pixel()), words_(std::move(words)), parts_(std::move(parts)) {
+    : layout_(layout),
+      words_per_pixel_(layout.words_per_pixel()),
+      words_(std::move(words)),
+      parts_(std::move(parts)) {
   CHECK_EQ_(words_.size(), layout.window.pixels() * words_per_pixel_);
   for (std::size_t i = 0; i < layer_rows.size(); ++i) {
     if (!layout.layers.has(static_cast<Layer>(i))) continue;
     first_words_[i] = layout.first_word(static_cast<Layer>(i));
-    if (layer_rows[i].unit) units_[i] = std::ldexp(1.0, layer_rows[i].unit(layout.color_exponent, layout.length_exponent));
+    if (layer_rows[i].unit)
+      units_[i] =
+          std::ldexp(1.0, layer_rows[i].unit(layout.color_exponent, layout.length_exponent));
   }
 }
 
@@ -174,8 +188,9 @@ double Film::sum(Layer layer, std::size_t c, std::size_t pixel) const {
   const auto row = static_cast<std::size_t>(layer);
   CHECK_LT_(0u, first_words_[row]);
   const int words = layer_rows[row].words;
-  return value_of_words(&words_[pixel * words_per_pixel_ + first_words_[row] + c * static_cast<std::size_t>(words)], words,
-                        units_[row]);
+  return value_of_words(
+      &words_[pixel * words_per_pixel_ + first_words_[row] + c * static_cast<std::size_t>(words)],
+      words, units_[row]);
 }
 
 std::uint32_t Film::number(Layer layer, std::size_t pixel) const {
@@ -189,13 +204,15 @@ Film Film::rows(int first, int count) const {
   part.window.y += first;
   part.window.height = count;
   const std::size_t row_words = static_cast<std::size_t>(part.window.width) * words_per_pixel_;
-  const auto begin = words_.begin() + static_cast<std::ptrdiff_t>(static_cast<std::size_t>(first) * row_words);
+  const auto begin =
+      words_.begin() + static_cast<std::ptrdiff_t>(static_cast<std::size_t>(first) * row_words);
   const auto end = begin + static_cast<std::ptrdiff_t>(static_cast<std::size_t>(count) * row_words);
   return Film(part, {begin, end}, {});
 }
 
 void Film::add(const Film& other) {
-  if (!(layout_ == other.layout_)) throw InputError("films of different pictures, layers or scenes cannot be added");
+  if (!(layout_ == other.layout_))
+    throw InputError("films of different pictures, layers or scenes cannot be added");
   std::vector<FilmPart> parts = parts_;
   for (const FilmPart& part : other.parts_) add_part(parts, part);
   for (std::size_t pixel = 0; pixel < words_.size(); pixel += words_per_pixel_) {
@@ -219,10 +236,12 @@ void Film::add(const Film& other) {
 void add_part(std::vector<FilmPart>& parts, const FilmPart& part) {
   for (const FilmPart& there : parts)
     if (in_common(there, part))
-      throw InputError(fmt::format(
-          "samples {} to {} of pixel {},{} would be in the film twice", std::max(there.sample_begin, part.sample_begin),
-          std::min(std::uint64_t{there.sample_begin} + there.sample_count, std::uint64_t{part.sample_begin} + part.sample_count),
-          std::max(there.window.x, part.window.x), std::max(there.window.y, part.window.y)));
+      throw InputError(fmt::format("samples {} to {} of pixel {},{} would be in the film twice",
+                                   std::max(there.sample_begin, part.sample_begin),
+                                   std::min(std::uint64_t{there.sample_begin} + there.sample_count,
+                                            std::uint64_t{part.sample_begin} + part.sample_count),
+                                   std::max(there.window.x, part.window.x),
+                                   std::max(there.window.y, part.window.y)));
   FilmPart joined = part;
   for (std::size_t i = 0; i < parts.size();) {
     if (join(joined, parts[i])) {
@@ -256,9 +275,12 @@ void Film::save(const std::filesystem::path& path) const {
   const std::size_t pixels = layout_.window.pixels();
   for (std::size_t w = 0; w < words_per_pixel_; ++w)
     for (const int half : {0, 1}) {
-      Channel channel{fmt::format("word{:02}.{}", w, half == 0 ? "low" : "high"), {}, std::vector<std::uint32_t>(pixels)};
+      Channel channel{fmt::format("word{:02}.{}", w, half == 0 ? "low" : "high"),
+                      {},
+                      std::vector<std::uint32_t>(pixels)};
       for (std::size_t i = 0; i < pixels; ++i)
-        channel.uints[i] = static_cast<std::uint32_t>(words_[i * words_per_pixel_ + w] >> (32 * half));
+        channel.uints[i] =
+            static_cast<std::uint32_t>(words_[i * words_per_pixel_ + w] >> (32 * half));
       image.channels.push_back(std::move(channel));
     }
   write_exr(path, image);
@@ -267,7 +289,8 @@ void Film::save(const std::filesystem::path& path) const {
 Film Film::load(const std::filesystem::path& path) {
   const LayeredImage image = read_exr(path);
   const Metadata of(path, image);
-  if (of.text(format_name) != format_version) of.fail(fmt::format("its version is not {}", format_version));
+  if (of.text(format_name) != format_version)
+    of.fail(fmt::format("its version is not {}", format_version));
   FilmLayout layout;
   layout.width = image.width;
   layout.height = image.height;
@@ -283,11 +306,15 @@ Film Film::load(const std::filesystem::path& path) {
   for (std::string_view left = of.text("caplet.film.samples"); !left.empty();) {
     std::array<std::int64_t, 6> numbers{};
     for (std::int64_t& number : numbers)
-      if (!take_number(left, 0, std::numeric_limits<std::uint32_t>::max(), number)) of.fail("its list of samples is broken");
-    const auto as_int = [](std::int64_t number) { return static_cast<int>(std::min<std::int64_t>(number, 1 << 30)); };
-    const FilmPart part{{as_int(numbers[0]), as_int(numbers[1]), as_int(numbers[2]), as_int(numbers[3])},
-                        static_cast<std::uint32_t>(numbers[4]),
-                        static_cast<std::uint32_t>(numbers[5])};
+      if (!take_number(left, 0, std::numeric_limits<std::uint32_t>::max(), number))
+        of.fail("its list of samples is broken");
+    const auto as_int = [](std::int64_t number) {
+      return static_cast<int>(std::min<std::int64_t>(number, 1 << 30));
+    };
+    const FilmPart part{
+        {as_int(numbers[0]), as_int(numbers[1]), as_int(numbers[2]), as_int(numbers[3])},
+        static_cast<std::uint32_t>(numbers[4]),
+        static_cast<std::uint32_t>(numbers[5])};
     if (!layout.window.holds(part.window)) of.fail("its list of samples is broken");
     add_part(film.parts_, part);
   }
@@ -298,7 +325,8 @@ Film Film::load(const std::filesystem::path& path) {
     if (!low || !high || low->uints.size() != pixels || high->uints.size() != pixels)
       of.fail(fmt::format("word {} is missing", w));
     for (std::size_t i = 0; i < pixels; ++i)
-      film.words_[i * film.words_per_pixel_ + w] = low->uints[i] | std::uint64_t{high->uints[i]} << 32;
+      film.words_[i * film.words_per_pixel_ + w] = low->uints[i] | std::uint64_t{high->uints[i]}
+                                                                       << 32;
   }
   return film;
 }

@@ -21,7 +21,9 @@ namespace caplet {
 /// Window is pixels [x, x + width) times [y, y + height) of an image.
 struct Window {
   int x = 0, y = 0, width = 0, height = 0;
-  std::size_t pixels() const { return static_cast<std::size_t>(width) * static_cast<std::size_t>(height); }
+  std::size_t pixels() const {
+    return static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+  }
   /// Returns whether all of `other` lies within.
   bool holds(const Window& other) const;
   bool operator==(const Window&) const = default;
@@ -87,8 +89,8 @@ class Film {
   /// Returns `count` of its rows from `first` on, without the list of samples.
   Film rows(int first, int count) const;
 
-  /// Adds the samples of another film. Throws InputError, and changes nothing, when the two are not of one layout or have samples
-  /// in common.
+  /// Adds the samples of another film. Throws InputError, and changes nothing, when the two are not
+  /// of one layout or have samples in common.
   void add(const Film& other);
 
   /// Writes an EXR of the sums (docs/output.md), as write_exr does. Throws RunError.

@@ -32,11 +32,13 @@ struct LayeredImage {
   int width = 0, height = 0;                          // display window
   int x = 0, y = 0, data_width = 0, data_height = 0;  // data window (the crop) within it
   std::vector<Channel> channels;
-  ColorSpace space = ColorSpace::srgb;           // its chromaticities are written
-  std::optional<Chromaticities> chromaticities;  // as a file states them; written in place of the space's own
-  std::map<std::string, std::string> metadata;   // attributes that are text or numbers
-  std::vector<std::string> views = {};           // of a multi-view picture, the one by default first (name_in_view)
-  std::optional<Backdrop> backdrop = {};         // that lies under R G B by A
+  ColorSpace space = ColorSpace::srgb;  // its chromaticities are written
+  std::optional<Chromaticities>
+      chromaticities;  // as a file states them; written in place of the space's own
+  std::map<std::string, std::string> metadata;  // attributes that are text or numbers
+  std::vector<std::string> views =
+      {};  // of a multi-view picture, the one by default first (name_in_view)
+  std::optional<Backdrop> backdrop = {};  // that lies under R G B by A
 
   /// Returns the channel of that name, or null.
   const Channel* find(const std::string& name) const;
@@ -45,7 +47,8 @@ struct LayeredImage {
 /// Returns the name of a channel of one view among those of all `views`, by the rules of multi-view
 /// OpenEXR: plain channels of the first have their own names, and in all others the view's name is
 /// put before the last part ("right.R", "albedo.left.R").
-std::string name_in_view(const std::string& channel, const std::vector<std::string>& views, std::size_t view);
+std::string name_in_view(const std::string& channel, const std::vector<std::string>& views,
+                         std::size_t view);
 
 /// BandedImage is a picture that is made in bands of whole rows, so that it is never in memory as a
 /// whole.
@@ -65,13 +68,17 @@ enum class ExrCompression { zip, rle };
 /// machine's cores; else RLE. `bytes`: of all layers.
 ExrCompression compression_for(std::uint64_t bytes, double seconds, unsigned cores);
 
-/// Writes a scanline EXR (chromaticities, metadata as attributes) as write_atomically does. Throws RunError.
-void write_exr(const std::filesystem::path& path, const LayeredImage& image, ExrCompression compression = ExrCompression::zip);
-void write_exr(const std::filesystem::path& path, const BandedImage& image, ExrCompression compression = ExrCompression::zip);
+/// Writes a scanline EXR (chromaticities, metadata as attributes) as write_atomically does. Throws
+/// RunError.
+void write_exr(const std::filesystem::path& path, const LayeredImage& image,
+               ExrCompression compression = ExrCompression::zip);
+void write_exr(const std::filesystem::path& path, const BandedImage& image,
+               ExrCompression compression = ExrCompression::zip);
 /// Returns a good BandedImage::rows for that many 32-bit layers: some 32 MiB, and for each core one
 /// of the 16 rows that ZIP packs.
 int band_rows(int width, std::size_t channels);
-/// Throws InputError naming `flag` when no EXR of `channels` 32-bit layers can have a data window of that size.
+/// Throws InputError naming `flag` when no EXR of `channels` 32-bit layers can have a data window
+/// of that size.
 void check_exr_size(int width, int height, std::size_t channels, const std::string& flag);
 /// Reads an EXR. Throws InputError when missing or broken. Half and float channels are returned as
 /// floats, uint as uints.
@@ -79,32 +86,38 @@ LayeredImage read_exr(const std::filesystem::path& path);
 
 struct Shown;  // film/preview.h
 
-/// Tone-maps the R G B channels (film/preview.h) and writes the data window with 8 bits a channel, in the format of the
-/// extension, atomically; before a transparent backdrop with alpha. Throws RunError or InputError.
+/// Tone-maps the R G B channels (film/preview.h) and writes the data window with 8 bits a channel,
+/// in the format of the extension, atomically; before a transparent backdrop with alpha. Throws
+/// RunError or InputError.
 void write_preview(const std::filesystem::path& path, const LayeredImage& image);
 void write_preview(const std::filesystem::path& path, const Shown& shown);
 /// Does the same from bytes as bytes_of (film/preview.h) makes them, 3 or 4 a pixel.
-void write_preview(const std::filesystem::path& path, int width, int height, const std::vector<std::uint8_t>& bytes);
+void write_preview(const std::filesystem::path& path, int width, int height,
+                   const std::vector<std::uint8_t>& bytes);
 /// Throws InputError naming `flag` when files of that extension have no alpha.
 void check_preview_alpha(const std::filesystem::path& path, const std::string& flag);
-/// Throws InputError naming `flag` when write_preview could not write a file of that name's extension.
+/// Throws InputError naming `flag` when write_preview could not write a file of that name's
+/// extension.
 void check_preview_format(const std::filesystem::path& path, const std::string& flag);
 /// Throws InputError naming `flag` when that format cannot hold a picture of this size.
-void check_preview_size(const std::filesystem::path& path, int width, int height, const std::string& flag);
+void check_preview_size(const std::filesystem::path& path, int width, int height,
+                        const std::string& flag);
 /// Returns true when the build has the module of OpenImageIO.
 bool has_image_io();
 
-/// Reads EXR through OpenEXR, PNG through libpng and the rest (hdr, jpg...) through OpenImageIO. Files of integers are linearised
-/// from sRGB unless they say otherwise; floats are linear. One channel is grey; alpha is multiplied in (over black); an EXR's
-/// chromaticities are kept when they are a space of ours and converted to sRGB otherwise. Negative values become 0; NaN and
-/// infinity are errors.
+/// Reads EXR through OpenEXR, PNG through libpng and the rest (hdr, jpg...) through OpenImageIO.
+/// Files of integers are linearised from sRGB unless they say otherwise; floats are linear. One
+/// channel is grey; alpha is multiplied in (over black); an EXR's chromaticities are kept when they
+/// are a space of ours and converted to sRGB otherwise. Negative values become 0; NaN and infinity
+/// are errors.
 class FileImageReader : public ImageReader {
  public:
   EnvironmentImage read_rgb(const std::filesystem::path& path) const override;
   /// Returns bytes for files that hold bytes, floats for all others. `encoding` is that of
   /// integers. One channel, or one and alpha, is grey; alpha of colours is kept unless it is 1
   /// everywhere. Negative values stay.
-  TextureImage read_texture(const std::filesystem::path& path, const ImageEncoding& encoding) const override;
+  TextureImage read_texture(const std::filesystem::path& path,
+                            const ImageEncoding& encoding) const override;
 };
 
 }  // namespace caplet

@@ -37,11 +37,12 @@ Loaded load_from(const fs::path& path) {
   return {module, {}};
 }
 
-/// Looks beside the program or library that this code is in, where an installation has modules, and where the build made it.
+/// Looks beside the program or library that this code is in, where an installation has modules, and
+/// where the build made it.
 Loaded load() {
   const fs::path folder = own_file().parent_path();
-  const std::array<fs::path, 4> folders = {folder, folder / "caplet", folder / CAPLET_MODULES_FROM_PROGRAM,
-                                           CAPLET_MODULES_OF_BUILD};
+  const std::array<fs::path, 4> folders = {
+      folder, folder / "caplet", folder / CAPLET_MODULES_FROM_PROGRAM, CAPLET_MODULES_OF_BUILD};
   std::error_code error;
   for (const fs::path& from : folders)
     if (const fs::path path = from / file_name; fs::exists(path, error)) return load_from(path);
@@ -56,8 +57,9 @@ bool available() { return true; }
 const Module& module_for(const fs::path& path) {
   static const Loaded loaded = load();
   if (loaded.module == nullptr)
-    throw RunError(
-        fmt::format("{}: images other than EXR and PNG need OpenImageIO, which cannot be loaded: {}", path.string(), loaded.why));
+    throw RunError(fmt::format(
+        "{}: images other than EXR and PNG need OpenImageIO, which cannot be loaded: {}",
+        path.string(), loaded.why));
   return *loaded.module;
 }
 

@@ -13,7 +13,8 @@ bool available() { return false; }
 
 const Module& module_for(const std::filesystem::path& path) {
   throw InputError(
-      fmt::format("{}: this build reads and writes EXR and PNG only (CAPLET_WITH_OIIO=OFF): convert the image to PNG or EXR, or "
+      fmt::format("{}: this build reads and writes EXR and PNG only (CAPLET_WITH_OIIO=OFF): "
+                  "convert the image to PNG or EXR, or "
                   "use a build with OpenImageIO",
                   path.string()));
 }

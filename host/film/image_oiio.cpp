@@ -34,7 +34,8 @@ float decoding_exponent(const OIIO::ImageSpec& spec) {
     const float gamma = spec.get_float_attribute("oiio:Gamma", 2.2f);
     return std::isfinite(gamma) && gamma > 0 ? gamma : 2.2f;
   }
-  if (space == "Linear" || space == "linear" || space == "lin_srgb" || space == "scene_linear") return 1;
+  if (space == "Linear" || space == "linear" || space == "lin_srgb" || space == "scene_linear")
+    return 1;
   return spec.format.is_floating_point() ? 1.0f : 0.0f;
 }
 
@@ -56,10 +57,13 @@ class MemoryFile {
 
   std::string path() const { return fmt::format("/proc/self/fd/{}", number_); }
   std::string bytes() const {
-    std::string out(static_cast<std::size_t>(std::max<off_t>(0, ::lseek(number_, 0, SEEK_END))), '\0');
+    std::string out(static_cast<std::size_t>(std::max<off_t>(0, ::lseek(number_, 0, SEEK_END))),
+                    '\0');
     for (std::size_t at = 0; at < out.size();) {
-      const ssize_t count = ::pread(number_, out.data() + at, out.size() - at, static_cast<off_t>(at));
-      if (count <= 0) throw Failure{fmt::format("a file in memory cannot be read: {}", std::strerror(errno))};
+      const ssize_t count =
+          ::pread(number_, out.data() + at, out.size() - at, static_cast<off_t>(at));
+      if (count <= 0)
+        throw Failure{fmt::format("a file in memory cannot be read: {}", std::strerror(errno))};
       at += static_cast<std::size_t>(count);
     }
     return out;
@@ -76,9 +80,10 @@ struct Limit {
   std::string_view extension;
   int side;
 };
-constexpr Limit limits[] = {{".jpg", 65500},  {".jpeg", 65500},  {".jpe", 65500},  {".jif", 65500},  {".jfif", 65500},
-                            {".jfi", 65500},  {".png", 1000000}, {".webp", 16383}, {".gif", 65535},  {".tga", 65535},
-                            {".tpic", 65535}, {".sgi", 65535},   {".rgb", 65535},  {".rgba", 65535}, {".ico", 256}};
+constexpr Limit limits[] = {{".jpg", 65500},  {".jpeg", 65500}, {".jpe", 65500},   {".jif", 65500},
+                            {".jfif", 65500}, {".jfi", 65500},  {".png", 1000000}, {".webp", 16383},
+                            {".gif", 65535},  {".tga", 65535},  {".tpic", 65535},  {".sgi", 65535},
+                            {".rgb", 65535},  {".rgba", 65535}, {".ico", 256}};
 
 OIIO::ImageSpec spec_of_8bit(int width, int height, int channels = 3) {
   OIIO::ImageSpec spec(width, height, channels, OIIO::TypeDesc::UINT8);
@@ -88,7 +93,9 @@ OIIO::ImageSpec spec_of_8bit(int width, int height, int channels = 3) {
   return spec;
 }
 
-std::string error_text(const std::string& text) { return text.empty() ? "unknown reason" : text.substr(0, text.find('\n')); }
+std::string error_text(const std::string& text) {
+  return text.empty() ? "unknown reason" : text.substr(0, text.find('\n'));
+}
 
 std::string lower_case_extension(const std::filesystem::path& path) {
   std::string out = path.extension().string();
@@ -99,7 +106,9 @@ std::string lower_case_extension(const std::filesystem::path& path) {
 
 /// Opens a file and requests alpha unassociated.
 std::unique_ptr<OIIO::ImageInput> opened(const std::filesystem::path& path) {
-  OIIO::attribute("limits:imagesize_MB", 1 << 12);  // 2^28 pixels of 16 bytes: the caller's own limit (film/detail/limits.h)
+  OIIO::attribute(
+      "limits:imagesize_MB",
+      1 << 12);  // 2^28 pixels of 16 bytes: the caller's own limit (film/detail/limits.h)
   OIIO::ImageSpec wanted;
   wanted.attribute("oiio:UnassociatedAlpha", 1);
   std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(path.string(), &wanted);
@@ -115,7 +124,8 @@ std::unique_ptr<OIIO::ImageInput> opened(const std::filesystem::path& path) {
 /// Sets the size of `out`, its channels, at most four, and which of these is alpha. `check` throws
 /// where that is too large with so many bytes a value.
 template <class Out>
-void measure(const OIIO::ImageSpec& spec, std::uint64_t value_bytes, const SizeCheck& check, Out& out) {
+void measure(const OIIO::ImageSpec& spec, std::uint64_t value_bytes, const SizeCheck& check,
+             Out& out) {
   out.channels = std::min(spec.nchannels, 4);
   check(spec.width, spec.height, static_cast<std::uint64_t>(out.channels) * value_bytes);
   out.width = spec.width;
@@ -125,11 +135,13 @@ void measure(const OIIO::ImageSpec& spec, std::uint64_t value_bytes, const SizeC
 
 template <class Out>
 std::size_t value_count(const Out& of) {
-  return static_cast<std::size_t>(of.width) * static_cast<std::size_t>(of.height) * static_cast<std::size_t>(of.channels);
+  return static_cast<std::size_t>(of.width) * static_cast<std::size_t>(of.height) *
+         static_cast<std::size_t>(of.channels);
 }
 
 void read_values(OIIO::ImageInput& input, int channels, OIIO::TypeDesc type, void* to) {
-  if (!input.read_image(0, 0, 0, channels, type, to)) throw Failure{"broken image: " + error_text(input.geterror())};
+  if (!input.read_image(0, 0, 0, channels, type, to))
+    throw Failure{"broken image: " + error_text(input.geterror())};
 }
 
 StoredPixels read_stored(const std::filesystem::path& path, const SizeCheck& check) {
@@ -162,10 +174,12 @@ Pixels read_linear(const std::filesystem::path& path, const SizeCheck& check) {
   const float exponent = decoding_exponent(spec);
   const std::size_t channels = static_cast<std::size_t>(out.channels);
   for (std::size_t i = 0; i < out.values.size(); ++i)
-    if (static_cast<int>(i % channels) != out.alpha) out.values[i] = linear_from(out.values[i], exponent);
+    if (static_cast<int>(i % channels) != out.alpha)
+      out.values[i] = linear_from(out.values[i], exponent);
   // Associated alpha is already in the values.
   if (out.alpha >= 0 && premultiplied)
-    for (std::size_t i = static_cast<std::size_t>(out.alpha); i < out.values.size(); i += channels) out.values[i] = 1;
+    for (std::size_t i = static_cast<std::size_t>(out.alpha); i < out.values.size(); i += channels)
+      out.values[i] = 1;
   return out;
 }
 
@@ -208,7 +222,8 @@ std::string encode_8bit(const std::filesystem::path& path, int width, int height
   std::vector<unsigned char> bytes;
   OIIO::Filesystem::IOVecOutput memory(bytes);
   // TIFF's proxy, in OpenImageIO 2.4, loses what is written on closing.
-  if (output->supports("ioproxy") && std::string_view(output->format_name()) != "tiff" && output->set_ioproxy(&memory)) {
+  if (output->supports("ioproxy") && std::string_view(output->format_name()) != "tiff" &&
+      output->set_ioproxy(&memory)) {
     write_to(path.filename().string());
     return {bytes.begin(), bytes.end()};
   }
@@ -231,22 +246,31 @@ std::string failure_of(const Function& function) {
 
 }  // namespace caplet::image_module
 
-extern "C" __attribute__((visibility("default"))) const caplet::image_files::Module* caplet_image_module() {
+extern "C" __attribute__((visibility("default"))) const caplet::image_files::Module*
+caplet_image_module() {
   using namespace caplet::image_module;
   using caplet::image_files::Module;
   static const Module module = {
       .version = Module::current,
-      .read_linear = [](const std::filesystem::path& path, const SizeCheck& check,
-                        Pixels& out) { return failure_of([&] { out = read_linear(path, check); }); },
-      .read_stored = [](const std::filesystem::path& path, const SizeCheck& check,
-                        StoredPixels& out) { return failure_of([&] { out = read_stored(path, check); }); },
+      .read_linear =
+          [](const std::filesystem::path& path, const SizeCheck& check, Pixels& out) {
+            return failure_of([&] { out = read_linear(path, check); });
+          },
+      .read_stored =
+          [](const std::filesystem::path& path, const SizeCheck& check, StoredPixels& out) {
+            return failure_of([&] { out = read_stored(path, check); });
+          },
       .can_write = &can_write,
-      .can_hold = [](const std::filesystem::path& path, int width, int height,
-                     bool& out) { return failure_of([&] { out = can_hold(path, width, height); }); },
+      .can_hold =
+          [](const std::filesystem::path& path, int width, int height, bool& out) {
+            return failure_of([&] { out = can_hold(path, width, height); });
+          },
       .can_write_alpha = &can_write_alpha,
       .encode_8bit =
-          [](const std::filesystem::path& path, int width, int height, int channels, const std::vector<std::uint8_t>& values,
-             std::string& out) { return failure_of([&] { out = encode_8bit(path, width, height, channels, values); }); },
+          [](const std::filesystem::path& path, int width, int height, int channels,
+             const std::vector<std::uint8_t>& values, std::string& out) {
+            return failure_of([&] { out = encode_8bit(path, width, height, channels, values); });
+          },
   };
   return &module;
 }

@@ -53,7 +53,8 @@ void guarded(png_structp png, const Errors& errors, const Function& function) {
 }
 
 struct Reader {
-  explicit Reader(std::FILE* file) : png(png_create_read_struct(PNG_LIBPNG_VER_STRING, &errors, &fail, &warn)) {
+  explicit Reader(std::FILE* file)
+      : png(png_create_read_struct(PNG_LIBPNG_VER_STRING, &errors, &fail, &warn)) {
     if (png != nullptr) info = png_create_info_struct(png);
     if (info == nullptr) throw Failure{"libpng has no memory"};
     png_init_io(png, file);
@@ -95,14 +96,17 @@ struct Decoded {
 float exponent_of(const Reader& reader) {
   int intent = 0;
   double gamma = 0;
-  if (png_get_sRGB(reader.png, reader.info, &intent) != 0 || png_get_gAMA(reader.png, reader.info, &gamma) == 0) return 0;
+  if (png_get_sRGB(reader.png, reader.info, &intent) != 0 ||
+      png_get_gAMA(reader.png, reader.info, &gamma) == 0)
+    return 0;
   return gamma > 0 ? static_cast<float>(std::round(100 / gamma) / 100) : 0;
 }
 
 /// Turns palettes, keys of transparency and fewer than eight bits into plain channels.
 void ask_for_channels(const Reader& reader, Decoded& out) {
   png_structp png = reader.png;
-  const png_byte type = png_get_color_type(png, reader.info), depth = png_get_bit_depth(png, reader.info);
+  const png_byte type = png_get_color_type(png, reader.info),
+                 depth = png_get_bit_depth(png, reader.info);
   const bool has_key = png_get_valid(png, reader.info, PNG_INFO_tRNS) != 0;
   if (type == PNG_COLOR_TYPE_PALETTE) png_set_palette_to_rgb(png);
   if (type == PNG_COLOR_TYPE_GRAY && depth < 8) png_set_expand_gray_1_2_4_to_8(png);
@@ -127,16 +131,20 @@ Decoded decode(const fs::path& path, const SizeCheck& check, bool as_floats) {
     ask_for_channels(reader, out);
   });
   out.exponent = exponent_of(reader);
-  check(out.width, out.height, static_cast<std::uint64_t>(out.channels) * (out.is_wide || as_floats ? sizeof(float) : 1));
+  check(out.width, out.height,
+        static_cast<std::uint64_t>(out.channels) * (out.is_wide || as_floats ? sizeof(float) : 1));
   const auto height = static_cast<std::size_t>(out.height);
-  const std::size_t row = static_cast<std::size_t>(out.width) * static_cast<std::size_t>(out.channels) * (out.is_wide ? 2 : 1);
+  const std::size_t row = static_cast<std::size_t>(out.width) *
+                          static_cast<std::size_t>(out.channels) * (out.is_wide ? 2 : 1);
   out.bytes.resize(row * height);
   guarded(reader.png, reader.errors, [&] {
     const int passes = png_set_interlace_handling(reader.png);
     png_read_update_info(reader.png, reader.info);
-    if (png_get_rowbytes(reader.png, reader.info) != row) png_error(reader.png, "an unknown kind of PNG");
+    if (png_get_rowbytes(reader.png, reader.info) != row)
+      png_error(reader.png, "an unknown kind of PNG");
     for (int pass = 0; pass < passes; ++pass)
-      for (std::size_t y = 0; y < height; ++y) png_read_row(reader.png, out.bytes.data() + y * row, nullptr);
+      for (std::size_t y = 0; y < height; ++y)
+        png_read_row(reader.png, out.bytes.data() + y * row, nullptr);
   });
   return out;
 }
@@ -144,7 +152,8 @@ Decoded decode(const fs::path& path, const SizeCheck& check, bool as_floats) {
 std::vector<float> floats_of(const Decoded& decoded) {
   if (!decoded.is_wide) {
     std::vector<float> out(decoded.bytes.size());
-    std::ranges::transform(decoded.bytes, out.begin(), [](std::uint8_t v) { return static_cast<float>(v) / 255.0f; });
+    std::ranges::transform(decoded.bytes, out.begin(),
+                           [](std::uint8_t v) { return static_cast<float>(v) / 255.0f; });
     return out;
   }
   std::vector<float> out(decoded.bytes.size() / 2);
@@ -202,11 +211,13 @@ std::string read_png_linear(const fs::path& path, const SizeCheck& check, Pixels
     out.values = floats_of(decoded);
     const auto channels = static_cast<std::size_t>(out.channels);
     for (std::size_t i = 0; i < out.values.size(); ++i)
-      if (static_cast<int>(i % channels) != out.alpha) out.values[i] = linear_from(out.values[i], decoded.exponent);
+      if (static_cast<int>(i % channels) != out.alpha)
+        out.values[i] = linear_from(out.values[i], decoded.exponent);
   });
 }
 
-std::string encode_png(int width, int height, int channels, const std::vector<std::uint8_t>& values, std::string& out) {
+std::string encode_png(int width, int height, int channels, const std::vector<std::uint8_t>& values,
+                       std::string& out) {
   return failure_of("cannot be written", [&] {
     const Writer writer;
     png_structp png = writer.png;
@@ -214,17 +225,20 @@ std::string encode_png(int width, int height, int channels, const std::vector<st
     png_set_write_fn(
         png, &out,
         [](png_structp to, png_bytep data, png_size_t count) {
-          static_cast<std::string*>(png_get_io_ptr(to))->append(reinterpret_cast<const char*>(data), count);
+          static_cast<std::string*>(png_get_io_ptr(to))
+              ->append(reinterpret_cast<const char*>(data), count);
         },
         nullptr);
     guarded(png, writer.errors, [&] {
-      png_set_IHDR(png, writer.info, static_cast<png_uint_32>(width), static_cast<png_uint_32>(height), 8,
-                   channels == 4 ? PNG_COLOR_TYPE_RGB_ALPHA : PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE,
-                   PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+      png_set_IHDR(png, writer.info, static_cast<png_uint_32>(width),
+                   static_cast<png_uint_32>(height), 8,
+                   channels == 4 ? PNG_COLOR_TYPE_RGB_ALPHA : PNG_COLOR_TYPE_RGB,
+                   PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
       png_set_sRGB(png, writer.info, PNG_sRGB_INTENT_PERCEPTUAL);
       png_write_info(png, writer.info);
       const std::size_t row = static_cast<std::size_t>(width) * static_cast<std::size_t>(channels);
-      for (std::size_t y = 0; y < static_cast<std::size_t>(height); ++y) png_write_row(png, values.data() + y * row);
+      for (std::size_t y = 0; y < static_cast<std::size_t>(height); ++y)
+        png_write_row(png, values.data() + y * row);
       png_write_end(png, writer.info);
     });
   });

@@ -48,18 +48,25 @@ inline constexpr std::array<LayerRow, layer_count> layer_rows{{
    count,                                                                      \
    words,                                                                      \
    []([[maybe_unused]] int color, [[maybe_unused]] int length) { return unit; }},
-#define HIT_LAYER(name, option, channels, how, count, words, unit, value)                                                       \
-  {LayerKind::hit, option, channels, LayerHow::how, count, words, []([[maybe_unused]] int color, [[maybe_unused]] int length) { \
-     return unit;                                                                                                               \
-   }},
-#define ID_LAYER(name, option, channel, value) {LayerKind::id, option, channel, LayerHow::number, 1, 1, nullptr},
+#define HIT_LAYER(name, option, channels, how, count, words, unit, value) \
+  {LayerKind::hit,                                                        \
+   option,                                                                \
+   channels,                                                              \
+   LayerHow::how,                                                         \
+   count,                                                                 \
+   words,                                                                 \
+   []([[maybe_unused]] int color, [[maybe_unused]] int length) { return unit; }},
+#define ID_LAYER(name, option, channel, value) \
+  {LayerKind::id, option, channel, LayerHow::number, 1, 1, nullptr},
 #include "shared/layers.def"
 #undef RADIANCE_LAYER
 #undef HIT_LAYER
 #undef ID_LAYER
 }};
 
-constexpr const LayerRow& row_of(Layer layer) { return layer_rows[static_cast<std::size_t>(layer)]; }
+constexpr const LayerRow& row_of(Layer layer) {
+  return layer_rows[static_cast<std::size_t>(layer)];
+}
 
 /// Layers is a set of layers; R G B A (color and coverage) are always among them.
 class Layers {

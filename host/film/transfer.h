@@ -8,8 +8,12 @@
 
 namespace caplet {
 
-inline float linear_from_srgb(float v) { return v <= 0.04045f ? v / 12.92f : std::pow((v + 0.055f) / 1.055f, 2.4f); }
-inline float srgb_from_linear(float v) { return v <= 0.0031308f ? v * 12.92f : 1.055f * std::pow(v, 1 / 2.4f) - 0.055f; }
+inline float linear_from_srgb(float v) {
+  return v <= 0.04045f ? v / 12.92f : std::pow((v + 0.055f) / 1.055f, 2.4f);
+}
+inline float srgb_from_linear(float v) {
+  return v <= 0.0031308f ? v * 12.92f : 1.055f * std::pow(v, 1 / 2.4f) - 0.055f;
+}
 
 /// Returns a value of a file made linear by a power; an exponent of 1 leaves it, and 0 stands for
 /// the sRGB curve.

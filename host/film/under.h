@@ -17,6 +17,7 @@ namespace caplet {
 std::array<float, 3> under(const Backdrop& backdrop, int width, int height, int x, int y);
 
 /// Does the same in linear RGB of a colour space.
-std::array<float, 3> under(const Backdrop& backdrop, int width, int height, int x, int y, ColorSpace space);
+std::array<float, 3> under(const Backdrop& backdrop, int width, int height, int x, int y,
+                           ColorSpace space);
 
 }  // namespace caplet

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// The text is cut at line ends into chunks that are parsed in parallel; the results are joined in the order of the file.
+// The text is cut at line ends into chunks that are parsed in parallel; the results are joined in
+// the order of the file.
 #include "import/detail/capsules.h"
 
 #include <fmt/format.h>
@@ -93,14 +94,17 @@ class LineReader {
     skip_blanks();
     place = {chunk_.lines, static_cast<int>(position_) + 1};
     if (at_number())
-      return fail(position_, fmt::format("{}: material names do not start as numbers do", quoted(line_.substr(position_))));
+      return fail(position_, fmt::format("{}: material names do not start as numbers do",
+                                         quoted(line_.substr(position_))));
     if (line_[position_] != '"') {
       const std::size_t begin = position_;
       name = std::string(take_token("<>,\""));
-      return !name.empty() || fail(begin, fmt::format("{} is neither a radius nor a material name", quoted(line_.substr(begin))));
+      return !name.empty() || fail(begin, fmt::format("{} is neither a radius nor a material name",
+                                                      quoted(line_.substr(begin))));
     }
     const std::size_t close = line_.find('"', position_ + 1);
-    if (close == std::string_view::npos) return fail(position_, "the quoted material name does not end");
+    if (close == std::string_view::npos)
+      return fail(position_, "the quoted material name does not end");
     name = std::string(line_.substr(position_ + 1, close - position_ - 1));
     if (name.empty()) return fail(position_, "the material name is empty");
     position_ = close + 1;
@@ -108,12 +112,14 @@ class LineReader {
   }
 
   bool expect_end() {
-    return at_end() || fail(position_, fmt::format("{} follows a complete capsule", quoted(line_.substr(position_))));
+    return at_end() || fail(position_, fmt::format("{} follows a complete capsule",
+                                                   quoted(line_.substr(position_))));
   }
 
   bool fail(std::size_t position, std::string message) {
     if (chunk_.errors.size() < kMostErrors)
-      chunk_.errors.emplace_back(Place{chunk_.lines, static_cast<int>(position) + 1}, std::move(message));
+      chunk_.errors.emplace_back(Place{chunk_.lines, static_cast<int>(position) + 1},
+                                 std::move(message));
     else
       ++chunk_.more_errors;
     return false;
@@ -129,7 +135,8 @@ class LineReader {
     const std::size_t begin = position_;
     for (; position_ < line_.size(); ++position_) {
       const char c = line_[position_];
-      // Most characters are of numbers; std::strchr for each of them took a third of the time that reading a file does.
+      // Most characters are of numbers; std::strchr for each of them took a third of the time that
+      // reading a file does.
       if ((c >= '0' && c <= '9') || c == '.' || c == '-') continue;
       if (is_blank(c) || c == '#' || c == '\0' || stops.find(c) != std::string_view::npos) break;
     }
@@ -151,7 +158,8 @@ class LineReader {
       return true;
     }
     if (at_end()) return fail(position_, fmt::format("'{}' of {} is missing", wanted, what));
-    return fail(position_, fmt::format("expected '{}' of {}, not {}", wanted, what, quoted(line_.substr(position_))));
+    return fail(position_, fmt::format("expected '{}' of {}, not {}", wanted, what,
+                                       quoted(line_.substr(position_))));
   }
 
   std::string_view line_;
@@ -160,7 +168,8 @@ class LineReader {
 };
 
 std::uint32_t index_of_name(Chunk& chunk, const std::string& name, const Place& place) {
-  const auto [entry, fresh] = chunk.name_index.try_emplace(name, static_cast<std::uint32_t>(chunk.names.size()));
+  const auto [entry, fresh] =
+      chunk.name_index.try_emplace(name, static_cast<std::uint32_t>(chunk.names.size()));
   if (fresh) chunk.names.push_back({name, place});
   return entry->second;
 }
@@ -171,7 +180,8 @@ bool parse_line(std::string_view text, Chunk& chunk) {
   if (line.at_end()) return false;
   glm::vec3 p0, p1;
   float radius0 = 0, radius1 = 0;
-  if (!line.read_point(p0, "the first point") || !line.read_point(p1, "the second point") || !line.read_radius(radius0))
+  if (!line.read_point(p0, "the first point") || !line.read_point(p1, "the second point") ||
+      !line.read_radius(radius0))
     return false;
   radius1 = radius0;
   if (!line.at_end() && line.at_number() && !line.read_radius(radius1)) return false;
@@ -192,8 +202,10 @@ bool parse_line(std::string_view text, Chunk& chunk) {
 void parse_chunk(std::string_view text, Chunk& chunk) {
   constexpr std::size_t kUsualLine = 64;
   CapsulesShape& out = chunk.capsules;
-  for (std::vector<glm::vec3>* points : {&out.p0, &out.p1}) points->reserve(text.size() / kUsualLine);
-  for (std::vector<float>* radii : {&out.radius0, &out.radius1}) radii->reserve(text.size() / kUsualLine);
+  for (std::vector<glm::vec3>* points : {&out.p0, &out.p1})
+    points->reserve(text.size() / kUsualLine);
+  for (std::vector<float>* radii : {&out.radius0, &out.radius1})
+    radii->reserve(text.size() / kUsualLine);
   out.materials.reserve(text.size() / kUsualLine);
   Unproven in_piece;  // one for each chunk, so that the number of threads makes no difference
   while (!text.empty()) {
@@ -222,20 +234,24 @@ void place_at(std::vector<T>& to, std::size_t begin, const std::vector<T>& from)
 
 }  // namespace
 
-CapsulesShape read_capsules(const std::filesystem::path& path, const MaterialIndex& material_index) {
+CapsulesShape read_capsules(const std::filesystem::path& path,
+                            const MaterialIndex& material_index) {
   const TextFile file(path);
   std::string_view text = file.text();
   if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);
   const std::vector<std::string_view> pieces = cut_at_line_ends(text);
   std::vector<Chunk> chunks(pieces.size());
-  tbb::parallel_for(std::size_t{0}, chunks.size(), [&](std::size_t i) { parse_chunk(pieces[i], chunks[i]); });
+  tbb::parallel_for(std::size_t{0}, chunks.size(),
+                    [&](std::size_t i) { parse_chunk(pieces[i], chunks[i]); });
 
   // Errors and names are kept in the order of the file.
   Diagnostics diagnostics(kMostErrors);
   std::vector<std::size_t> begin(chunks.size() + 1, 0);
   bool tapered = false, named = false;
   int first_line = 0;
-  const auto where = [&](const Place& place) { return SourceLocation{path.string(), first_line + place.line, place.column}; };
+  const auto where = [&](const Place& place) {
+    return SourceLocation{path.string(), first_line + place.line, place.column};
+  };
   std::vector<std::pair<std::string, SourceLocation>> names;
   std::unordered_map<std::string, std::uint32_t> name_index;
   std::vector<std::vector<std::uint32_t>> file_name(chunks.size());
@@ -243,7 +259,8 @@ CapsulesShape read_capsules(const std::filesystem::path& path, const MaterialInd
     for (const auto& [place, message] : chunks[i].errors) diagnostics.error(where(place), message);
     diagnostics.add_more(chunks[i].more_errors);
     for (const Name& name : chunks[i].names) {
-      const auto [entry, fresh] = name_index.try_emplace(name.text, static_cast<std::uint32_t>(names.size()));
+      const auto [entry, fresh] =
+          name_index.try_emplace(name.text, static_cast<std::uint32_t>(names.size()));
       if (fresh) names.emplace_back(name.text, where(name.first_use));
       file_name[i].push_back(entry->second);
       named |= !name.text.empty();
@@ -258,7 +275,8 @@ CapsulesShape read_capsules(const std::filesystem::path& path, const MaterialInd
 
   std::vector<std::uint32_t> material(names.size(), 0);
   if (named)
-    for (std::size_t i = 0; i < names.size(); ++i) material[i] = material_index(names[i].first, names[i].second);
+    for (std::size_t i = 0; i < names.size(); ++i)
+      material[i] = material_index(names[i].first, names[i].second);
 
   CapsulesShape all;
   all.p0.resize(count);
@@ -279,12 +297,14 @@ CapsulesShape read_capsules(const std::filesystem::path& path, const MaterialInd
   return all;
 }
 
-Scene import_capsules_file(const std::filesystem::path& path, const ImageReader&, const ImportOptions&) {
+Scene import_capsules_file(const std::filesystem::path& path, const ImageReader&,
+                           const ImportOptions&) {
   Scene scene;
   scene.source = path.string();
   const auto add_material = [&scene](const std::string& name, const SourceLocation& where) {
     const std::size_t index = scene.materials.size();
-    scene.materials.push_back({DiffuseMaterial{RgbSpectrum{palette_color(index)}}, name.empty() ? "default" : name, where});
+    scene.materials.push_back({DiffuseMaterial{RgbSpectrum{palette_color(index)}},
+                               name.empty() ? "default" : name, where});
     return narrow<std::uint32_t>(index);
   };
   Shape shape;

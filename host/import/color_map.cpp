@@ -35,7 +35,8 @@ glm::dvec3 viridis(double part) {
 
 Legend viridis_legend(std::string title, std::string unit, double low, double high) {
   Legend out{std::move(title), std::move(unit), low, high, {}};
-  for (int step = 0; step < map_steps; ++step) out.colors.push_back(viridis(static_cast<double>(step) / (map_steps - 1)));
+  for (int step = 0; step < map_steps; ++step)
+    out.colors.push_back(viridis(static_cast<double>(step) / (map_steps - 1)));
   return out;
 }
 

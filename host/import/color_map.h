@@ -11,8 +11,8 @@
 
 namespace caplet {
 
-/// Returns a colour of viridis (Smith and van der Walt 2015, matplotlib), perceptually uniform from dark blue to yellow: `part`
-/// is from 0 to 1, the colour linear sRGB.
+/// Returns a colour of viridis (Smith and van der Walt 2015, matplotlib), perceptually uniform from
+/// dark blue to yellow: `part` is from 0 to 1, the colour linear sRGB.
 glm::dvec3 viridis(double part);
 
 /// The number of colours that a map is drawn with, from `part` 0 to 1.

@@ -26,9 +26,10 @@ void CubicChain::add(const CubicTube& c, double tolerance, double u0, double u1)
   add(Part{c, u0, u1}, tolerance, 0);
 }
 
-// With c(t) the curve and l(t) its chord, c - l = 3 t (1-t)^2 d1 + 3 t^2 (1-t) d2, where d1 and d2 are the inner control points'
-// offsets from a chord of uniform speed. The weights' sum 3 t (1-t) is at most 3/4. Each halving divides d1 and d2 by at least 4
-// in the limit: from the control points' diagonal D, 1e-5 D is reached in 9 to 10 halvings. Radii likewise.
+// With c(t) the curve and l(t) its chord, c - l = 3 t (1-t)^2 d1 + 3 t^2 (1-t) d2, where d1 and d2
+// are the inner control points' offsets from a chord of uniform speed. The weights' sum 3 t (1-t)
+// is at most 3/4. Each halving divides d1 and d2 by at least 4 in the limit: from the control
+// points' diagonal D, 1e-5 D is reached in 9 to 10 halvings. Radii likewise.
 void CubicChain::add(const Part& part, double tolerance, int depth) {
   const CubicTube& c = part.c;
   const dvec4 d1 = c[1] - (2.0 * c[0] + c[3]) / 3.0, d2 = c[2] - (c[0] + 2.0 * c[3]) / 3.0;

@@ -25,7 +25,9 @@ namespace {
 
 }  // namespace
 
-std::uintmax_t most_unpacked(std::uintmax_t size) { return std::max<std::uintmax_t>(std::uintmax_t{1} << 26, 100 * size); }
+std::uintmax_t most_unpacked(std::uintmax_t size) {
+  return std::max<std::uintmax_t>(std::uintmax_t{1} << 26, 100 * size);
+}
 
 std::string read_file(const fs::path& path, const SourceLocation& where, std::size_t limit) {
   begin_reading(path, where);
@@ -43,24 +45,33 @@ std::string read_file(const fs::path& path, const SourceLocation& where, std::si
   if (error) fail(where, path, "cannot be read (" + error.message() + ")");
   gzbuffer(file.get(), 1 << 18);
   std::string bytes;
-  if (gzdirect(file.get()) && size > limit) fail(where, path, fmt::format("is longer than {} bytes", limit));
-  const std::size_t most = gzdirect(file.get()) ? limit : std::min<std::uintmax_t>(limit, most_unpacked(size));
+  if (gzdirect(file.get()) && size > limit)
+    fail(where, path, fmt::format("is longer than {} bytes", limit));
+  const std::size_t most =
+      gzdirect(file.get()) ? limit : std::min<std::uintmax_t>(limit, most_unpacked(size));
   if (size < limit) bytes.reserve(size + 1);
-  // The buffer is a byte larger than the file, so that the second read finds its end; packed files take as much at a time.
+  // The buffer is a byte larger than the file, so that the second read finds its end; packed files
+  // take as much at a time.
   const auto chunk = static_cast<unsigned>(std::clamp<std::uintmax_t>(size + 1, 1 << 12, 1 << 20));
   for (;;) {
     const std::size_t before = bytes.size();
-    if (bytes.capacity() < before + chunk) bytes.reserve(std::max(before + chunk, std::min(2 * before, most + chunk)));
+    if (bytes.capacity() < before + chunk)
+      bytes.reserve(std::max(before + chunk, std::min(2 * before, most + chunk)));
     bytes.resize(before + chunk);
     const int got = gzread(file.get(), bytes.data() + before, chunk);
     bytes.resize(before + static_cast<std::size_t>(got > 0 ? got : 0));
     int code = Z_OK;
     gzerror(file.get(), &code);
     if (got < 0 || (code != Z_OK && code != Z_STREAM_END))
-      fail(where, path, code == Z_BUF_ERROR ? "the gzip data is truncated" : "cannot be read (broken gzip data or a read error)");
-    if (bytes.size() > most && most < limit)
       fail(where, path,
-           fmt::format("unpacks to more than {} bytes, {} times its own size: no text or mesh packs so well", most, most / size));
+           code == Z_BUF_ERROR ? "the gzip data is truncated"
+                               : "cannot be read (broken gzip data or a read error)");
+    if (bytes.size() > most && most < limit)
+      fail(
+          where, path,
+          fmt::format(
+              "unpacks to more than {} bytes, {} times its own size: no text or mesh packs so well",
+              most, most / size));
     if (bytes.size() > most) fail(where, path, fmt::format("is longer than {} bytes", limit));
     if (got == 0) return bytes;
   }
@@ -73,7 +84,8 @@ void check_text(const std::string& text, const std::string& file) {
       unsigned bad = 0;
       for (std::size_t k = 0; k < block; ++k) {
         const auto byte = static_cast<unsigned char>(text[i + k]);
-        bad |= static_cast<unsigned>(byte < '\t') | (static_cast<unsigned>(byte > '\r') & static_cast<unsigned>(byte < 32));
+        bad |= static_cast<unsigned>(byte < '\t') |
+               (static_cast<unsigned>(byte > '\r') & static_cast<unsigned>(byte < 32));
       }
       if (bad != 0) break;
     }

@@ -38,8 +38,10 @@ class IesReader {
     if (static_cast<double>(polar_count) * static_cast<double>(azimuth_count) > most_numbers)
       fail(fmt::format("more than {:.0f} intensities", most_numbers));
     if (const double type = number("the photometric type"); type != 1)
-      fail(type == 2 || type == 3 ? "only photometry of type C (1) is read" : "the photometric type must be 1, 2 or 3");
-    if (const double units = number("the units"); units != 1 && units != 2) fail("the units must be 1 (feet) or 2 (metres)");
+      fail(type == 2 || type == 3 ? "only photometry of type C (1) is read"
+                                  : "the photometric type must be 1, 2 or 3");
+    if (const double units = number("the units"); units != 1 && units != 2)
+      fail("the units must be 1 (feet) or 2 (metres)");
     for (const char* what : {"the width", "the length", "the height"}) number(what);
     factor *= positive("the ballast factor");
     // In LM-63-1986 and 1991 it is a factor; later versions use the field for another number.
@@ -80,7 +82,9 @@ class IesReader {
   }
 
  private:
-  [[noreturn]] void fail(const std::string& message) const { throw InputError(SourceLocation{name_, line_, column_}, message); }
+  [[noreturn]] void fail(const std::string& message) const {
+    throw InputError(SourceLocation{name_, line_, column_}, message);
+  }
 
   /// Reads up to the line that begins with TILT=.
   void header() {
@@ -155,8 +159,10 @@ class IesReader {
     std::vector<double> out;
     for (std::size_t i = 0; i < n; ++i) {
       const double value = number(what);
-      if (!(value >= 0 && value <= most)) fail(fmt::format("{} must lie between 0 and {}", what, most));
-      if (!out.empty() && !(value > out.back())) fail(fmt::format("{} must be above the one before", what));
+      if (!(value >= 0 && value <= most))
+        fail(fmt::format("{} must lie between 0 and {}", what, most));
+      if (!out.empty() && !(value > out.back()))
+        fail(fmt::format("{} must be above the one before", what));
       out.push_back(value);
     }
     return out;
@@ -180,7 +186,8 @@ class IesReader {
     const auto& [high, before] = *std::prev(columns.end());
     const double part = (360 - high) / (360 - high + low);
     std::vector<double> seam;
-    for (std::size_t i = 0; i < after.size(); ++i) seam.push_back(before[i] + part * (after[i] - before[i]));
+    for (std::size_t i = 0; i < after.size(); ++i)
+      seam.push_back(before[i] + part * (after[i] - before[i]));
     columns[0] = columns[360] = std::move(seam);
   }
 
@@ -193,7 +200,9 @@ class IesReader {
 
 }  // namespace
 
-IesProfile parse_ies(const std::string& name, std::string_view text) { return IesReader(name, text).run(); }
+IesProfile parse_ies(const std::string& name, std::string_view text) {
+  return IesReader(name, text).run();
+}
 
 IesProfile read_ies(const std::filesystem::path& path) {
   IesProfile profile = parse_ies(path.string(), TextFile(path).text());

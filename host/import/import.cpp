@@ -28,13 +28,19 @@ namespace {
 
 /// Common files of these fields that no importer reads, with advice.
 constexpr std::pair<const char*, const char*> not_read[] = {
-    {".nml", "NeuroML is not read by the program; Python's caplet.from_neuroml reads it. Or write the morphology as SWC"},
+    {".nml",
+     "NeuroML is not read by the program; Python's caplet.from_neuroml reads it. Or write the "
+     "morphology as SWC"},
     {".h5",
-     "SONATA and other HDF5 files are not read by the program; Python's caplet.from_sonata reads circuits, caplet.from_morphio "
-     "morphologies. Or write the morphologies as SWC (morphio's Morphology.write), one file a cell"},
-    {"circuit_config.json", "SONATA circuits are not read by the program; Python's caplet.from_sonata reads them"},
+     "SONATA and other HDF5 files are not read by the program; Python's caplet.from_sonata reads "
+     "circuits, caplet.from_morphio "
+     "morphologies. Or write the morphologies as SWC (morphio's Morphology.write), one file a "
+     "cell"},
+    {"circuit_config.json",
+     "SONATA circuits are not read by the program; Python's caplet.from_sonata reads them"},
     {".asc",
-     "Neurolucida files are not read by the program; Python's caplet.from_morphio takes them as MorphIO reads them. Or write the "
+     "Neurolucida files are not read by the program; Python's caplet.from_morphio takes them as "
+     "MorphIO reads them. Or write the "
      "morphology as SWC (morphio's Morphology.write)"},
 };
 
@@ -61,10 +67,12 @@ void check_readable(const fs::path& path) {
   std::error_code error;
   const fs::file_status status = fs::status(path, error);
   if (status.type() == fs::file_type::not_found) throw InputError({path.string()}, "no such file");
-  if (status.type() == fs::file_type::none) throw InputError({path.string()}, "cannot be read (" + error.message() + ")");
+  if (status.type() == fs::file_type::none)
+    throw InputError({path.string()}, "cannot be read (" + error.message() + ")");
   if (fs::is_directory(status)) throw InputError({path.string()}, "is a folder, not a file");
   if (!fs::is_regular_file(status)) throw InputError({path.string()}, "is no regular file");
-  if (fs::file_size(path, error) == 0 && !error) throw InputError({path.string()}, "the file is empty");
+  if (fs::file_size(path, error) == 0 && !error)
+    throw InputError({path.string()}, "the file is empty");
 }
 
 bool is_of_all(const std::string& name) {
@@ -87,13 +95,15 @@ bool knows(const Format& format, const std::string& option) {
   return std::ranges::find(format.options, option) != format.options.end();
 }
 
-[[noreturn]] void refuse_option(const std::string& name, const std::vector<const Format*>& formats_of_files) {
+[[noreturn]] void refuse_option(const std::string& name,
+                                const std::vector<const Format*>& formats_of_files) {
   std::vector<std::string> who, whose;
   for (const Format& other : formats())
     if (knows(other, name)) who.push_back(other.name);
   for (const Format* format : formats_of_files)
     if (std::ranges::find(whose, format->name) == whose.end()) whose.push_back(format->name);
-  std::string message = fmt::format("says nothing to files of the format {}", fmt::join(whose, ", "));
+  std::string message =
+      fmt::format("says nothing to files of the format {}", fmt::join(whose, ", "));
   if (!who.empty()) message += fmt::format(" (it does to: {})", fmt::join(who, ", "));
   throw InputError({"--" + name}, message);
 }
@@ -102,7 +112,8 @@ bool knows(const Format& format, const std::string& option) {
 void check_known(const ImportOptions& options, const std::vector<const Format*>& formats_of_files) {
   for (const auto& [name, value] : options.values())
     if (!is_of_all(name) &&
-        std::ranges::none_of(formats_of_files, [&name = name](const Format* format) { return knows(*format, name); }))
+        std::ranges::none_of(formats_of_files,
+                             [&name = name](const Format* format) { return knows(*format, name); }))
       refuse_option(name, formats_of_files);
 }
 
@@ -122,9 +133,10 @@ ImportOptions known_to(const Format& format, const ImportOptions& options) {
 void tell_range(const ValueRange& range, const ImportOptions& options) {
   if (!range.is_there) return;
   const auto asked = options.range("range");
-  log::info("colours: {} from {:.6g} to {:.6g}, dark blue to yellow (viridis){}", range.what, asked ? asked->first : range.low,
-            asked ? asked->second : range.high,
-            asked ? fmt::format("; the values are from {:.6g} to {:.6g}", range.low, range.high) : "");
+  log::info(
+      "colours: {} from {:.6g} to {:.6g}, dark blue to yellow (viridis){}", range.what,
+      asked ? asked->first : range.low, asked ? asked->second : range.high,
+      asked ? fmt::format("; the values are from {:.6g} to {:.6g}", range.low, range.high) : "");
 }
 
 /// Returns the legend of a colour map.
@@ -174,12 +186,12 @@ Scene joined(std::vector<Imported> files, std::span<const fs::path> paths) {
   for (std::size_t i = 0; i < files.size(); ++i) {
     open_again(files[i]);
     if (files[i].has_camera && with_camera)
-      throw InputError({paths[i].string()},
-                       "brings a camera, as " + paths[*with_camera].string() + " does: of several files one at most may");
+      throw InputError({paths[i].string()}, "brings a camera, as " + paths[*with_camera].string() +
+                                                " does: of several files one at most may");
     if (files[i].has_camera) with_camera = i;
   }
-  // Without a camera, the first file that states a picture or lights gives size and samples; if none does, the format that asks
-  // for most.
+  // Without a camera, the first file that states a picture or lights gives size and samples; if
+  // none does, the format that asks for most.
   std::optional<std::size_t> settings = with_camera;
   for (std::size_t i = 0; i < files.size() && !settings; ++i)
     if (!files[i].scene.film.filename.empty() || files[i].is_lit) settings = i;
@@ -193,14 +205,18 @@ Scene joined(std::vector<Imported> files, std::span<const fs::path> paths) {
     scene.sampler = from.sampler;
     scene.integrator = from.integrator;
     scene.source = from.source;
-    scene.has_no_up = std::ranges::all_of(files, [](const Imported& file) { return file.scene.has_no_up; });
+    scene.has_no_up =
+        std::ranges::all_of(files, [](const Imported& file) { return file.scene.has_no_up; });
     scene.world_from_file = from.world_from_file;
-    if (std::ranges::all_of(files, [&](const Imported& file) { return file.scene.unit == from.unit; })) scene.unit = from.unit;
+    if (std::ranges::all_of(files,
+                            [&](const Imported& file) { return file.scene.unit == from.unit; }))
+      scene.unit = from.unit;
     for (const Imported& file : files) {
       if (!scene.legend) scene.legend = file.scene.legend;
       if (settings) continue;
       scene.film.least_width = std::max(scene.film.least_width, file.scene.film.least_width);
-      scene.sampler.samples_per_pixel = std::max(scene.sampler.samples_per_pixel, file.scene.sampler.samples_per_pixel);
+      scene.sampler.samples_per_pixel =
+          std::max(scene.sampler.samples_per_pixel, file.scene.sampler.samples_per_pixel);
     }
   }
   Imported out(std::move(scene));
@@ -209,7 +225,8 @@ Scene joined(std::vector<Imported> files, std::span<const fs::path> paths) {
   for (std::size_t i = 0; i < files.size(); ++i) {
     Scene& part = files[i].scene;
     out.is_lit |= files[i].is_lit;
-    prefix_names(part, names[i], paths[i].stem().string());  // pictures use the prefixed names of shapes
+    prefix_names(part, names[i],
+                 paths[i].stem().string());  // pictures use the prefixed names of shapes
     const Appended at = append(out.scene, std::move(part));
     if (i == head && out.scene.camera.medium) *out.scene.camera.medium += at.media;
     part = {};
@@ -235,7 +252,8 @@ const Format& format_of(const fs::path& path) {
   throw InputError({path.string()}, "no known scene format (known: " + known + ")");
 }
 
-Imported read_scene(const fs::path& path, const ImageReader& images, const ImportOptions& options, const Format* format) {
+Imported read_scene(const fs::path& path, const ImageReader& images, const ImportOptions& options,
+                    const Format* format) {
   const Fence fence(path, options);
   check_readable(path);
   if (!format) format = &format_of(path);
@@ -247,7 +265,8 @@ Scene presented(Imported file) {
   Scene& scene = file.scene;
   if (scene.automatic_camera || (file.has_camera && file.is_lit)) return std::move(scene);
   if (!file.has_camera && !file.is_lit && scene.shapes.empty() && scene.instances.empty())
-    throw InputError(SourceLocation{scene.source}, "the scene is empty: it has no shapes, no light and no camera");
+    throw InputError(SourceLocation{scene.source},
+                     "the scene is empty: it has no shapes, no light and no camera");
   if (!can_be_framed(scene)) return std::move(scene);
   const Camera camera = scene.camera;
   if (file.is_lit)
@@ -265,7 +284,8 @@ Scene import_scene(const fs::path& path, const ImageReader& images, const Import
   return import_scenes(std::span(&path, 1), images, options);
 }
 
-Scene import_scenes(std::span<const fs::path> paths, const ImageReader& images, const ImportOptions& options) {
+Scene import_scenes(std::span<const fs::path> paths, const ImageReader& images,
+                    const ImportOptions& options) {
   std::vector<const Format*> formats_of_files;
   for (const fs::path& path : paths) {
     const Fence fence(path, options);
@@ -281,7 +301,8 @@ Scene import_scenes(std::span<const fs::path> paths, const ImageReader& images, 
     of_all.files = paths.size();
     of_all.seen = std::make_shared<ValueRange>();
     const Fence fence(paths[i], options);
-    Imported file = formats_of_files[i]->import(paths[i], images, known_to(*formats_of_files[i], of_all));
+    Imported file =
+        formats_of_files[i]->import(paths[i], images, known_to(*formats_of_files[i], of_all));
     if (const ValueRange& seen = *of_all.seen; seen.is_there) {
       by_values.push_back(i);
       all.what = seen.what;
@@ -298,10 +319,13 @@ Scene import_scenes(std::span<const fs::path> paths, const ImageReader& images, 
     of_all.set("range", fmt::format("{},{}", all.low, all.high));
     for (const std::size_t i : std::exchange(by_values, {})) files[i] = read(i, of_all);
   }
-  Scene scene = files.size() == 1 ? presented(std::move(files.front())) : joined(std::move(files), paths);
+  Scene scene =
+      files.size() == 1 ? presented(std::move(files.front())) : joined(std::move(files), paths);
   if (all.is_there && !scene.legend) scene.legend = legend_of(all, options);
   apply_picture_options(scene, images, options,
-             std::ranges::any_of(formats_of_files, [](const Format* format) { return knows(*format, "up"); }));
+                        std::ranges::any_of(formats_of_files, [](const Format* format) {
+                          return knows(*format, "up");
+                        }));
   make_names_valid(scene);
   return validated(std::move(scene));
 }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Reads scene files of every known format into the model. Each format has one file here, one row in importers.def and one page in
-// docs/formats.
+// Reads scene files of every known format into the model. Each format has one file here, one row in
+// importers.def and one page in docs/formats.
 #pragma once
 
 #include <cstdint>
@@ -33,7 +33,8 @@ struct Format {
   std::vector<std::string> extensions;  // ".pbrt"
   std::vector<std::string> options;     // names of import_option_rows() that it knows
   /// Throws InputError.
-  Imported (*import)(const std::filesystem::path& path, const ImageReader& images, const ImportOptions& options);
+  Imported (*import)(const std::filesystem::path& path, const ImageReader& images,
+                     const ImportOptions& options);
   // The default for files that do not state it.
   int samples_per_pixel = SamplerSettings{}.samples_per_pixel;
   double least_width = FilmSettings{}.least_width;
@@ -41,27 +42,34 @@ struct Format {
 
 const std::vector<Format>& formats();
 
-/// Returns whether an XML file with this root element may be of the format, for formats that share an ending.
+/// Returns whether an XML file with this root element may be of the format, for formats that share
+/// an ending.
 bool is_its_root(const Format& format, std::string_view root);
 
-/// Imports by extension. The scene is validated; missing camera, light or material get sensible defaults. Throws InputError for a
-/// missing, unreadable or wrong file, an unknown extension, or an option that its format does not know.
-Scene import_scene(const std::filesystem::path& path, const ImageReader& images, const ImportOptions& options = {});
+/// Imports by extension. The scene is validated; missing camera, light or material get sensible
+/// defaults. Throws InputError for a missing, unreadable or wrong file, an unknown extension, or an
+/// option that its format does not know.
+Scene import_scene(const std::filesystem::path& path, const ImageReader& images,
+                   const ImportOptions& options = {});
 
-/// Reads several files of any formats as one scene. Their contents keep their coordinates, and names of shapes begin with that of
-/// their file. At most one may bring a camera, whose film, sampler and integrator are then used; without one the camera frames
-/// everything, and studio light is added if no file brings light. An option applies to all files whose format knows it. Throws
+/// Reads several files of any formats as one scene. Their contents keep their coordinates, and
+/// names of shapes begin with that of their file. At most one may bring a camera, whose film,
+/// sampler and integrator are then used; without one the camera frames everything, and studio light
+/// is added if no file brings light. An option applies to all files whose format knows it. Throws
 /// InputError.
-Scene import_scenes(std::span<const std::filesystem::path> paths, const ImageReader& images, const ImportOptions& options = {});
+Scene import_scenes(std::span<const std::filesystem::path> paths, const ImageReader& images,
+                    const ImportOptions& options = {});
 
-/// Reads one file and adds no camera or light; `format` overrides the format of its name. Throws InputError.
-Imported read_scene(const std::filesystem::path& path, const ImageReader& images, const ImportOptions& options = {},
-                    const Format* format = nullptr);
+/// Reads one file and adds no camera or light; `format` overrides the format of its name. Throws
+/// InputError.
+Imported read_scene(const std::filesystem::path& path, const ImageReader& images,
+                    const ImportOptions& options = {}, const Format* format = nullptr);
 
 /// Adds the camera and the light that the file lacks (present/present.h).
 Scene presented(Imported file);
 
-/// Returns the format of a file by its name, and for .xml by its root element. Throws InputError for an unknown extension.
+/// Returns the format of a file by its name, and for .xml by its root element. Throws InputError
+/// for an unknown extension.
 const Format& format_of(const std::filesystem::path& path);
 
 }  // namespace caplet

@@ -13,47 +13,66 @@ namespace caplet {
 const std::vector<ImportOptionRow>& import_option_rows() {
   using Of = ImportOptionRow::Of;
   static const std::vector<ImportOptionRow> rows = {
-      {"style", "ball-and-stick|spheres|sticks|trace", "How molecules are drawn: ball-and-stick, spheres, sticks or trace",
-       Of::format},
-      {"color", "element|chain|residue|bfactor|direction|fibre|file|scalar|scalar:NAME|type|order|depth|FILE",
-       "What colours tell: element, chain, residue or bfactor of molecules; direction, fibre, file, scalar or scalar:NAME of "
+      {"style", "ball-and-stick|spheres|sticks|trace",
+       "How molecules are drawn: ball-and-stick, spheres, sticks or trace", Of::format},
+      {"color",
+       "element|chain|residue|bfactor|direction|fibre|file|scalar|scalar:NAME|type|order|depth|"
+       "FILE",
+       "What colours tell: element, chain, residue or bfactor of molecules; direction, fibre, "
+       "file, scalar or scalar:NAME of "
        "fibres; type, file, order, depth or a FILE of values of neurons",
        Of::format},
       {"range", "LOW,HIGH", "Values at the ends of the colour map", Of::format},
-      {"select", "ATOMS", "Part of a molecule, as gemmi and mmdb write it: //A,B/10-20/CA; see docs/formats/molecules.md",
+      {"select", "ATOMS",
+       "Part of a molecule, as gemmi and mmdb write it: //A,B/10-20/CA; see "
+       "docs/formats/molecules.md",
        Of::format},
       {"model", "N", "Which model, frame or record of a file of several, from 1", Of::format},
-      {"positions", "FILE.npy", "Places of a molecule's atoms, an array (T, N, 3): T frames, of which --model chooses one",
+      {"positions", "FILE.npy",
+       "Places of a molecule's atoms, an array (T, N, 3): T frames, of which --model chooses one",
        Of::format},
-      {"altloc", "first|all|LETTER", "Alternative places of atoms: first (of each residue), all, or a letter", Of::format},
+      {"altloc", "first|all|LETTER",
+       "Alternative places of atoms: first (of each residue), all, or a letter", Of::format},
       {"assembly", "cell|NAME",
-       "A biological assembly of the file, by instances: its name, such as 1; cell: all of a crystal's cell", Of::format},
+       "A biological assembly of the file, by instances: its name, such as 1; cell: all of a "
+       "crystal's cell",
+       Of::format},
       {"hydrogens", "yes|no", "Whether hydrogen atoms are drawn", Of::format},
       {"water", "yes|no", "Whether water molecules are drawn", Of::format},
-      {"components", "FILE", "Chemical components (mmCIF, _chem_comp_bond) whose bonds residues of their names have", Of::format},
+      {"components", "FILE",
+       "Chemical components (mmCIF, _chem_comp_bond) whose bonds residues of their names have",
+       Of::format},
       {"radius", "R", "Radius of fibres, in the file's unit", Of::format},
       {"groups", "visual|collision|all|N,...",
-       "Which geometry of a robot is drawn: seen, touched, all, or MJCF's groups of these numbers", Of::format},
+       "Which geometry of a robot is drawn: seen, touched, all, or MJCF's groups of these numbers",
+       Of::format},
       {"pose", "[KEYFRAME,]JOINT=VALUE,...",
-       "A robot's pose: a keyframe of MJCF by its name, and values of joints in radians and metres", Of::format},
+       "A robot's pose: a keyframe of MJCF by its name, and values of joints in radians and metres",
+       Of::format},
       {"camera", "NAME", "A camera of the file", Of::format},
       {"view", "front|back|left|right|top|bottom|iso|X,Y,Z",
-       "From where an automatic camera looks: front, back, left, right, top, bottom, iso, or the direction toward the viewer; "
+       "From where an automatic camera looks: front, back, left, right, top, bottom, iso, or the "
+       "direction toward the viewer; "
        "frames everything",
        Of::picture},
       {"up", "x|y|z|-x|-y|-z", "The axis of the file that is up", Of::picture},
-      {"projection", "perspective|orthographic", "Of the automatic camera; orthographic: lengths are the same at all depths",
-       Of::picture},
+      {"projection", "perspective|orthographic",
+       "Of the automatic camera; orthographic: lengths are the same at all depths", Of::picture},
       {"light", "studio|flat|dramatic",
-       "A set-up of lights around the camera in place of the scene's lights (shapes that shine stay)", Of::picture},
+       "A set-up of lights around the camera in place of the scene's lights (shapes that shine "
+       "stay)",
+       Of::picture},
       {"background", "transparent|white|black|grey|COLOR|FILE",
-       "What stands behind everything, as bright as it is: nothing, white, black, grey, #rrggbb, r,g,b, or a picture; the lights "
+       "What stands behind everything, as bright as it is: nothing, white, black, grey, #rrggbb, "
+       "r,g,b, or a picture; the lights "
        "are then not seen",
        Of::picture},
-      {"least-width", "PIXELS", "Capsules and spheres are drawn at least so wide (0: as they are); not for pick and verify",
+      {"least-width", "PIXELS",
+       "Capsules and spheres are drawn at least so wide (0: as they are); not for pick and verify",
        Of::picture},
       {"no-outside", "yes|no",
-       "Files of a scene may name others in the scene's own folder and below it alone, wherever links lead: for scenes of "
+       "Files of a scene may name others in the scene's own folder and below it alone, wherever "
+       "links lead: for scenes of "
        "strangers",
        Of::reading},
   };
@@ -71,7 +90,8 @@ std::optional<std::string> ImportOptions::text(const std::string& name) const {
   return found == values_.end() ? std::nullopt : std::optional(found->second);
 }
 
-std::size_t ImportOptions::choice(const std::string& name, std::initializer_list<const char*> choices,
+std::size_t ImportOptions::choice(const std::string& name,
+                                  std::initializer_list<const char*> choices,
                                   std::size_t otherwise) const {
   const std::optional<std::string> asked = text(name);
   if (!asked) return otherwise;
@@ -96,9 +116,10 @@ std::optional<std::pair<double, double>> ImportOptions::range(const std::string&
   const std::size_t comma = std::min(whole.find(','), whole.size());
   std::pair<double, double> out;
   if (comma == whole.size() || !parse_number(whole.substr(0, comma), out.first) ||
-      !parse_number(whole.substr(comma + 1), out.second) || !std::isfinite(out.first) || !std::isfinite(out.second) ||
-      !(out.first < out.second))
-    throw InputError({"--" + name}, "'" + *asked + "' is not LOW,HIGH: two numbers, the second above the first");
+      !parse_number(whole.substr(comma + 1), out.second) || !std::isfinite(out.first) ||
+      !std::isfinite(out.second) || !(out.first < out.second))
+    throw InputError({"--" + name},
+                     "'" + *asked + "' is not LOW,HIGH: two numbers, the second above the first");
   return out;
 }
 

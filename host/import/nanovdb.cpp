@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// NanoVDB files (Museth, "NanoVDB: A GPU-friendly and portable VDB data structure for real-time rendering and simulation", 2021).
-// A segment has a header, the metadata of each grid, and the grids as they are in memory; from version 32.6 on a file may hold
-// grids alone. Layouts are those of version 32.
+// NanoVDB files (Museth, "NanoVDB: A GPU-friendly and portable VDB data structure for real-time
+// rendering and simulation", 2021). A segment has a header, the metadata of each grid, and the
+// grids as they are in memory; from version 32.6 on a file may hold grids alone. Layouts are those
+// of version 32.
 #include "import/detail/nanovdb.h"
 
 #include <zlib.h>
@@ -19,8 +20,10 @@ namespace caplet {
 
 namespace {
 
-// The magic numbers are "NanoVDB0", and in newer files "NanoVDB1" for grids and "NanoVDB2" for files.
-constexpr std::uint64_t magic = 0x304244566f6e614e, magic_grid = 0x314244566f6e614e, magic_mask = 0x00ffffffffffffff;
+// The magic numbers are "NanoVDB0", and in newer files "NanoVDB1" for grids and "NanoVDB2" for
+// files.
+constexpr std::uint64_t magic = 0x304244566f6e614e, magic_grid = 0x314244566f6e614e,
+                        magic_mask = 0x00ffffffffffffff;
 constexpr std::size_t file_header_bytes = 16, meta_bytes = 176, grid_bytes = 672;
 constexpr std::uint32_t type_float = 1, type_fp4 = 13, type_fpn = 16, class_level_set = 1;
 // Names are indexed by type number; types of newer versions have none.
@@ -65,10 +68,13 @@ class GridBytes {
     return value;
   }
   void need(std::uint64_t offset, std::uint64_t count) const {
-    if (offset > bytes_.size() || count > bytes_.size() - offset) fail("ends in the middle of a grid");
+    if (offset > bytes_.size() || count > bytes_.size() - offset)
+      fail("ends in the middle of a grid");
   }
   std::uint64_t size() const { return bytes_.size(); }
-  [[noreturn]] void fail(const std::string& what) const { throw InputError(where_, file_ + ": " + what); }
+  [[noreturn]] void fail(const std::string& what) const {
+    throw InputError(where_, file_ + ": " + what);
+  }
 
  private:
   const std::vector<char>& bytes_;
@@ -82,18 +88,23 @@ class GridReader {
   GridReader(const GridBytes& bytes) : bytes_(bytes) {}
 
   SparseGrid read() {
-    if ((bytes_.at<std::uint64_t>(0) & magic_mask) != (magic & magic_mask)) bytes_.fail("is no NanoVDB grid");
+    if ((bytes_.at<std::uint64_t>(0) & magic_mask) != (magic & magic_mask))
+      bytes_.fail("is no NanoVDB grid");
     type_ = bytes_.at<std::uint32_t>(636);
     if (bytes_.at<std::uint32_t>(632) == class_level_set)
       bytes_.fail("has a level set (distances from a surface) where densities are wanted");
     if (type_ != type_float && !(type_ >= type_fp4 && type_ <= type_fpn))
-      bytes_.fail("has a grid of " + std::string(type_ < std::size(type_names) ? type_names[type_] : type_names[0]) +
+      bytes_.fail("has a grid of " +
+                  std::string(type_ < std::size(type_names) ? type_names[type_] : type_names[0]) +
                   ": 32-bit floats and quantised ones are read");
-    const std::uint64_t map = 40 + 256;  // offset after magic, checksum, version, flags, index, count, size and name
+    const std::uint64_t map =
+        40 + 256;  // offset after magic, checksum, version, flags, index, count, size and name
     for (int r = 0; r < 3; ++r) {
       for (int c = 0; c < 3; ++c)
-        out_.medium_from_voxels[c][r] = bytes_.at<double>(map + 88 + 8 * static_cast<std::uint64_t>(3 * r + c));
-      out_.medium_from_voxels[3][r] = bytes_.at<double>(map + 88 + 144 + 8 * static_cast<std::uint64_t>(r));
+        out_.medium_from_voxels[c][r] =
+            bytes_.at<double>(map + 88 + 8 * static_cast<std::uint64_t>(3 * r + c));
+      out_.medium_from_voxels[3][r] =
+          bytes_.at<double>(map + 88 + 144 + 8 * static_cast<std::uint64_t>(r));
       out_.box.min[r] = bytes_.at<double>(map + 264 + 8 * static_cast<std::uint64_t>(r));
       out_.box.max[r] = bytes_.at<double>(map + 264 + 24 + 8 * static_cast<std::uint64_t>(r));
     }
@@ -122,7 +133,9 @@ class GridReader {
   using Coordinates = std::array<std::int32_t, 3>;
   static constexpr std::uint64_t root_bytes = 64;
 
-  static std::uint64_t at(std::uint64_t node, std::int64_t offset) { return node + static_cast<std::uint64_t>(offset); }
+  static std::uint64_t at(std::uint64_t node, std::int64_t offset) {
+    return node + static_cast<std::uint64_t>(offset);
+  }
 
   /// The tree has 32^3 nodes over 16^3 nodes over leaves of 8^3 voxels.
   template <int Log>
@@ -134,7 +147,8 @@ class GridReader {
     for (std::uint64_t i = 0; i < children; ++i) {
       const auto n = static_cast<std::int32_t>(i);
       constexpr std::int32_t most = (1 << Log) - 1;
-      const Coordinates here{low[0] + side * (n >> 2 * Log), low[1] + side * (n >> Log & most), low[2] + side * (n & most)};
+      const Coordinates here{low[0] + side * (n >> 2 * Log), low[1] + side * (n >> Log & most),
+                             low[2] + side * (n & most)};
       if ((bytes_.at<std::uint8_t>(begin + child_mask + i / 8) >> (i % 8) & 1) != 0) {
         const std::uint64_t child = at(begin, bytes_.at<std::int64_t>(begin + table + 8 * i));
         if constexpr (Log == 5)
@@ -147,8 +161,9 @@ class GridReader {
     }
   }
 
-  /// After its origin, flags and mask, a leaf has four statistics and the values; a quantised one has the minimum, the step,
-  /// statistics and codes of 4, 8 or 16 bits, or of 1 to 16 bits by its flags.
+  /// After its origin, flags and mask, a leaf has four statistics and the values; a quantised one
+  /// has the minimum, the step, statistics and codes of 4, 8 or 16 bits, or of 1 to 16 bits by its
+  /// flags.
   void leaf(std::uint64_t begin, const Coordinates& low) {
     constexpr std::uint64_t values = 96;
     int bits = 32;
@@ -164,22 +179,25 @@ class GridReader {
     const auto value_of = [&](std::uint64_t i) {
       if (bits == 32) return bytes_.at<float>(begin + values + 4 * i);
       const std::uint64_t bit = i * static_cast<std::uint64_t>(bits), at = begin + values + bit / 8;
-      const unsigned code =
-          bits == 16 ? bytes_.at<std::uint16_t>(at) : bytes_.at<std::uint8_t>(at) >> (bit % 8) & ((1u << bits) - 1);
+      const unsigned code = bits == 16
+                                ? bytes_.at<std::uint16_t>(at)
+                                : bytes_.at<std::uint8_t>(at) >> (bit % 8) & ((1u << bits) - 1);
       return static_cast<float>(code) * step + least;
     };
     std::vector<float>& to = brick(low);
     const std::size_t first = to.size() - 512;
     for (std::size_t i = 0; i < 512; ++i) {
       const float value = value_of(i);
-      if (!std::isfinite(value) || value < 0) bytes_.fail("has values that are negative or not finite");
+      if (!std::isfinite(value) || value < 0)
+        bytes_.fail("has values that are negative or not finite");
       // The order changes from x slowest to x fastest.
       to[first + ((i & 7) * 8 + (i >> 3 & 7)) * 8 + (i >> 6)] = value;
     }
   }
 
   void constant(float value, const Coordinates& low, int side) {
-    if (!std::isfinite(value) || value < 0) bytes_.fail("has values that are negative or not finite");
+    if (!std::isfinite(value) || value < 0)
+      bytes_.fail("has values that are negative or not finite");
     if (value == 0) return;
     for (int x = 0; x < side; x += 8)
       for (int y = 0; y < side; y += 8)
@@ -191,7 +209,8 @@ class GridReader {
 
   /// Appends a brick at the end of all values.
   std::vector<float>& brick(const Coordinates& low) {
-    if (out_.bricks.size() >= most_spanned_bricks / 16) bytes_.fail("has more than 8 million bricks of 8^3 voxels");
+    if (out_.bricks.size() >= most_spanned_bricks / 16)
+      bytes_.fail("has more than 8 million bricks of 8^3 voxels");
     out_.bricks.push_back({low[0] >> 3, low[1] >> 3, low[2] >> 3});
     out_.values.resize(out_.values.size() + 512);
     return out_.values;
@@ -203,11 +222,12 @@ class GridReader {
   SparseGrid out_;
 };
 
-std::vector<char> inflated(const std::vector<char>& from, std::uint64_t size, const GridBytes& bytes) {
+std::vector<char> inflated(const std::vector<char>& from, std::uint64_t size,
+                           const GridBytes& bytes) {
   std::vector<char> out(size);
   uLongf length = size;
-  if (uncompress(reinterpret_cast<Bytef*>(out.data()), &length, reinterpret_cast<const Bytef*>(from.data()), from.size()) !=
-          Z_OK ||
+  if (uncompress(reinterpret_cast<Bytef*>(out.data()), &length,
+                 reinterpret_cast<const Bytef*>(from.data()), from.size()) != Z_OK ||
       length != size)
     bytes.fail("has a grid whose compression is broken");
   return out;
@@ -215,10 +235,12 @@ std::vector<char> inflated(const std::vector<char>& from, std::uint64_t size, co
 
 }  // namespace
 
-SparseGridPointer read_nanovdb(const std::string& file, const std::string& name, const SourceLocation& where) {
+SparseGridPointer read_nanovdb(const std::string& file, const std::string& name,
+                               const SourceLocation& where) {
   begin_reading(file, where);
   std::ifstream stream;
-  if (is_file(file, where)) stream.open(file, std::ios::binary | std::ios::ate);  // opening a pipe would block
+  if (is_file(file, where))
+    stream.open(file, std::ios::binary | std::ios::ate);  // opening a pipe would block
   if (!stream.is_open()) throw InputError(where, file + ": cannot be read");
   const auto total = static_cast<std::uint64_t>(stream.tellg());
   std::uint64_t at = 0;
@@ -232,7 +254,8 @@ SparseGridPointer read_nanovdb(const std::string& file, const std::string& name,
     return out;
   };
   const auto check_version = [&](std::uint32_t version) {
-    if (version >> 21 != 32) whole.fail("is of NanoVDB version " + std::to_string(version >> 21) + ", not 32");
+    if (version >> 21 != 32)
+      whole.fail("is of NanoVDB version " + std::to_string(version >> 21) + ", not 32");
   };
   const auto grid_of = [&](const std::vector<char>& memory) {
     const GridBytes bytes(memory, where, file);
@@ -250,11 +273,13 @@ SparseGridPointer read_nanovdb(const std::string& file, const std::string& name,
       check_version(grid.at<std::uint32_t>(16));
       const auto size = grid.at<std::uint64_t>(32);
       if (size < grid_bytes || size > total - at) whole.fail("ends in the middle of a grid");
-      if (std::string(begin.data() + 40, strnlen(begin.data() + 40, 256)) == name) return grid_of(read(at, size));
+      if (std::string(begin.data() + 40, strnlen(begin.data() + 40, 256)) == name)
+        return grid_of(read(at, size));
       at += size;
       continue;
     }
-    if ((header.at<std::uint64_t>(0) & magic_mask) != (magic & magic_mask)) whole.fail("is no NanoVDB file");
+    if ((header.at<std::uint64_t>(0) & magic_mask) != (magic & magic_mask))
+      whole.fail("is no NanoVDB file");
     check_version(header.at<std::uint32_t>(8));
     const auto grids = header.at<std::uint16_t>(12), codec = header.at<std::uint16_t>(14);
     at += file_header_bytes;
@@ -273,7 +298,8 @@ SparseGridPointer read_nanovdb(const std::string& file, const std::string& name,
       at += meta_bytes + length;
     }
     for (const Told& one : all) {
-      // A compressed grid is preceded by its length; writers disagree on whether the size in the metadata includes that.
+      // A compressed grid is preceded by its length; writers disagree on whether the size in the
+      // metadata includes that.
       const std::uint64_t prefix = codec == codec_none ? 0 : 8;
       std::uint64_t bytes = one.bytes;
       if (prefix != 0) {
@@ -285,7 +311,9 @@ SparseGridPointer read_nanovdb(const std::string& file, const std::string& name,
       if (one.name == name) {
         if (one.size > most_bytes) whole.fail("has a grid \"" + name + "\" of more than 16 GiB");
         if (codec != codec_none && codec != codec_zip)
-          whole.fail("is compressed by BLOSC, which is not read: convert it with ZIP or without compression");
+          whole.fail(
+              "is compressed by BLOSC, which is not read: convert it with ZIP or without "
+              "compression");
         const std::vector<char> memory = read(at, bytes);
         return grid_of(codec == codec_zip ? inflated(memory, one.size, whole) : memory);
       }

@@ -18,7 +18,8 @@ double width_of(const std::string& text) {
   const NumberError error = parse_float(text, value);
   if (error != NumberError::none) throw InputError({"--least-width"}, describe(error, text));
   if (!(value >= 0 && value <= widest_least_width))
-    throw InputError({"--least-width"}, fmt::format("'{}' is not from 0 to {} pixels", text, widest_least_width));
+    throw InputError({"--least-width"},
+                     fmt::format("'{}' is not from 0 to {} pixels", text, widest_least_width));
   return value;
 }
 
@@ -27,11 +28,14 @@ void look_from(Scene& scene, const ImportOptions& options, bool is_turned) {
   const bool projects = options.text("projection").has_value();
   if (!view && !up && !projects) return;
   if (!view && !scene.automatic_camera)
-    throw InputError({up ? "--up" : "--projection"}, "the scene has a camera of its own: with --view it is framed anew");
+    throw InputError({up ? "--up" : "--projection"},
+                     "the scene has a camera of its own: with --view it is framed anew");
   Framing& framing = scene.framing;
   if (up) framing.up = parse_axis(*up, "--up");
-  if (view) framing.toward_viewer = parse_view(*view, framing.up.value_or(glm::dvec3(0, 1, 0)), "--view");
-  if (projects) framing.is_orthographic = options.choice("projection", {"perspective", "orthographic"}, 0) == 1;
+  if (view)
+    framing.toward_viewer = parse_view(*view, framing.up.value_or(glm::dvec3(0, 1, 0)), "--view");
+  if (projects)
+    framing.is_orthographic = options.choice("projection", {"perspective", "orthographic"}, 0) == 1;
   if (!can_be_framed(scene)) return;
   const auto medium = scene.camera.medium;
   frame_camera(scene);
@@ -41,10 +45,12 @@ void look_from(Scene& scene, const ImportOptions& options, bool is_turned) {
 
 }  // namespace
 
-void apply_picture_options(Scene& scene, const ImageReader& images, const ImportOptions& options, bool is_turned) {
+void apply_picture_options(Scene& scene, const ImageReader& images, const ImportOptions& options,
+                           bool is_turned) {
   look_from(scene, options, is_turned);
   if (const auto light = options.text("light")) set_light(scene, *light, "--light");
-  if (const auto backdrop = options.text("background")) scene.film.backdrop = parse_backdrop(*backdrop, images, "--background");
+  if (const auto backdrop = options.text("background"))
+    scene.film.backdrop = parse_backdrop(*backdrop, images, "--background");
   if (const auto width = options.text("least-width")) scene.film.least_width = width_of(*width);
 }
 

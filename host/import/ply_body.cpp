@@ -17,16 +17,22 @@ namespace caplet::ply {
 
 namespace {
 
-static_assert(std::endian::native == std::endian::little, "values are put together in the host's byte order");
+static_assert(std::endian::native == std::endian::little,
+              "values are put together in the host's byte order");
 
 /// Reads one value after the other, from text or bytes.
 class PlyValues {
  public:
   PlyValues(const std::string& file, std::string_view bytes, const Header& header)
-      : file_(file), bytes_(bytes), at_(header.size), line_(header.lines + 1), encoding_(header.encoding) {}
+      : file_(file),
+        bytes_(bytes),
+        at_(header.size),
+        line_(header.lines + 1),
+        encoding_(header.encoding) {}
 
   double number(Type type) {
-    if (encoding_ == Encoding::ascii) return is_float(type) ? ascii_float() : static_cast<double>(ascii_integer(type));
+    if (encoding_ == Encoding::ascii)
+      return is_float(type) ? ascii_float() : static_cast<double>(ascii_integer(type));
     switch (type) {
       case Type::int8:
         return binary<std::int8_t>();
@@ -62,14 +68,17 @@ class PlyValues {
   [[noreturn]] void fail(const std::string& message) const {
     throw InputError(SourceLocation{file_, encoding_ == Encoding::ascii ? line_ : 0}, message);
   }
-  [[noreturn]] void truncated() const { fail("the PLY file is truncated: it ends before all that its header promises"); }
+  [[noreturn]] void truncated() const {
+    fail("the PLY file is truncated: it ends before all that its header promises");
+  }
 
  private:
   template <class T>
   T binary() {
     if (bytes_.size() - at_ < sizeof(T)) truncated();
     std::array<char, sizeof(T)> raw;
-    for (std::size_t i = 0; i < sizeof(T); ++i) raw[encoding_ == Encoding::little ? i : sizeof(T) - 1 - i] = bytes_[at_ + i];
+    for (std::size_t i = 0; i < sizeof(T); ++i)
+      raw[encoding_ == Encoding::little ? i : sizeof(T) - 1 - i] = bytes_[at_ + i];
     at_ += sizeof(T);
     T value;
     std::memcpy(&value, raw.data(), sizeof(T));
@@ -90,7 +99,8 @@ class PlyValues {
 
   [[noreturn]] void bad(std::string_view word, const char* what) const {
     std::string shown;
-    for (char c : word.substr(0, 40)) shown += static_cast<unsigned char>(c) < 32 || c == 127 ? '?' : c;
+    for (char c : word.substr(0, 40))
+      shown += static_cast<unsigned char>(c) < 32 || c == 127 ? '?' : c;
     fail("\"" + shown + "\" is no " + what);
   }
 
@@ -98,8 +108,10 @@ class PlyValues {
     const std::string_view word = token();
     double value = 0;
     const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-    if (error == std::errc::invalid_argument || end != word.data() + word.size()) bad(word, "number");
-    if (error == std::errc::result_out_of_range) value = std::strtod(std::string(word).c_str(), nullptr);
+    if (error == std::errc::invalid_argument || end != word.data() + word.size())
+      bad(word, "number");
+    if (error == std::errc::result_out_of_range)
+      value = std::strtod(std::string(word).c_str(), nullptr);
     return value;
   }
 
@@ -136,8 +148,9 @@ int part_of(const Property& property) {
 
 /// Returns the colour component of a property: 0 to 2, or -1.
 int color_component(const Property& property) {
-  constexpr std::string_view names[3][4] = {
-      {"red", "r", "diffuse_red", "Red"}, {"green", "g", "diffuse_green", "Green"}, {"blue", "b", "diffuse_blue", "Blue"}};
+  constexpr std::string_view names[3][4] = {{"red", "r", "diffuse_red", "Red"},
+                                            {"green", "g", "diffuse_green", "Green"},
+                                            {"blue", "b", "diffuse_blue", "Blue"}};
   if (property.is_list) return -1;
   for (int k = 0; k < 3; ++k)
     for (const std::string_view name : names[k])
@@ -157,7 +170,8 @@ double white_of(Type type) { return is_float(type) ? 1 : size_of(type) == 2 ? 65
 
 class BodyReader {
  public:
-  BodyReader(const std::string& file, std::string_view bytes, const Header& header, bool with_colors)
+  BodyReader(const std::string& file, std::string_view bytes, const Header& header,
+             bool with_colors)
       : header_(header), values_(file, bytes, header) {
     const Element &vertex = header.elements[header.vertex], &face = header.elements[header.face];
     of_vertices_ = with_colors && has_color(vertex);
@@ -178,7 +192,8 @@ class BodyReader {
         else
           for (std::size_t p = 0; p < header_.elements[e].properties.size(); ++p)
             property(header_.elements[e].properties[p], e == header_.face && p == header_.indices);
-        if (with_color_) (e == header_.vertex ? body_.vertex_colors : body_.face_colors).push_back(color_);
+        if (with_color_)
+          (e == header_.vertex ? body_.vertex_colors : body_.face_colors).push_back(color_);
       }
     }
     return std::move(body_);
@@ -223,7 +238,8 @@ class BodyReader {
       const double value = values_.number(p.type);
       if (!is_indices) continue;
       if (value < 0 || value >= static_cast<double>(header_.elements[header_.vertex].count))
-        values_.fail("a PLY face has the vertex index " + std::to_string(static_cast<std::int64_t>(value)) + ", but there are " +
+        values_.fail("a PLY face has the vertex index " +
+                     std::to_string(static_cast<std::int64_t>(value)) + ", but there are " +
                      std::to_string(header_.elements[header_.vertex].count) + " vertices");
       body_.corners.push_back(static_cast<std::uint32_t>(value));
     }
@@ -241,7 +257,8 @@ class BodyReader {
 
 }  // namespace
 
-Body read_body(const std::string& file, std::string_view bytes, const Header& header, bool with_colors) {
+Body read_body(const std::string& file, std::string_view bytes, const Header& header,
+               bool with_colors) {
   return BodyReader(file, bytes, header, with_colors).read();
 }
 

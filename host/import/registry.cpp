@@ -11,7 +11,8 @@ namespace caplet {
 namespace {
 
 template <auto function>
-Imported imported(const std::filesystem::path& path, const ImageReader& images, const ImportOptions& options) {
+Imported imported(const std::filesystem::path& path, const ImageReader& images,
+                  const ImportOptions& options) {
   return function(path, images, options);
 }
 
@@ -39,7 +40,8 @@ const std::vector<std::pair<std::string, std::string>>& xml_roots() {
 }  // namespace
 
 bool is_its_root(const Format& format, std::string_view root) {
-  return std::ranges::none_of(xml_roots(), [&](const auto& row) { return row.first == format.name && row.second != root; });
+  return std::ranges::none_of(
+      xml_roots(), [&](const auto& row) { return row.first == format.name && row.second != root; });
 }
 
 const std::vector<Format>& formats() {

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Samples are parsed and linked first. Then somata become spheres or chains, and every other sample a segment to its parent.
+// Samples are parsed and linked first. Then somata become spheres or chains, and every other sample
+// a segment to its parent.
 #include "import/detail/swc.h"
 
 #include <fmt/format.h>
@@ -29,8 +30,10 @@ namespace caplet {
 namespace {
 
 constexpr std::size_t kColumns = 7;
-constexpr std::array<const char*, kColumns> kColumnNames = {"id", "type", "x", "y", "z", "radius", "parent"};
-/// A radius of 0 means "not measured" or "tapers off". It is replaced by this part of the file's median positive radius.
+constexpr std::array<const char*, kColumns> kColumnNames = {"id", "type",   "x",     "y",
+                                                            "z",  "radius", "parent"};
+/// A radius of 0 means "not measured" or "tapers off". It is replaced by this part of the file's
+/// median positive radius.
 constexpr float kMissingRadiusPart = 0.25F;
 
 struct Token {
@@ -51,7 +54,8 @@ std::size_t split(std::string_view line, std::array<Token, kColumns + 1>& tokens
   return count;
 }
 
-/// Parses an integer, also with a decimal point or an exponent, as programs without integers write it ("12.0", "1.2e1").
+/// Parses an integer, also with a decimal point or an exponent, as programs without integers write
+/// it ("12.0", "1.2e1").
 template <class Integer>
 bool parse_integer(std::string_view token, Integer& value) {
   const char* end = token.data() + token.size();
@@ -59,9 +63,11 @@ bool parse_integer(std::string_view token, Integer& value) {
   if (error == std::errc() && stop == end) return true;
   double decimal = 0;
   const auto [decimal_stop, decimal_error] = std::from_chars(token.data(), end, decimal);
-  constexpr double most =
-      std::is_same_v<Integer, std::int32_t> ? 2147483647.0 : 9007199254740992.0;  // 2^53: all smaller integers are exact
-  if (decimal_error != std::errc() || decimal_stop != end || !(std::abs(decimal) <= most) || decimal != std::floor(decimal))
+  constexpr double most = std::is_same_v<Integer, std::int32_t>
+                              ? 2147483647.0
+                              : 9007199254740992.0;  // 2^53: all smaller integers are exact
+  if (decimal_error != std::errc() || decimal_stop != end || !(std::abs(decimal) <= most) ||
+      decimal != std::floor(decimal))
     return false;
   value = static_cast<Integer>(decimal);
   return true;
@@ -76,8 +82,10 @@ class Parser {
     for (int line = 1; !text.empty(); ++line) parse_line(take_line(text), line);
     if (extra_columns_ > 0)
       diagnostics_.warning({name_, first_extra_, 0},
-                           fmt::format("columns after the seventh are ignored ({} lines have some)", extra_columns_));
-    if (samples_.empty() && !diagnostics_.has_errors()) diagnostics_.error({name_, 0, 0}, "holds no samples");
+                           fmt::format("columns after the seventh are ignored ({} lines have some)",
+                                       extra_columns_));
+    if (samples_.empty() && !diagnostics_.has_errors())
+      diagnostics_.error({name_, 0, 0}, "holds no samples");
     link();
     diagnostics_.finish();
     find_cycles();
@@ -92,8 +100,10 @@ class Parser {
     if (count == 0) return;
     if (count < kColumns) {
       diagnostics_.error(
-          {name_, number, tokens[count - 1].column + static_cast<int>(tokens[count - 1].text.size())},
-          fmt::format("{} columns where 7 are needed (id type x y z radius parent): {} is missing", count, kColumnNames[count]));
+          {name_, number,
+           tokens[count - 1].column + static_cast<int>(tokens[count - 1].text.size())},
+          fmt::format("{} columns where 7 are needed (id type x y z radius parent): {} is missing",
+                      count, kColumnNames[count]));
       return;
     }
     if (count > kColumns && extra_columns_++ == 0) first_extra_ = number;
@@ -101,7 +111,8 @@ class Parser {
     sample.line = number;
     bool good = true;
     const auto refuse = [&](std::size_t column, const std::string& message) {
-      diagnostics_.error({name_, number, tokens[column].column}, fmt::format("{}: {}", kColumnNames[column], message));
+      diagnostics_.error({name_, number, tokens[column].column},
+                         fmt::format("{}: {}", kColumnNames[column], message));
       good = false;
     };
     const auto integer = [&](std::size_t column, auto& value) {
@@ -114,22 +125,25 @@ class Parser {
     };
     integer(0, sample.id);
     integer(1, sample.type);
-    for (int axis = 0; axis < 3; ++axis) number_at(2 + static_cast<std::size_t>(axis), sample.position[axis]);
+    for (int axis = 0; axis < 3; ++axis)
+      number_at(2 + static_cast<std::size_t>(axis), sample.position[axis]);
     number_at(5, sample.radius);
     integer(6, sample.parent_id);
     if (!good) return;
     if (sample.id < 0) refuse(0, fmt::format("{} is negative", sample.id));
     if (sample.type < 0) refuse(1, fmt::format("{} is negative", sample.type));
     if (sample.radius < 0) refuse(5, fmt::format("{} is negative", sample.radius));
-    if (sample.parent_id < -1) refuse(6, fmt::format("{} is neither an id nor -1 (a root)", sample.parent_id));
-    if (sample.parent_id == sample.id) refuse(6, fmt::format("sample {} is its own parent", sample.id));
+    if (sample.parent_id < -1)
+      refuse(6, fmt::format("{} is neither an id nor -1 (a root)", sample.parent_id));
+    if (sample.parent_id == sample.id)
+      refuse(6, fmt::format("sample {} is its own parent", sample.id));
     if (!good) return;
     samples_.push_back(sample);
     in_file_.prove();
   }
 
-  /// Sets `parent`. Reports repeated ids and missing parents (the latter only if no line was refused, since that line may be the
-  /// parent).
+  /// Sets `parent`. Reports repeated ids and missing parents (the latter only if no line was
+  /// refused, since that line may be the parent).
   void link() {
     std::vector<std::uint32_t> by_id(samples_.size());
     std::iota(by_id.begin(), by_id.end(), 0U);
@@ -138,7 +152,8 @@ class Parser {
     for (std::size_t i = 1; i < by_id.size(); ++i) {
       const SwcSample &first = samples_[by_id[i - 1]], &second = samples_[by_id[i]];
       if (first.id == second.id)
-        diagnostics_.error({name_, second.line, 0}, fmt::format("id {} is already that of line {}", second.id, first.line));
+        diagnostics_.error({name_, second.line, 0},
+                           fmt::format("id {} is already that of line {}", second.id, first.line));
     }
     if (diagnostics_.has_errors()) return;
     const std::int64_t first_id = samples_.empty() ? 0 : id_of(by_id.front());
@@ -146,13 +161,15 @@ class Parser {
       if (sample.parent_id < 0) continue;
       // If ids have no gaps, they give the index directly.
       const auto guess = static_cast<std::uint64_t>(sample.parent_id - first_id);
-      if (sample.parent_id >= first_id && guess < by_id.size() && id_of(by_id[guess]) == sample.parent_id) {
+      if (sample.parent_id >= first_id && guess < by_id.size() &&
+          id_of(by_id[guess]) == sample.parent_id) {
         sample.parent = static_cast<std::int32_t>(by_id[guess]);
         continue;
       }
       const auto found = std::ranges::lower_bound(by_id, sample.parent_id, {}, id_of);
       if (found == by_id.end() || id_of(*found) != sample.parent_id)
-        diagnostics_.error({name_, sample.line, 0}, fmt::format("parent {} is no sample of this file", sample.parent_id));
+        diagnostics_.error({name_, sample.line, 0},
+                           fmt::format("parent {} is no sample of this file", sample.parent_id));
       else
         sample.parent = static_cast<std::int32_t>(*found);
     }
@@ -170,7 +187,8 @@ class Parser {
       }
       if (i >= 0 && walk_of[static_cast<std::size_t>(i)] == walk) {
         const SwcSample& sample = samples_[static_cast<std::size_t>(i)];
-        diagnostics_.error({name_, sample.line, 0}, fmt::format("sample {} is its own ancestor", sample.id));
+        diagnostics_.error({name_, sample.line, 0},
+                           fmt::format("sample {} is its own ancestor", sample.id));
       }
     }
   }
@@ -218,20 +236,22 @@ void fill_missing_radii(std::vector<SwcSample>& samples, const std::string& name
       ++missing;
     }
   Diagnostics().warning({name, first->line, 0},
-                        fmt::format("{} of {} samples have radius 0; they get {:.4g}", missing, samples.size(), filled));
+                        fmt::format("{} of {} samples have radius 0; they get {:.4g}", missing,
+                                    samples.size(), filled));
 }
 
 constexpr int kFork = 5, kEnd = 6;
 bool is_mark(int type) { return type == kFork || type == kEnd; }
 
-/// Types 5 and 6 mark fork and end points and say nothing of the neurite. They are replaced by the type of the branch: that of
-/// the nearest ancestor that has one; at the soma or a root, that of the first descendant (in file order) that has one; otherwise
-/// 0.
+/// Types 5 and 6 mark fork and end points and say nothing of the neurite. They are replaced by the
+/// type of the branch: that of the nearest ancestor that has one; at the soma or a root, that of
+/// the first descendant (in file order) that has one; otherwise 0.
 void resolve_marks(std::vector<SwcSample>& samples) {
   const auto parent_of = [&](std::size_t i) { return samples[i].parent; };
   const auto at = [](std::int32_t i) { return static_cast<std::size_t>(i); };
   std::vector<std::size_t> path;
-  // The walk goes down from ancestors and visits each sample once: those of a branch without a type stay marked in `open`.
+  // The walk goes down from ancestors and visits each sample once: those of a branch without a type
+  // stay marked in `open`.
   std::vector<bool> open(samples.size(), false);
   const auto from_ancestors = [&] {
     for (std::size_t i = 0; i < samples.size(); ++i) {
@@ -253,7 +273,9 @@ void resolve_marks(std::vector<SwcSample>& samples) {
   for (std::size_t i = 0; i < samples.size(); ++i) {
     const int type = samples[i].type;
     if (type == kSoma || is_mark(type)) continue;
-    for (std::int32_t k = parent_of(i); k >= 0 && is_mark(samples[at(k)].type); k = parent_of(at(k))) samples[at(k)].type = type;
+    for (std::int32_t k = parent_of(i); k >= 0 && is_mark(samples[at(k)].type);
+         k = parent_of(at(k)))
+      samples[at(k)].type = type;
   }
   open.assign(samples.size(), false);
   from_ancestors();
@@ -267,8 +289,9 @@ struct Role {
   bool sphere = false;   // a soma that is one sphere, or a sample that would otherwise be invisible
 };
 
-/// Recognises NeuroMorpho.Org's soma of three points: two children of the first, at plus and minus one radius along y. Its files
-/// round to two decimals, so each of the numbers compared is off by up to 0.005: 0.01 for a difference of two.
+/// Recognises NeuroMorpho.Org's soma of three points: two children of the first, at plus and minus
+/// one radius along y. Its files round to two decimals, so each of the numbers compared is off by
+/// up to 0.005: 0.01 for a difference of two.
 bool is_three_point_soma(const SwcSample& centre, const SwcSample& a, const SwcSample& b) {
   const float tolerance = std::max(1e-3F * centre.radius, std::min(0.011F, 0.1F * centre.radius));
   const auto near = [tolerance](float x, float y) { return std::abs(x - y) <= tolerance; };
@@ -287,7 +310,9 @@ std::vector<Role> roles_of(const std::vector<SwcSample>& samples) {
   };
   std::map<std::uint32_t, SomaLinks> somata;  // by sample, for the few samples of type soma
   std::vector<bool> has_children(count, false);
-  const auto is_soma = [&](std::int32_t i) { return i >= 0 && samples[static_cast<std::size_t>(i)].type == kSoma; };
+  const auto is_soma = [&](std::int32_t i) {
+    return i >= 0 && samples[static_cast<std::size_t>(i)].type == kSoma;
+  };
   for (std::uint32_t i = 0; i < count; ++i) {
     const std::int32_t parent = samples[i].parent;
     if (parent >= 0) has_children[static_cast<std::size_t>(parent)] = true;
@@ -302,7 +327,8 @@ std::vector<Role> roles_of(const std::vector<SwcSample>& samples) {
   }
 
   std::vector<Role> roles(count);
-  for (std::size_t i = 0; i < count; ++i) roles[i] = {samples[i].parent >= 0, samples[i].parent < 0 && !has_children[i]};
+  for (std::size_t i = 0; i < count; ++i)
+    roles[i] = {samples[i].parent >= 0, samples[i].parent < 0 && !has_children[i]};
   for (const auto& [i, links] : somata) {
     if (is_soma(samples[i].parent)) continue;
     if (links.children == 0) {
@@ -316,9 +342,10 @@ std::vector<Role> roles_of(const std::vector<SwcSample>& samples) {
   return roles;
 }
 
-/// Returns u at the parent and at the sample of each segment: from 0 to 1 by length along each branch. A branch continues while
-/// exactly one segment follows, and ends at a soma.
-std::vector<glm::vec2> along_branches(const std::vector<SwcSample>& samples, const std::vector<Role>& roles) {
+/// Returns u at the parent and at the sample of each segment: from 0 to 1 by length along each
+/// branch. A branch continues while exactly one segment follows, and ends at a soma.
+std::vector<glm::vec2> along_branches(const std::vector<SwcSample>& samples,
+                                      const std::vector<Role>& roles) {
   constexpr std::int32_t none = -1, several = -2;
   const auto parent_of = [&](std::size_t i) { return static_cast<std::size_t>(samples[i].parent); };
   std::vector<std::int32_t> next(samples.size(), none);  // the only segment that starts at a sample
@@ -328,7 +355,8 @@ std::vector<glm::vec2> along_branches(const std::vector<SwcSample>& samples, con
     of_parent = of_parent == none ? static_cast<std::int32_t>(i) : several;
   }
   const auto goes_on = [&](std::size_t i) {  // whether the branch continues past the sample
-    return next[i] >= 0 && (samples[i].type == kSoma) == (samples[static_cast<std::size_t>(next[i])].type == kSoma);
+    return next[i] >= 0 &&
+           (samples[i].type == kSoma) == (samples[static_cast<std::size_t>(next[i])].type == kSoma);
   };
   std::vector<glm::vec2> out(samples.size());
   std::vector<std::size_t> branch;
@@ -341,14 +369,17 @@ std::vector<glm::vec2> along_branches(const std::vector<SwcSample>& samples, con
     ends.clear();
     double length = 0;
     for (std::size_t i = first;; i = static_cast<std::size_t>(next[i])) {
-      length += glm::length(glm::dvec3(samples[i].position) - glm::dvec3(samples[parent_of(i)].position));
+      length +=
+          glm::length(glm::dvec3(samples[i].position) - glm::dvec3(samples[parent_of(i)].position));
       branch.push_back(i);
       ends.push_back(length);
       if (!goes_on(i)) break;
     }
     float u = 0;
     for (std::size_t k = 0; k < branch.size(); ++k) {
-      const double share = length > 0 ? ends[k] / length : static_cast<double>(k + 1) / static_cast<double>(branch.size());
+      const double share = length > 0
+                               ? ends[k] / length
+                               : static_cast<double>(k + 1) / static_cast<double>(branch.size());
       out[branch[k]] = {u, static_cast<float>(share)};
       u = out[branch[k]].y;
     }
@@ -358,9 +389,12 @@ std::vector<glm::vec2> along_branches(const std::vector<SwcSample>& samples, con
 
 }  // namespace
 
-std::vector<SwcSample> parse_swc(std::string_view text, const std::string& name) { return Parser(name).parse(text); }
+std::vector<SwcSample> parse_swc(std::string_view text, const std::string& name) {
+  return Parser(name).parse(text);
+}
 
-Scene import_swc(const std::filesystem::path& path, const ImageReader&, const ImportOptions& options) {
+Scene import_swc(const std::filesystem::path& path, const ImageReader&,
+                 const ImportOptions& options) {
   Scene scene;
   scene.source = path.string();
   std::vector<SwcSample> samples = parse_swc(TextFile(path).text(), scene.source);
@@ -389,9 +423,11 @@ Scene import_swc(const std::filesystem::path& path, const ImageReader&, const Im
       scene.shapes.push_back(std::move(sphere));
     }
     if (!roles[i].segment) continue;
-    // A neurite does not widen towards its soma: the segment between them has the neurite's radius and material.
+    // A neurite does not widen towards its soma: the segment between them has the neurite's radius
+    // and material.
     const SwcSample& parent = samples[static_cast<std::size_t>(sample.parent)];
-    const bool from_soma = parent.type == kSoma && sample.type != kSoma, to_soma = parent.type != kSoma && sample.type == kSoma;
+    const bool from_soma = parent.type == kSoma && sample.type != kSoma,
+               to_soma = parent.type != kSoma && sample.type == kSoma;
     segments.p0.push_back(parent.position);
     segments.p1.push_back(sample.position);
     segments.radius0.push_back(from_soma ? sample.radius : parent.radius);

@@ -29,17 +29,21 @@ constexpr double kNoValue = std::numeric_limits<double>::quiet_NaN();
 
 /// Computes `value(sample, parent's value)` for each sample, parents before children.
 template <class Value>
-std::vector<double> values_along_branches(const std::vector<SwcSample>& samples, const Value& value) {
+std::vector<double> values_along_branches(const std::vector<SwcSample>& samples,
+                                          const Value& value) {
   std::vector<double> out(samples.size(), kNoValue);
   std::vector<std::size_t> path;
   for (std::size_t i = 0; i < samples.size(); ++i) {
     path.clear();
-    for (auto k = static_cast<std::int32_t>(i); k >= 0 && std::isnan(out[static_cast<std::size_t>(k)]);
+    for (auto k = static_cast<std::int32_t>(i);
+         k >= 0 && std::isnan(out[static_cast<std::size_t>(k)]);
          k = samples[static_cast<std::size_t>(k)].parent)
       path.push_back(static_cast<std::size_t>(k));
     for (auto it = path.rbegin(); it != path.rend(); ++it) {
       const std::int32_t parent = samples[*it].parent;
-      out[*it] = samples[*it].type == kSoma || parent < 0 ? 0 : value(*it, out[static_cast<std::size_t>(parent)]);
+      out[*it] = samples[*it].type == kSoma || parent < 0
+                     ? 0
+                     : value(*it, out[static_cast<std::size_t>(parent)]);
     }
   }
   return out;
@@ -97,8 +101,10 @@ std::vector<ColorRow> rows_of(std::string_view text, const std::string& file, st
       if (row.key.ends_with(',')) row.key = trimmed(row.key.substr(0, row.key.size() - 1));
     }
     if (!parse_number(number, row.value) || std::isinf(row.value))
-      diagnostics.error({file, line, static_cast<int>(before == std::string_view::npos ? 0 : before + 1) + 1},
-                        caplet::quoted(number) + " is not a number (a line is a value, or an id or a file's name and a value)");
+      diagnostics.error(
+          {file, line, static_cast<int>(before == std::string_view::npos ? 0 : before + 1) + 1},
+          caplet::quoted(number) +
+              " is not a number (a line is a value, or an id or a file's name and a value)");
     if (!rows.empty() && row.key.empty() != rows.front().key.empty())
       diagnostics.error({file, line, 0}, "lines of one column and of two are mixed");
     rows.push_back(row);
@@ -108,7 +114,8 @@ std::vector<ColorRow> rows_of(std::string_view text, const std::string& file, st
   return rows;
 }
 
-std::vector<double> by_ids(const std::vector<ColorRow>& rows, const std::vector<SwcSample>& samples, const std::string& file) {
+std::vector<double> by_ids(const std::vector<ColorRow>& rows, const std::vector<SwcSample>& samples,
+                           const std::string& file) {
   std::unordered_map<std::int64_t, std::size_t> index;
   for (std::size_t i = 0; i < samples.size(); ++i) index.emplace(samples[i].id, i);
   std::vector<double> out(samples.size(), kNoValue);
@@ -118,7 +125,8 @@ std::vector<double> by_ids(const std::vector<ColorRow>& rows, const std::vector<
     std::int64_t id = 0;
     const auto found = parse_number(row.key, id) ? index.find(id) : index.end();
     if (found == index.end()) {
-      diagnostics.error({file, row.line, 1}, caplet::quoted(row.key) + " is no sample of the neuron");
+      diagnostics.error({file, row.line, 1},
+                        caplet::quoted(row.key) + " is no sample of the neuron");
     } else if (said[found->second]) {
       diagnostics.error({file, row.line, 1}, caplet::quoted(row.key) + " has a value already");
     } else {
@@ -150,8 +158,10 @@ std::vector<double> path_depths(const std::vector<SwcSample>& samples) {
   });
 }
 
-std::vector<double> read_values(const std::filesystem::path& path, const std::vector<SwcSample>& samples,
-                                const std::filesystem::path& neuron, const ImportOptions& options, std::string& name) {
+std::vector<double> read_values(const std::filesystem::path& path,
+                                const std::vector<SwcSample>& samples,
+                                const std::filesystem::path& neuron, const ImportOptions& options,
+                                std::string& name) {
   const std::string file = path.string();
   const TextFile text(path);
   Unproven in_file;  // a number does not reveal the format
@@ -163,8 +173,10 @@ std::vector<double> read_values(const std::filesystem::path& path, const std::ve
     if (std::ranges::all_of(rows, [&](const ColorRow& row) { return parse_number(row.key, id); }))
       return by_ids(rows, samples, file);
     const std::string stem = neuron.stem().string(), whole = neuron.filename().string();
-    const auto found = std::ranges::find_if(rows, [&](const ColorRow& row) { return row.key == stem || row.key == whole; });
-    if (found == rows.end()) throw InputError({file, 0, 0}, "has no line for " + caplet::quoted(stem));
+    const auto found = std::ranges::find_if(
+        rows, [&](const ColorRow& row) { return row.key == stem || row.key == whole; });
+    if (found == rows.end())
+      throw InputError({file, 0, 0}, "has no line for " + caplet::quoted(stem));
     return std::vector<double>(samples.size(), found->value);
   }
   std::vector<double> out;
@@ -172,20 +184,23 @@ std::vector<double> read_values(const std::filesystem::path& path, const std::ve
     for (const ColorRow& row : rows) out.push_back(row.value);
     return out;
   }
-  if (options.files == rows.size()) return std::vector<double>(samples.size(), rows[options.file].value);
-  throw InputError({file, rows.back().line, 0},
-                   fmt::format("{} values: {} has {} samples, and there {} (one a sample, or one a file)", rows.size(),
-                               neuron.filename().string(), samples.size(),
-                               options.files == 1 ? "is 1 file" : fmt::format("are {} files", options.files)));
+  if (options.files == rows.size())
+    return std::vector<double>(samples.size(), rows[options.file].value);
+  throw InputError(
+      {file, rows.back().line, 0},
+      fmt::format("{} values: {} has {} samples, and there {} (one a sample, or one a file)",
+                  rows.size(), neuron.filename().string(), samples.size(),
+                  options.files == 1 ? "is 1 file" : fmt::format("are {} files", options.files)));
 }
 
-SwcColors::SwcColors(Scene& scene, const std::vector<SwcSample>& samples, const std::filesystem::path& path,
-                     const ImportOptions& options)
+SwcColors::SwcColors(Scene& scene, const std::vector<SwcSample>& samples,
+                     const std::filesystem::path& path, const ImportOptions& options)
     : scene_(scene), samples_(samples), file_name_(path.stem().string()), file_(options.file) {
   const std::string by = options.text("color").value_or("type");
   if (by == "file") by_ = By::file;
   if (by == "type" || by == "file") {
-    if (options.text("range")) throw InputError({"--range"}, "goes with --color order, depth or a file of values");
+    if (options.text("range"))
+      throw InputError({"--range"}, "goes with --color order, depth or a file of values");
     return;
   }
   by_ = By::value;
@@ -196,23 +211,31 @@ SwcColors::SwcColors(Scene& scene, const std::vector<SwcSample>& samples, const 
     values_ = path_depths(samples);
   } else {
     std::string file = by;
-    if (const std::size_t hole = file.find("{}"); hole != std::string::npos) file.replace(hole, 2, file_name_);
+    if (const std::size_t hole = file.find("{}"); hole != std::string::npos)
+      file.replace(hole, 2, file_name_);
     const OptionFiles may_be_read(options);
     if (!may_read(file) || !is_there(file, {"--color"}))
-      throw InputError({"--color"}, fmt::format("'{}' is none of type, file, order and depth, and no file of values", file));
+      throw InputError(
+          {"--color"},
+          fmt::format("'{}' is none of type, file, order and depth, and no file of values", file));
     what_.clear();
     values_ = read_values(file, samples, path, options, what_);
   }
   const ValueRange range = range_of(values_);
-  if (!range.is_there) throw InputError({"--color"}, fmt::format("'{}': there is no value for {}", by, path.filename().string()));
+  if (!range.is_there)
+    throw InputError({"--color"},
+                     fmt::format("'{}': there is no value for {}", by, path.filename().string()));
   const auto [low, high] = options.range("range").value_or(std::pair(range.low, range.high));
   int steps = map_steps;
-  if (by == "order" && high - low < kMostOrders && std::floor(low) == low && std::floor(high) == high)
+  if (by == "order" && high - low < kMostOrders && std::floor(low) == low &&
+      std::floor(high) == high)
     steps = static_cast<int>(high - low) + 1;
   by_value_ = ValueColors(scene, what_, low, high, steps);
   if (options.seen) {
     *options.seen = range;
-    options.seen->what = by == "depth" ? "way from the soma or root, in the file's unit" : by == "order" ? "branch order" : what_;
+    options.seen->what = by == "depth"   ? "way from the soma or root, in the file's unit"
+                         : by == "order" ? "branch order"
+                                         : what_;
   }
 }
 
@@ -222,7 +245,8 @@ std::uint32_t SwcColors::add(const std::string& name, const glm::dvec3& color, i
 }
 
 std::uint32_t SwcColors::of(const SwcSample& sample) {
-  if (by_ == By::value) return by_value_.of(values_[static_cast<std::size_t>(&sample - samples_.data())], sample.line);
+  if (by_ == By::value)
+    return by_value_.of(values_[static_cast<std::size_t>(&sample - samples_.data())], sample.line);
   if (by_ == By::type) return of_type(sample);
   if (of_file_ < 0) of_file_ = add(file_name_, palette_color(file_), sample.line);
   return static_cast<std::uint32_t>(of_file_);

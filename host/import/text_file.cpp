@@ -40,7 +40,8 @@ TextFile::TextFile(const std::filesystem::path& path) {
   if (file.number < 0) cannot_read(path, std::strerror(errno));
   struct stat status {};
   if (::fstat(file.number, &status) != 0) cannot_read(path, std::strerror(errno));
-  if (!S_ISREG(status.st_mode)) cannot_read(path, S_ISDIR(status.st_mode) ? "it is a folder" : "it is not a regular file");
+  if (!S_ISREG(status.st_mode))
+    cannot_read(path, S_ISDIR(status.st_mode) ? "it is a folder" : "it is not a regular file");
   const auto expected = static_cast<std::size_t>(status.st_size);
   if (expected > longest_text_file) cannot_read(path, "it is longer than 16 GiB");
   data_ = std::make_unique_for_overwrite<char[]>(expected);
@@ -95,7 +96,8 @@ NumberError parse_float(std::string_view token, float& value) {
     return std::abs(value) <= largest_number ? NumberError::none : NumberError::out_of_range;
   }
   // from_chars reports overflow and underflow alike; strtod distinguishes them.
-  if (std::abs(std::strtod(std::string(begin, end).c_str(), nullptr)) > 1) return NumberError::out_of_range;
+  if (std::abs(std::strtod(std::string(begin, end).c_str(), nullptr)) > 1)
+    return NumberError::out_of_range;
   value = 0;
   return NumberError::none;
 }

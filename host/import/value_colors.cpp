@@ -13,10 +13,15 @@
 namespace caplet {
 
 ValueColors::ValueColors(Scene& scene, std::string what, double low, double high, int steps)
-    : scene_(&scene), what_(std::move(what)), low_(low), high_(high), index_(static_cast<std::size_t>(std::max(steps, 1)), -1) {}
+    : scene_(&scene),
+      what_(std::move(what)),
+      low_(low),
+      high_(high),
+      index_(static_cast<std::size_t>(std::max(steps, 1)), -1) {}
 
 std::uint32_t ValueColors::add(const std::string& name, const glm::dvec3& color, int line) {
-  scene_->materials.push_back({DiffuseMaterial{RgbSpectrum{color}}, name, {scene_->source, line, 0}});
+  scene_->materials.push_back(
+      {DiffuseMaterial{RgbSpectrum{color}}, name, {scene_->source, line, 0}});
   return narrow<std::uint32_t>(scene_->materials.size() - 1);
 }
 

@@ -29,7 +29,8 @@ ZipFile::ZipFile(const std::filesystem::path& path) : path_(path) {
   begin_reading(path);
   int code = 0;
   if (zip_t* opened = zip_open(path.c_str(), ZIP_RDONLY, &code))
-    file_ = std::shared_ptr<void>(opened, [](void* file) { zip_discard(static_cast<zip_t*>(file)); });
+    file_ =
+        std::shared_ptr<void>(opened, [](void* file) { zip_discard(static_cast<zip_t*>(file)); });
   if (!file_) fail("is no zip archive, or is cut off or broken");
   std::error_code error;
   const auto size = std::filesystem::file_size(path, error);
@@ -43,11 +44,14 @@ ZipFile::ZipFile(const std::filesystem::path& path) : path_(path) {
   }
 }
 
-void ZipFile::fail(const std::string& message) const { throw InputError({path_.string(), 0, 0}, message); }
+void ZipFile::fail(const std::string& message) const {
+  throw InputError({path_.string(), 0, 0}, message);
+}
 
 std::optional<std::string> ZipFile::find(std::string_view name) const {
   const std::string wanted = lower_case(std::string(name));
-  const auto found = std::ranges::find_if(names_, [&](const std::string& other) { return lower_case(other) == wanted; });
+  const auto found = std::ranges::find_if(
+      names_, [&](const std::string& other) { return lower_case(other) == wanted; });
   return found == names_.end() ? std::nullopt : std::optional(*found);
 }
 
@@ -59,12 +63,15 @@ std::string ZipFile::read(const std::string& name) {
   if (zip_stat_index(archive(file_), index, 0, &info) != 0 || (info.valid & needed) != needed)
     broken("cannot be found in the archive");
   if (info.encryption_method != ZIP_EM_NONE) broken("is encrypted");
-  const std::unique_ptr<zip_file_t, int (*)(zip_file_t*)> entry(zip_fopen_index(archive(file_), index, 0), &zip_fclose);
+  const std::unique_ptr<zip_file_t, int (*)(zip_file_t*)> entry(
+      zip_fopen_index(archive(file_), index, 0), &zip_fclose);
   if (!entry) broken("is broken, or packed in another way than deflate");
   std::string out;
   const auto too_much = [&] {
-    fail(fmt::format("{}: the archive unpacks to more than {} bytes, which no archive of its size does that was not made to",
-                     name, left_ + out.size()));
+    fail(
+        fmt::format("{}: the archive unpacks to more than {} bytes, which no archive of its size "
+                    "does that was not made to",
+                    name, left_ + out.size()));
   };
   if (info.size > left_) too_much();
   for (;;) {
@@ -77,8 +84,9 @@ std::string ZipFile::read(const std::string& name) {
     out.resize(before + static_cast<std::size_t>(std::max<std::int64_t>(got, 0)));
     // zip compares checksums at the end of the file.
     if (got < 0)
-      broken(zip_error_code_zip(zip_file_get_error(entry.get())) == ZIP_ER_CRC ? "is broken (its checksum is another)"
-                                                                               : "is broken");
+      broken(zip_error_code_zip(zip_file_get_error(entry.get())) == ZIP_ER_CRC
+                 ? "is broken (its checksum is another)"
+                 : "is broken");
     if (static_cast<std::uintmax_t>(got) > left_) too_much();
     left_ -= static_cast<std::uintmax_t>(got);
     if (got == 0) break;

@@ -26,12 +26,17 @@ constexpr int most_texels = 1 << 15;  // per side
 
 std::shared_ptr<const TextureImage> image_of(const Pixels& pixels) {
   const auto wrong = [](const std::string& what) { throw InputError("'pixels' must be " + what); };
-  const auto wide = static_cast<std::size_t>(pixels.width), tall = static_cast<std::size_t>(pixels.height);
-  if (pixels.width < 1 || pixels.height < 1 || pixels.width > most_texels || pixels.height > most_texels)
+  const auto wide = static_cast<std::size_t>(pixels.width),
+             tall = static_cast<std::size_t>(pixels.height);
+  if (pixels.width < 1 || pixels.height < 1 || pixels.width > most_texels ||
+      pixels.height > most_texels)
     wrong(fmt::format("an image of 1 to {} pixels a side", most_texels));
-  if (pixels.channels != 1 && pixels.channels != 3 && pixels.channels != 4) wrong("an image of 1, 3 or 4 channels");
-  if (pixels.values.size() != wide * tall * static_cast<std::size_t>(pixels.channels)) wrong("as many numbers as its sides say");
-  if (!std::ranges::all_of(pixels.values, [](float value) { return std::isfinite(value); })) wrong("finite");
+  if (pixels.channels != 1 && pixels.channels != 3 && pixels.channels != 4)
+    wrong("an image of 1, 3 or 4 channels");
+  if (pixels.values.size() != wide * tall * static_cast<std::size_t>(pixels.channels))
+    wrong("as many numbers as its sides say");
+  if (!std::ranges::all_of(pixels.values, [](float value) { return std::isfinite(value); }))
+    wrong("finite");
   auto out = std::make_shared<TextureImage>();
   out->width = pixels.width;
   out->height = pixels.height;
@@ -54,7 +59,9 @@ std::optional<std::uint32_t> taken(Parameters& parameters, const std::string& na
 
 struct ToModel {
   const caplet::Scene& scene;
-  caplet::Material operator()(const Diffuse& m) const { return of(DiffuseMaterial{to_model(m.reflectance)}); }
+  caplet::Material operator()(const Diffuse& m) const {
+    return of(DiffuseMaterial{to_model(m.reflectance)});
+  }
   caplet::Material operator()(const Conductor& m) const {
     ConductorMaterial out;
     out.eta = to_model(m.eta);
@@ -69,7 +76,8 @@ struct ToModel {
   }
   caplet::Material operator()(const NamedMaterial& m) const {
     Parameters parameters = m.parameters;
-    const auto displacement = taken(parameters, "displacement"), normalmap = taken(parameters, "normalmap");
+    const auto displacement = taken(parameters, "displacement"),
+               normalmap = taken(parameters, "normalmap");
     ProgramStatement statement = to_statement("Material", m.type, parameters);
     // A mix names its parts by number.
     for (StatementParameter& one : statement.parameters)
@@ -104,14 +112,17 @@ Rgb color_map(double part) {
 
 caplet::Spectrum to_model(const Spectrum& spectrum) {
   if (const auto* value = std::get_if<double>(&spectrum)) return ConstantSpectrum{*value};
-  if (const auto* rgb = std::get_if<Rgb>(&spectrum)) return RgbSpectrum{{rgb->r, rgb->g, rgb->b}, ColorSpace::srgb};
+  if (const auto* rgb = std::get_if<Rgb>(&spectrum))
+    return RgbSpectrum{{rgb->r, rgb->g, rgb->b}, ColorSpace::srgb};
   const std::string& name = std::get<std::string>(spectrum);
   if (const auto found = named_spectrum(name)) return *found;
-  throw InputError(
-      fmt::format("there is no spectrum '{}'; the nearest is '{}'", name, nearest_name(name, named_spectrum_names())));
+  throw InputError(fmt::format("there is no spectrum '{}'; the nearest is '{}'", name,
+                               nearest_name(name, named_spectrum_names())));
 }
 
-caplet::Material to_model(const Material& material, const caplet::Scene& scene) { return std::visit(ToModel{scene}, material); }
+caplet::Material to_model(const Material& material, const caplet::Scene& scene) {
+  return std::visit(ToModel{scene}, material);
+}
 
 caplet::Texture to_model(const NamedTexture& texture, const caplet::Scene& scene) {
   Parameters parameters = texture.parameters;
@@ -122,18 +133,21 @@ caplet::Texture to_model(const NamedTexture& texture, const caplet::Scene& scene
     pixels = image_of(**given);
     parameters.erase(found);
   }
-  return texture_of(to_statement("Texture", texture.type, parameters), texture.is_float, to_model(texture.world_from_texture),
-                    pixels, scene, FileImageReader());
+  return texture_of(to_statement("Texture", texture.type, parameters), texture.is_float,
+                    to_model(texture.world_from_texture), pixels, scene, FileImageReader());
 }
 
 void check_bends(const caplet::Scene& scene, const caplet::Material& material) {
   const auto has = [&](std::uint32_t texture) { return texture < scene.textures.size(); };
-  if (material.displacement && !(has(*material.displacement) && scene.textures[*material.displacement].is_float))
+  if (material.displacement &&
+      !(has(*material.displacement) && scene.textures[*material.displacement].is_float))
     throw InputError("the displacement is not a texture of floats");
   if (material.normalmap &&
-      !(has(*material.normalmap) && std::holds_alternative<NormalmapTexture>(scene.textures[*material.normalmap].model)))
+      !(has(*material.normalmap) &&
+        std::holds_alternative<NormalmapTexture>(scene.textures[*material.normalmap].model)))
     throw InputError("the normalmap is not a texture of that type");
-  if (material.displacement && material.normalmap) throw InputError("the material has both a displacement and a normalmap");
+  if (material.displacement && material.normalmap)
+    throw InputError("the material has both a displacement and a normalmap");
 }
 
 void check_textures(const caplet::Scene& scene) {
@@ -149,8 +163,12 @@ std::vector<std::string> material_types() { return statement_types(Statement::ma
 
 std::vector<std::string> texture_types() { return statement_types(Statement::texture); }
 
-std::vector<std::string> material_parameters(const std::string& type) { return names_of(Statement::material, type); }
+std::vector<std::string> material_parameters(const std::string& type) {
+  return names_of(Statement::material, type);
+}
 
-std::vector<std::string> texture_parameters(const std::string& type) { return names_of(Statement::texture, type); }
+std::vector<std::string> texture_parameters(const std::string& type) {
+  return names_of(Statement::texture, type);
+}
 
 }  // namespace caplet::v0

@@ -58,13 +58,16 @@ std::size_t length_of(const Parameter& parameter) {
 
 std::vector<glm::vec3> points_of(const std::vector<std::array<float, 3>>& points) {
   std::vector<glm::vec3> out(points.size());
-  std::ranges::transform(points, out.begin(), [](const auto& p) { return glm::vec3(p[0], p[1], p[2]); });
+  std::ranges::transform(points, out.begin(),
+                         [](const auto& p) { return glm::vec3(p[0], p[1], p[2]); });
   return out;
 }
 
 std::vector<std::array<float, 3>> arrays_of(const std::vector<glm::vec3>& points) {
   std::vector<std::array<float, 3>> out(points.size());
-  std::ranges::transform(points, out.begin(), [](const auto& p) { return std::array<float, 3>{p.x, p.y, p.z}; });
+  std::ranges::transform(points, out.begin(), [](const auto& p) {
+    return std::array<float, 3>{p.x, p.y, p.z};
+  });
   return out;
 }
 
@@ -80,7 +83,8 @@ CapsulesShape geometry_of(const CapsuleArrays& arrays) {
   check("materials", arrays.materials.size(), true);
   check("u", arrays.u.size(), true);
   if (count == 0) throw InputError("capsules: there are none");
-  CapsulesShape out{points_of(arrays.p0), points_of(arrays.p1), arrays.radius0, arrays.radius1, arrays.materials};
+  CapsulesShape out{points_of(arrays.p0), points_of(arrays.p1), arrays.radius0, arrays.radius1,
+                    arrays.materials};
   if (out.radius1 == out.radius0) out.radius1.clear();
   for (const auto& u : arrays.u) out.u.emplace_back(u[0], u[1]);
   return out;
@@ -100,16 +104,17 @@ std::size_t object_at(const caplet::Scene& scene, const std::string& object) {
   if (found != scene.objects.end()) return static_cast<std::size_t>(found - scene.objects.begin());
   std::vector<std::string> names;
   for (const Object& one : scene.objects) names.push_back(one.name);
-  throw InputError(names.empty()
-                       ? fmt::format("there is no object '{}'", object)
-                       : fmt::format("there is no object '{}'; the nearest is '{}'", object, nearest_name(object, names)));
+  throw InputError(names.empty() ? fmt::format("there is no object '{}'", object)
+                                 : fmt::format("there is no object '{}'; the nearest is '{}'",
+                                               object, nearest_name(object, names)));
 }
 
 std::uint32_t number_in(const caplet::Scene& scene, const std::string& object, std::size_t index) {
   std::size_t number = index;
   if (!object.empty()) {
     number += scene.shapes.size();
-    for (std::size_t i = 0, at = object_at(scene, object); i < at; ++i) number += scene.objects[i].shapes.size();
+    for (std::size_t i = 0, at = object_at(scene, object); i < at; ++i)
+      number += scene.objects[i].shapes.size();
   }
   return static_cast<std::uint32_t>(number);
 }
@@ -122,7 +127,8 @@ std::uint32_t greatest_material(const Shape& shape) {
   return most;
 }
 
-/// Throws the errors of validate() for these shapes with only what they refer to. Leaves the shapes as they are.
+/// Throws the errors of validate() for these shapes with only what they refer to. Leaves the shapes
+/// as they are.
 void check_shapes(const caplet::Scene& scene, std::vector<Shape>& shapes) {
   std::uint32_t most = 0;
   bool textured = false;
@@ -131,13 +137,15 @@ void check_shapes(const caplet::Scene& scene, std::vector<Shape>& shapes) {
     textured = textured || (shape.alpha && shape.alpha->texture);
   }
   if (most >= std::max<std::size_t>(scene.materials.size(), 1))
-    throw InputError(fmt::format("there is no material {}, of {} counted from 0", most, scene.materials.size()));
+    throw InputError(
+        fmt::format("there is no material {}, of {} counted from 0", most, scene.materials.size()));
   caplet::Scene one;
   one.materials.resize(std::size_t{most} + 1);
   for (const Shape& shape : shapes)
     for (const auto& side : {shape.media.inside, shape.media.outside})
       if (side && *side >= scene.media.size())
-        throw InputError(fmt::format("there is no medium {}, of {} counted from 0", *side, scene.media.size()));
+        throw InputError(
+            fmt::format("there is no medium {}, of {} counted from 0", *side, scene.media.size()));
   one.media.resize(scene.media.size());
   if (textured) one.textures = scene.textures;
   one.shapes.swap(shapes);
@@ -147,7 +155,8 @@ void check_shapes(const caplet::Scene& scene, std::vector<Shape>& shapes) {
   diagnostics.finish();
 }
 
-void set_options(const ShapeOptions& options, const std::optional<AreaEmission>& emission, Shape& shape) {
+void set_options(const ShapeOptions& options, const std::optional<AreaEmission>& emission,
+                 Shape& shape) {
   if (!options.name.empty()) shape.name = valid_utf8(options.name);
   shape.world_from_object = to_model(options.transform);
   if (options.materials.size() > 1) shape.materials = options.materials;
@@ -159,7 +168,8 @@ void set_options(const ShapeOptions& options, const std::optional<AreaEmission>&
 
 std::optional<AreaEmission> emission_for(const ShapeOptions& options) {
   if (!options.emission) return std::nullopt;
-  return emission_of(to_statement(directive_of(Statement::emission), "diffuse", *options.emission), FileImageReader());
+  return emission_of(to_statement(directive_of(Statement::emission), "diffuse", *options.emission),
+                     FileImageReader());
 }
 
 /// Adds the default material of shapes.
@@ -173,7 +183,8 @@ std::uint32_t add(caplet::Scene& scene, std::vector<Shape> shapes, const std::st
   need_material(scene);
   std::vector<Shape>& to = shapes_for(scene, object);
   const std::size_t first = to.size();
-  to.insert(to.end(), std::make_move_iterator(shapes.begin()), std::make_move_iterator(shapes.end()));
+  to.insert(to.end(), std::make_move_iterator(shapes.begin()),
+            std::make_move_iterator(shapes.end()));
   return number_in(scene, object, first);
 }
 
@@ -192,12 +203,15 @@ void check_light(const caplet::Light& light) {
 
 }  // namespace
 
-std::vector<std::string> statement_types(Statement statement) { return caplet::statement_types(directive_of(statement)); }
+std::vector<std::string> statement_types(Statement statement) {
+  return caplet::statement_types(directive_of(statement));
+}
 
 std::vector<KnownParameter> statement_parameters(Statement statement, const std::string& type) {
   std::vector<KnownParameter> out;
   for (schema::Parameter& one : caplet::statement_parameters(directive_of(statement), type)) {
-    KnownParameter& to = out.emplace_back(KnownParameter{std::move(one.name), std::move(one.types)});
+    KnownParameter& to =
+        out.emplace_back(KnownParameter{std::move(one.name), std::move(one.types)});
     to.doc = std::move(one.doc);
     to.fallback = std::move(one.fallback);
     to.low = one.low;
@@ -210,7 +224,8 @@ std::vector<KnownParameter> statement_parameters(Statement statement, const std:
     // A program first makes a texture of the image.
     if (statement == Statement::material && to.name == "normalmap") to.types = {"texture"};
   }
-  if (statement == Statement::texture && std::ranges::find(out, "filename", &KnownParameter::name) != out.end()) {
+  if (statement == Statement::texture &&
+      std::ranges::find(out, "filename", &KnownParameter::name) != out.end()) {
     KnownParameter& pixels = out.emplace_back(KnownParameter{"pixels", {}});
     pixels.doc = "an image in memory: rows of pixels of 1, 3 or 4 numbers";
     pixels.excludes = {"filename", "encoding"};
@@ -220,21 +235,26 @@ std::vector<KnownParameter> statement_parameters(Statement statement, const std:
 
 Scene::Scene() : data_(std::make_shared<Data>()) { data_->open_camera = data_->open_light = true; }
 
-std::uint32_t Scene::add_shape(const std::string& type, const Parameters& parameters, const ShapeOptions& options) {
+std::uint32_t Scene::add_shape(const std::string& type, const Parameters& parameters,
+                               const ShapeOptions& options) {
   return add_shapes(type, 1, parameters, {}, {}, {}, options);
 }
 
-std::uint32_t Scene::add_shapes(const std::string& type, std::size_t count, const Parameters& shared, const Parameters& each,
-                                std::span<const Transform> transforms, std::span<const std::uint32_t> materials,
+std::uint32_t Scene::add_shapes(const std::string& type, std::size_t count,
+                                const Parameters& shared, const Parameters& each,
+                                std::span<const Transform> transforms,
+                                std::span<const std::uint32_t> materials,
                                 const ShapeOptions& options) {
   if (count == 0) throw InputError(fmt::format("{}: there are none", type));
   if (!transforms.empty() && transforms.size() != count)
-    throw InputError(fmt::format("{}: {} transforms for {} shapes", type, transforms.size(), count));
+    throw InputError(
+        fmt::format("{}: {} transforms for {} shapes", type, transforms.size(), count));
   if (!materials.empty() && materials.size() != count)
     throw InputError(fmt::format("{}: {} materials for {} shapes", type, materials.size(), count));
   for (const auto& [name, values] : each)
     if (const std::size_t given = length_of(values); given == 0 || given % count != 0)
-      throw InputError(fmt::format("{}: '{}' has {} values for {} shapes", type, name, given, count));
+      throw InputError(
+          fmt::format("{}: '{}' has {} values for {} shapes", type, name, given, count));
   const caplet::Scene& model = data_->model;
   const std::optional<AreaEmission> emission = emission_for(options);
   const std::uint32_t material = options.materials.empty() ? 0 : options.materials[0];
@@ -286,9 +306,11 @@ std::uint32_t Scene::add_mesh(const MeshArrays& mesh, const ShapeOptions& option
 }
 
 CapsuleArrays Scene::capsule_arrays(std::uint32_t shape) const {
-  const auto* found = std::get_if<CapsulesShape>(&shape_at(data_->model, place_of(data_->model, shape)).geometry);
+  const auto* found =
+      std::get_if<CapsulesShape>(&shape_at(data_->model, place_of(data_->model, shape)).geometry);
   if (!found) throw InputError(fmt::format("shape {} is not one of capsules", shape));
-  CapsuleArrays out{arrays_of(found->p0), arrays_of(found->p1), found->radius0, found->radius1, found->materials};
+  CapsuleArrays out{arrays_of(found->p0), arrays_of(found->p1), found->radius0, found->radius1,
+                    found->materials};
   for (const glm::vec2& u : found->u) out.u.push_back({u.x, u.y});
   return out;
 }
@@ -307,8 +329,10 @@ void Scene::set_capsules(std::uint32_t shape, const CapsuleArrays& capsules) {
 
 std::uint32_t Scene::shape_in(const std::string& object, std::size_t index) const {
   const caplet::Scene& model = data_->model;
-  const std::size_t count = object.empty() ? model.shapes.size() : model.objects[object_at(model, object)].shapes.size();
-  if (index >= count) throw InputError(fmt::format("there is no shape {}, of {} counted from 0", index, count));
+  const std::size_t count =
+      object.empty() ? model.shapes.size() : model.objects[object_at(model, object)].shapes.size();
+  if (index >= count)
+    throw InputError(fmt::format("there is no shape {}, of {} counted from 0", index, count));
   return number_in(model, object, index);
 }
 
@@ -336,7 +360,8 @@ std::vector<std::string> Scene::objects() const {
   return out;
 }
 
-std::uint32_t Scene::add_instances(const std::string& object, std::span<const Transform> transforms) {
+std::uint32_t Scene::add_instances(const std::string& object,
+                                   std::span<const Transform> transforms) {
   const auto number = static_cast<std::uint32_t>(object_at(data_->model, object));
   caplet::Scene one;
   one.objects.push_back(data_->model.objects[number]);
@@ -345,21 +370,24 @@ std::uint32_t Scene::add_instances(const std::string& object, std::span<const Tr
   one.materials.resize(std::size_t{most} + 1);
   one.media.resize(data_->model.media.size());
   one.textures = data_->model.textures;
-  for (const Transform& transform : transforms) one.instances.push_back({0, to_model(transform), {}});
+  for (const Transform& transform : transforms)
+    one.instances.push_back({0, to_model(transform), {}});
   if (one.instances.empty()) throw InputError("instances: there are none");
   Diagnostics diagnostics;
   validate(one, diagnostics);
   diagnostics.finish();
   Data& data = changed();
   const auto first = static_cast<std::uint32_t>(data.model.instances.size());
-  for (Instance& instance : one.instances) data.model.instances.push_back({number, instance.world_from_object, {}});
+  for (Instance& instance : one.instances)
+    data.model.instances.push_back({number, instance.world_from_object, {}});
   data.as_a_whole();
   return first;
 }
 
-std::uint32_t Scene::add_light(const std::string& type, const Parameters& parameters, const Transform& transform) {
-  caplet::Light light =
-      light_of(to_statement(directive_of(Statement::light), type, parameters), to_model(transform), FileImageReader());
+std::uint32_t Scene::add_light(const std::string& type, const Parameters& parameters,
+                               const Transform& transform) {
+  caplet::Light light = light_of(to_statement(directive_of(Statement::light), type, parameters),
+                                 to_model(transform), FileImageReader());
   check_light(light);
   Data& data = changed();
   if (data.studio_light) data.model.lights.clear();
@@ -376,10 +404,10 @@ void Scene::remove_lights() {
   data.as_a_whole();
 }
 
-std::uint32_t Scene::add_medium(const std::string& name, const std::string& type, const Parameters& parameters,
-                                const Transform& transform) {
-  caplet::Medium medium =
-      medium_of(to_statement(directive_of(Statement::medium), type, parameters), valid_utf8(name), to_model(transform));
+std::uint32_t Scene::add_medium(const std::string& name, const std::string& type,
+                                const Parameters& parameters, const Transform& transform) {
+  caplet::Medium medium = medium_of(to_statement(directive_of(Statement::medium), type, parameters),
+                                    valid_utf8(name), to_model(transform));
   caplet::Scene one;
   one.media.push_back(medium);
   check_textures(one);
@@ -395,10 +423,12 @@ std::vector<std::string> Scene::media() const {
   return out;
 }
 
-void Scene::set_camera(const std::string& type, const Parameters& parameters, const Transform& transform) {
+void Scene::set_camera(const std::string& type, const Parameters& parameters,
+                       const Transform& transform) {
   caplet::Scene one;
   one.film = data_->model.film;
-  caplet::set_option(to_statement(directive_of(Statement::camera), type, parameters), to_model(transform), one);
+  caplet::set_option(to_statement(directive_of(Statement::camera), type, parameters),
+                     to_model(transform), one);
   check_textures(one);
   Data& data = changed();
   one.camera.medium = data.model.camera.medium;
@@ -416,15 +446,16 @@ Transform Scene::camera() const { return to_public(data_->model.camera.world_fro
 
 void Scene::set_camera_medium(std::optional<std::uint32_t> medium) {
   if (medium && *medium >= data_->model.media.size())
-    throw InputError(fmt::format("there is no medium {}, of {} counted from 0", *medium, data_->model.media.size()));
+    throw InputError(fmt::format("there is no medium {}, of {} counted from 0", *medium,
+                                 data_->model.media.size()));
   Data& data = changed();
   data.model.camera.medium = medium;
   data.as_a_whole();
 }
 
 void Scene::set_option(Statement statement, const std::string& type, const Parameters& parameters) {
-  if (statement != Statement::film && statement != Statement::filter && statement != Statement::sampler &&
-      statement != Statement::integrator)
+  if (statement != Statement::film && statement != Statement::filter &&
+      statement != Statement::sampler && statement != Statement::integrator)
     throw InputError("an option is a film, a filter, a sampler or an integrator");
   caplet::Scene one;
   one.film = data_->model.film;
@@ -464,7 +495,9 @@ void Scene::present() {
     model.automatic_camera = false;
     // The studio's lights are placed around this camera.
     const glm::dmat3 view(camera.world_from_camera);
-    if (needs_light) std::get<InfiniteLight>(model.lights.back().model).world_from_light = glm::dmat3(-view[2], view[0], view[1]);
+    if (needs_light)
+      std::get<InfiniteLight>(model.lights.back().model).world_from_light =
+          glm::dmat3(-view[2], view[0], view[1]);
   }
   data.studio_light = needs_light;
   if (needs_light || data.open_camera) data.as_a_whole();

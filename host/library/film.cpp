@@ -22,7 +22,8 @@ const Channel& channel_of(const LayeredImage& image, const std::string& name) {
   if (const Channel* channel = image.find(name)) return *channel;
   std::vector<std::string> names;
   for (const Channel& channel : image.channels) names.push_back(channel.name);
-  throw InputError(fmt::format("there is no channel '{}'; the nearest is '{}'", name, nearest_name(name, names)));
+  throw InputError(fmt::format("there is no channel '{}'; the nearest is '{}'", name,
+                               nearest_name(name, names)));
 }
 
 }  // namespace
@@ -51,7 +52,8 @@ int Film::samples_per_pixel() const { return static_cast<int>(data_->film.sample
 
 std::vector<SampleRange> Film::samples() const {
   std::vector<SampleRange> out;
-  for (const FilmPart& part : data_->film.parts()) out.push_back({part.sample_begin, part.sample_count});
+  for (const FilmPart& part : data_->film.parts())
+    out.push_back({part.sample_begin, part.sample_count});
   std::ranges::sort(out, {}, &SampleRange::first);
   return out;
 }
@@ -59,14 +61,16 @@ std::vector<SampleRange> Film::samples() const {
 void Film::add(const Film& other) {
   caplet::Film sum = data_->film;
   sum.add(other.data_->film);
-  *this = Inside::film(std::move(sum), data_->sight, data_->notes, data_->render_seconds + other.data_->render_seconds);
+  *this = Inside::film(std::move(sum), data_->sight, data_->notes,
+                       data_->render_seconds + other.data_->render_seconds);
 }
 
 void Film::save(const std::filesystem::path& file) const { data_->film.save(file); }
 
 Film Film::load(const std::filesystem::path& file, const Scene& scene) {
   const caplet::Scene& model = *Inside::model(scene);
-  return Inside::film(caplet::Film::load(file), std::make_shared<const post::Sight>(model), {{"caplet.scene", model.source}}, 0);
+  return Inside::film(caplet::Film::load(file), std::make_shared<const post::Sight>(model),
+                      {{"caplet.scene", model.source}}, 0);
 }
 
 std::vector<std::string> Film::channels() const {
@@ -89,9 +93,12 @@ std::vector<std::uint32_t> Film::ids(const std::string& channel) const {
 
 void Film::write_exr(const std::filesystem::path& file) const {
   const LayeredImage& image = developed().image;
-  const std::uint64_t bytes = std::uint64_t{4} * image.channels.size() * static_cast<std::uint64_t>(image.data_width) *
+  const std::uint64_t bytes = std::uint64_t{4} * image.channels.size() *
+                              static_cast<std::uint64_t>(image.data_width) *
                               static_cast<std::uint64_t>(image.data_height);
-  caplet::write_exr(file, image, compression_for(bytes, data_->render_seconds, std::thread::hardware_concurrency()));
+  caplet::write_exr(
+      file, image,
+      compression_for(bytes, data_->render_seconds, std::thread::hardware_concurrency()));
 }
 
 void Film::write_preview(const std::filesystem::path& file, const OverlayOptions& drawn) const {
@@ -101,7 +108,9 @@ void Film::write_preview(const std::filesystem::path& file, const OverlayOptions
   for (const auto& [name, value] : drawn) post::set_overlay(asked, name, value, name);
   post::check(asked, *data_->sight, "");
   if (!data_->film.layout().layers.has_all(asked.layers()))
-    throw InputError("the film does not have the layers that outlines and the depth cue are drawn from (depth, object)");
+    throw InputError(
+        "the film does not have the layers that outlines and the depth cue are drawn from (depth, "
+        "object)");
   const LayeredImage& image = developed().image;
   Shown picture = shown(image);
   if (asked.any()) post::draw(picture, image, *data_->sight, asked);
@@ -110,7 +119,8 @@ void Film::write_preview(const std::filesystem::path& file, const OverlayOptions
 
 std::vector<Overlay> overlays() {
   std::vector<Overlay> out;
-  for (const post::OverlayRow& row : post::overlay_rows()) out.push_back({row.name, row.values, row.help});
+  for (const post::OverlayRow& row : post::overlay_rows())
+    out.push_back({row.name, row.values, row.help});
   return out;
 }
 

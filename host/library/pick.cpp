@@ -86,8 +86,9 @@ class Numbers {
     const Identity identity = identity_of(scene_, pick);
     out.instance = identity.instance.value_or(Crossing::none);
     const std::uint32_t object = scene_.instances[out.instance].object;
-    out.shape = static_cast<std::uint32_t>(first_[object] +
-                                           static_cast<std::size_t>(identity.shape - scene_.objects[object].shapes.data()));
+    out.shape = static_cast<std::uint32_t>(
+        first_[object] +
+        static_cast<std::size_t>(identity.shape - scene_.objects[object].shapes.data()));
     return out;
   }
 
@@ -110,31 +111,37 @@ std::vector<std::optional<Hit>> Questions::nearest(std::span<const Ray> rays) co
   std::vector<std::optional<Hit>> out;
   if (rays.empty()) return out;
   out.reserve(rays.size());
-  for (const PickRecord& pick : query.closest(to_records(rays))) out.push_back(to_nearest(pick, scene));
+  for (const PickRecord& pick : query.closest(to_records(rays)))
+    out.push_back(to_nearest(pick, scene));
   return out;
 }
 
 template <class Take>
 void Questions::for_lists(std::span<const Ray> rays, std::size_t most, Take&& take) const {
   if (most < 1 || most > max_query_capacity)
-    throw InputError(fmt::format("{} hits of a ray: that is not within 1 to {}", most, max_query_capacity));
+    throw InputError(
+        fmt::format("{} hits of a ray: that is not within 1 to {}", most, max_query_capacity));
   try_device(device, {.shapes = shapes, .lists = true});
   if (rays.empty()) return;
   const HitLists lists = query.all(to_records(rays), most);
   if (!lists.overflowed.empty())
-    throw RunError(fmt::format("ray {} has more than {} hits, as {} in all", lists.overflowed[0], most, lists.overflowed.size()));
+    throw RunError(fmt::format("ray {} has more than {} hits, as {} in all", lists.overflowed[0],
+                               most, lists.overflowed.size()));
   for (std::size_t i = 0; i < rays.size(); ++i)
     for (std::size_t k = lists.begin[i]; k < lists.begin[i + 1]; ++k) take(i, lists.crossings[k]);
 }
 
 std::vector<std::vector<Hit>> Questions::all(std::span<const Ray> rays, std::size_t most) const {
   std::vector<std::vector<Hit>> out(rays.size());
-  for_lists(rays, most, [&](std::size_t ray, const PickRecord& pick) { out[ray].push_back(to_hit(pick, scene)); });
+  for_lists(rays, most, [&](std::size_t ray, const PickRecord& pick) {
+    out[ray].push_back(to_hit(pick, scene));
+  });
   return out;
 }
 
 void Questions::nearest(std::span<const Ray> rays, std::span<Crossing> out) const {
-  if (out.size() != rays.size()) throw InputError(fmt::format("{} rays and room for {} hits", rays.size(), out.size()));
+  if (out.size() != rays.size())
+    throw InputError(fmt::format("{} rays and room for {} hits", rays.size(), out.size()));
   try_device(device, {.shapes = shapes, .nearest = true});
   const Numbers numbers(scene);
   for (std::size_t first = 0; first < rays.size(); first += rays_at_once) {
@@ -147,7 +154,9 @@ void Questions::nearest(std::span<const Ray> rays, std::span<Crossing> out) cons
 std::vector<Crossing> Questions::crossings(std::span<const Ray> rays, std::size_t most) const {
   std::vector<Crossing> out;
   const Numbers numbers(scene);
-  for_lists(rays, most, [&](std::size_t ray, const PickRecord& pick) { out.push_back(numbers.crossing(pick, ray)); });
+  for_lists(rays, most, [&](std::size_t ray, const PickRecord& pick) {
+    out.push_back(numbers.crossing(pick, ray));
+  });
   return out;
 }
 
@@ -172,11 +181,15 @@ Picker::~Picker() = default;
 
 std::optional<Hit> Picker::pixel(int x, int y) { return data_->questions().pixel(x, y); }
 std::optional<Hit> Picker::nearest(const Ray& ray) { return nearest(std::span(&ray, 1)).front(); }
-std::vector<std::optional<Hit>> Picker::nearest(std::span<const Ray> rays) { return data_->questions().nearest(rays); }
+std::vector<std::optional<Hit>> Picker::nearest(std::span<const Ray> rays) {
+  return data_->questions().nearest(rays);
+}
 std::vector<std::vector<Hit>> Picker::all(std::span<const Ray> rays, std::size_t most) {
   return data_->questions().all(rays, most);
 }
-void Picker::nearest(std::span<const Ray> rays, std::span<Crossing> out) { data_->questions().nearest(rays, out); }
+void Picker::nearest(std::span<const Ray> rays, std::span<Crossing> out) {
+  data_->questions().nearest(rays, out);
+}
 std::vector<Crossing> Picker::crossings(std::span<const Ray> rays, std::size_t most) {
   return data_->questions().crossings(rays, most);
 }

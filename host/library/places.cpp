@@ -9,14 +9,16 @@ namespace caplet::v0 {
 glm::dmat4 to_model(const Transform& rows) {
   glm::dmat4 out(1);
   for (int r = 0; r < 3; ++r)
-    for (int c = 0; c < 4; ++c) out[c][r] = rows[4 * static_cast<std::size_t>(r) + static_cast<std::size_t>(c)];
+    for (int c = 0; c < 4; ++c)
+      out[c][r] = rows[4 * static_cast<std::size_t>(r) + static_cast<std::size_t>(c)];
   return out;
 }
 
 Transform to_public(const glm::dmat4& m) {
   Transform rows;
   for (int r = 0; r < 3; ++r)
-    for (int c = 0; c < 4; ++c) rows[4 * static_cast<std::size_t>(r) + static_cast<std::size_t>(c)] = m[c][r];
+    for (int c = 0; c < 4; ++c)
+      rows[4 * static_cast<std::size_t>(r) + static_cast<std::size_t>(c)] = m[c][r];
   return rows;
 }
 

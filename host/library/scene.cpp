@@ -32,7 +32,8 @@ constexpr double degrees_per_radian = 180 / std::numbers::pi;
 template <class T>
 const T& at(const std::vector<T>& values, std::size_t number, const char* what) {
   if (number < values.size()) return values[number];
-  throw InputError(fmt::format("there is no {} {}, of {} counted from 0", what, number, values.size()));
+  throw InputError(
+      fmt::format("there is no {} {}, of {} counted from 0", what, number, values.size()));
 }
 
 glm::dvec3 to_vector(const std::array<double, 3>& v) { return {v[0], v[1], v[2]}; }
@@ -62,7 +63,8 @@ void Scene::Data::as_a_whole_in_view() {
 }
 
 void check_range(const char* what, std::int64_t value, std::int64_t least, std::int64_t most) {
-  if (value < least || value > most) throw InputError(fmt::format("{}: {} is not within {} to {}", what, value, least, most));
+  if (value < least || value > most)
+    throw InputError(fmt::format("{}: {} is not within {} to {}", what, value, least, most));
 }
 
 Scene::Scene(std::shared_ptr<Data> data) : data_(std::move(data)) {}
@@ -74,7 +76,8 @@ Scene::~Scene() = default;
 
 Scene::Data& Scene::changed() {
   if (data_.use_count() > 1) data_ = std::make_shared<Data>(*data_);
-  std::atomic_thread_fence(std::memory_order_acquire);  // makes accesses of other threads through released copies happen before
+  std::atomic_thread_fence(std::memory_order_acquire);  // makes accesses of other threads through
+                                                        // released copies happen before
   return *data_;
 }
 
@@ -83,7 +86,9 @@ Bounds Scene::bounds() const {
   return {{bounds.min.x, bounds.min.y, bounds.min.z}, {bounds.max.x, bounds.max.y, bounds.max.z}};
 }
 
-std::map<std::string, std::uint64_t> Scene::primitives() const { return count_primitives(data_->model); }
+std::map<std::string, std::uint64_t> Scene::primitives() const {
+  return count_primitives(data_->model);
+}
 
 std::vector<std::string> Scene::materials() const {
   std::vector<std::string> out;
@@ -100,7 +105,9 @@ void Scene::set_size(int width, int height) {
   set_film_size(changed().model, width, height);
 }
 
-void Scene::set_crop(int x0, int y0, int x1, int y1) { caplet::set_crop(changed().model, {x0, y0, x1, y1}); }
+void Scene::set_crop(int x0, int y0, int x1, int y1) {
+  caplet::set_crop(changed().model, {x0, y0, x1, y1});
+}
 
 int Scene::samples_per_pixel() const { return data_->model.sampler.samples_per_pixel; }
 void Scene::set_samples_per_pixel(int samples) {
@@ -125,7 +132,8 @@ void Scene::set_unit(const std::string& unit) {
   data.as_a_whole_in_view();
 }
 
-void Scene::set_color_bar(const std::string& title, const std::string& unit, double low, double high) {
+void Scene::set_color_bar(const std::string& title, const std::string& unit, double low,
+                          double high) {
   if (!(low <= high) || !std::isfinite(low) || !std::isfinite(high))
     throw InputError("the ends of a colour bar are two numbers, the first not above the second");
   Data& data = changed();
@@ -145,20 +153,25 @@ std::uint32_t Scene::shape(const std::string& name) const {
   const std::vector<std::string> names = shapes();
   const auto found = std::ranges::find(names, valid_utf8(name));
   if (found == names.end())
-    throw InputError(fmt::format("there is no shape '{}'; the nearest is '{}'", name, nearest_name(name, names)));
+    throw InputError(fmt::format("there is no shape '{}'; the nearest is '{}'", name,
+                                 nearest_name(name, names)));
   if (std::find(found + 1, names.end(), *found) != names.end())
     throw InputError(fmt::format("several shapes are named '{}'", name));
   return static_cast<std::uint32_t>(found - names.begin());
 }
 
 std::size_t Scene::capsules(std::uint32_t shape) const {
-  const auto* capsules = std::get_if<CapsulesShape>(&shape_at(data_->model, place_of(data_->model, shape)).geometry);
+  const auto* capsules =
+      std::get_if<CapsulesShape>(&shape_at(data_->model, place_of(data_->model, shape)).geometry);
   return capsules ? capsules->p0.size() : 0;
 }
 
 Capsule Scene::capsule(std::uint32_t shape, std::size_t capsule) const {
   const caplet::Capsule found = capsule_at(data_->model, place_of(data_->model, shape), capsule);
-  return {{found.p0.x, found.p0.y, found.p0.z}, {found.p1.x, found.p1.y, found.p1.z}, found.radius0, found.radius1};
+  return {{found.p0.x, found.p0.y, found.p0.z},
+          {found.p1.x, found.p1.y, found.p1.z},
+          found.radius0,
+          found.radius1};
 }
 
 void Scene::set_capsule(std::uint32_t shape, std::size_t capsule, const Capsule& to) {
@@ -178,7 +191,9 @@ std::size_t Scene::instances() const { return data_->model.instances.size(); }
 Transform Scene::instance(std::uint32_t instance) const {
   return to_public(at(data_->model.instances, instance, "instance").world_from_object);
 }
-void Scene::set_instance(std::uint32_t instance, const Transform& to) { changed().edit(InstanceEdit{instance, to_model(to)}); }
+void Scene::set_instance(std::uint32_t instance, const Transform& to) {
+  changed().edit(InstanceEdit{instance, to_model(to)});
+}
 
 void Scene::set_material(std::uint32_t material, const Material& to) {
   caplet::Material made = to_model(to, data_->model);
@@ -229,7 +244,9 @@ TextureNumber Scene::add_texture(const NamedTexture& texture) {
 }
 
 std::size_t Scene::lights() const { return data_->model.lights.size(); }
-double Scene::light_scale(std::uint32_t light) const { return at(data_->model.lights, light, "light").scale; }
+double Scene::light_scale(std::uint32_t light) const {
+  return at(data_->model.lights, light, "light").scale;
+}
 
 void Scene::set_light(std::uint32_t light, const Spectrum& color, double scale) {
   Light to = at(data_->model.lights, light, "light");
@@ -255,11 +272,16 @@ void Scene::set_emission(std::uint32_t shape, const Spectrum& radiance, double s
   changed().edit(EmissionEdit{place, to});
 }
 
-void Scene::look_at(const std::array<double, 3>& eye, const std::array<double, 3>& target, const std::array<double, 3>& up) {
-  // pbrt's LookAt mirrors a right-handed world; this is kept only if the present camera mirrors it too.
-  const bool is_mirrored = !data_->open_camera && glm::determinant(glm::dmat3(data_->model.camera.world_from_camera)) > 0;
+void Scene::look_at(const std::array<double, 3>& eye, const std::array<double, 3>& target,
+                    const std::array<double, 3>& up) {
+  // pbrt's LookAt mirrors a right-handed world; this is kept only if the present camera mirrors it
+  // too.
+  const bool is_mirrored = !data_->open_camera &&
+                           glm::determinant(glm::dmat3(data_->model.camera.world_from_camera)) > 0;
   auto world_from_camera = camera_looking(to_vector(eye), to_vector(target), to_vector(up));
-  if (!world_from_camera) throw InputError("the camera has no direction: eye and target coincide, or up lies along the view");
+  if (!world_from_camera)
+    throw InputError(
+        "the camera has no direction: eye and target coincide, or up lies along the view");
   if (!is_mirrored) (*world_from_camera)[0] *= -1;
   ViewEdit view = view_of(data_->model);
   view.camera.world_from_camera = *world_from_camera;

@@ -24,18 +24,24 @@ std::vector<caplet::Device> inner(std::span<const Device> devices) {
   return out;
 }
 
-const std::vector<caplet::Device>& tried(const std::vector<caplet::Device>& devices, const FlatScene& flat) {
-  for (const caplet::Device& device : devices) try_device(device, {.shapes = flat.shapes, .render = true});
+const std::vector<caplet::Device>& tried(const std::vector<caplet::Device>& devices,
+                                         const FlatScene& flat) {
+  for (const caplet::Device& device : devices)
+    try_device(device, {.shapes = flat.shapes, .render = true});
   return devices;
 }
 
 }  // namespace
 
-std::uint32_t SessionRuns::render(caplet::Session& session, std::uint32_t samples, const RenderOptions& options) {
+std::uint32_t SessionRuns::render(caplet::Session& session, std::uint32_t samples,
+                                  const RenderOptions& options) {
   const auto start = std::chrono::steady_clock::now();
-  const auto told = [&](const SessionProgress& progress) { options.progress({progress.fraction, progress.samples_per_second}); };
-  const std::uint32_t done =
-      session.render(samples, options.progress ? told : std::function<void(const SessionProgress&)>(), options.time_limit);
+  const auto told = [&](const SessionProgress& progress) {
+    options.progress({progress.fraction, progress.samples_per_second});
+  };
+  const std::uint32_t done = session.render(
+      samples, options.progress ? told : std::function<void(const SessionProgress&)>(),
+      options.time_limit);
   seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   interrupted = done < samples && !options.time_limit;
   return done;
@@ -49,7 +55,8 @@ Film SessionRuns::film(caplet::Session& session, const caplet::Scene& scene) {
   result.render_seconds = seconds;
   result.interrupted = interrupted;
   result.devices = session.work();
-  return Inside::film(std::move(film), sight_, report::picture_metadata(scene, scene.source, "libcaplet", result), seconds);
+  return Inside::film(std::move(film), sight_,
+                      report::picture_metadata(scene, scene.source, "libcaplet", result), seconds);
 }
 
 struct Session::Data {
@@ -67,7 +74,8 @@ struct Session::Data {
   }
 
   Questions questions() {
-    if (const auto scene = session.scene_on(0); scene != asked) {  // it changes when the first device is lost
+    if (const auto scene = session.scene_on(0);
+        scene != asked) {  // it changes when the first device is lost
       query.emplace(*scene);
       asked = scene;
     }
@@ -84,8 +92,10 @@ struct Session::Data {
   std::uint64_t tried_shapes = live.flat().shapes;  // the shapes that the devices were tested with
 };
 
-Session::Session(const Scene& scene, const Device& device) : Session(scene, std::span(&device, 1)) {}
-Session::Session(const Scene& scene, std::span<const Device> devices) : data_(std::make_unique<Data>(scene, devices)) {}
+Session::Session(const Scene& scene, const Device& device)
+    : Session(scene, std::span(&device, 1)) {}
+Session::Session(const Scene& scene, std::span<const Device> devices)
+    : data_(std::make_unique<Data>(scene, devices)) {}
 Session::Session(Session&&) noexcept = default;
 Session& Session::operator=(Session&&) noexcept = default;
 Session::~Session() = default;
@@ -115,7 +125,8 @@ void Session::update(const Scene& scene) {
 
 int Session::render(int samples, const RenderOptions& options) {
   check_range("samples", samples, 1, 1 << 24);
-  return static_cast<int>(data_->runs.render(data_->session, static_cast<std::uint32_t>(samples), options));
+  return static_cast<int>(
+      data_->runs.render(data_->session, static_cast<std::uint32_t>(samples), options));
 }
 
 void Session::cancel() { data_->session.cancel(); }
@@ -126,11 +137,15 @@ void Session::resume(const Film& film) { data_->session.resume(Inside::film(film
 
 std::optional<Hit> Session::pixel(int x, int y) { return data_->questions().pixel(x, y); }
 std::optional<Hit> Session::nearest(const Ray& ray) { return nearest(std::span(&ray, 1)).front(); }
-std::vector<std::optional<Hit>> Session::nearest(std::span<const Ray> rays) { return data_->questions().nearest(rays); }
+std::vector<std::optional<Hit>> Session::nearest(std::span<const Ray> rays) {
+  return data_->questions().nearest(rays);
+}
 std::vector<std::vector<Hit>> Session::all(std::span<const Ray> rays, std::size_t most) {
   return data_->questions().all(rays, most);
 }
-void Session::nearest(std::span<const Ray> rays, std::span<Crossing> out) { data_->questions().nearest(rays, out); }
+void Session::nearest(std::span<const Ray> rays, std::span<Crossing> out) {
+  data_->questions().nearest(rays, out);
+}
 std::vector<Crossing> Session::crossings(std::span<const Ray> rays, std::size_t most) {
   return data_->questions().crossings(rays, most);
 }

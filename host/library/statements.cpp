@@ -35,8 +35,12 @@ struct ToStatement {
     out.type = "texture";
     out.strings = {std::to_string(value.number)};
   }
-  void operator()(const std::array<double, 3>& value) const { out.numbers = {value.begin(), value.end()}; }
-  void operator()(const std::array<std::uint32_t, 2>& value) const { out.numbers = {value.begin(), value.end()}; }
+  void operator()(const std::array<double, 3>& value) const {
+    out.numbers = {value.begin(), value.end()};
+  }
+  void operator()(const std::array<std::uint32_t, 2>& value) const {
+    out.numbers = {value.begin(), value.end()};
+  }
   void operator()(const Blackbody& value) const {
     out.type = "blackbody";
     out.numbers = {value.kelvin};
@@ -50,14 +54,16 @@ struct ToStatement {
 
 }  // namespace
 
-void put_values(const std::string& owner, const Parameter& parameter, StatementParameter& out, std::size_t first,
-                std::size_t count) {
+void put_values(const std::string& owner, const Parameter& parameter, StatementParameter& out,
+                std::size_t first, std::size_t count) {
   std::visit(ToStatement{out, first, count}, parameter);
   for (const double value : out.numbers)
-    if (!std::isfinite(value)) throw InputError(fmt::format("{}: '{}' is not finite", owner, out.name));
+    if (!std::isfinite(value))
+      throw InputError(fmt::format("{}: '{}' is not finite", owner, out.name));
 }
 
-ProgramStatement to_statement(const std::string& directive, const std::string& type, const Parameters& parameters) {
+ProgramStatement to_statement(const std::string& directive, const std::string& type,
+                              const Parameters& parameters) {
   ProgramStatement out{directive, type};
   for (const auto& [name, value] : parameters) {
     StatementParameter& one = out.parameters.emplace_back();

@@ -12,7 +12,8 @@ namespace caplet::v0 {
 
 namespace {
 
-VerifyReport verified(const caplet::Scene* scene, std::span<const Device> devices, const VerifyOptions& options) {
+VerifyReport verified(const caplet::Scene* scene, std::span<const Device> devices,
+                      const VerifyOptions& options) {
   std::vector<caplet::Device> on;
   for (const Device& device : devices) on.push_back(Inside::device(device));
   if (on.empty()) throw InputError("nothing to verify: no device is given");
@@ -25,8 +26,8 @@ VerifyReport verified(const caplet::Scene* scene, std::span<const Device> device
   const std::string label = scene ? file : fmt::format("torture set, seed {}", options.seed);
   VerifyReport out;
   for (const caplet::verify::DeviceReport& one : found.devices)
-    out.devices.push_back({to_public(one.info), one.statistics.rays, one.statistics.hits, one.statistics.disagreements,
-                           one.statistics.worst(), one.seconds});
+    out.devices.push_back({to_public(one.info), one.statistics.rays, one.statistics.hits,
+                           one.statistics.disagreements, one.statistics.worst(), one.seconds});
   out.text = report::plain_text(found, label);
   out.json = report::json_text(found, label, inner);
   return out;
@@ -34,10 +35,13 @@ VerifyReport verified(const caplet::Scene* scene, std::span<const Device> device
 
 }  // namespace
 
-VerifyReport verify(const Scene& scene, std::span<const Device> devices, const VerifyOptions& options) {
+VerifyReport verify(const Scene& scene, std::span<const Device> devices,
+                    const VerifyOptions& options) {
   return verified(Inside::model(scene).get(), devices, options);
 }
 
-VerifyReport verify(std::span<const Device> devices, const VerifyOptions& options) { return verified(nullptr, devices, options); }
+VerifyReport verify(std::span<const Device> devices, const VerifyOptions& options) {
+  return verified(nullptr, devices, options);
+}
 
 }  // namespace caplet::v0

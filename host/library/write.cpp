@@ -7,6 +7,8 @@
 
 namespace caplet::v0 {
 
-void write_scene(const Scene& scene, const std::filesystem::path& file) { caplet::write_scene(*Inside::model(scene), file); }
+void write_scene(const Scene& scene, const std::filesystem::path& file) {
+  caplet::write_scene(*Inside::model(scene), file);
+}
 
 }  // namespace caplet::v0

@@ -53,22 +53,27 @@ const GaussRule& gauss_rule(int points) {
     for (int n = least_points; n <= most_points; n *= 2) all.emplace_back(n);
     return all;
   }();
-  return rules[static_cast<std::size_t>(std::countr_zero(static_cast<unsigned>(points / least_points)))];
+  return rules[static_cast<std::size_t>(
+      std::countr_zero(static_cast<unsigned>(points / least_points)))];
 }
 
 /// Returns the area of a piece's image by `points` directions around the axis: trapezoids around
 /// the whole circle, whose error falls geometrically for periodic analytic functions, and Gauss's
 /// rule elsewhere.
 double round_area(const Piece& piece, const glm::dmat3& cofactor, int points) {
-  const dvec3 s = piece.start != dvec3(0)
-                      ? piece.start
-                      : glm::normalize(glm::cross(piece.axis, std::abs(piece.axis.x) < 0.5 ? dvec3(1, 0, 0) : dvec3(0, 1, 0)));
-  const dvec3 axis = cofactor * piece.axis, x = cofactor * s, y = cofactor * glm::cross(piece.axis, s);
+  const dvec3 s =
+      piece.start != dvec3(0)
+          ? piece.start
+          : glm::normalize(glm::cross(
+                piece.axis, std::abs(piece.axis.x) < 0.5 ? dvec3(1, 0, 0) : dvec3(0, 1, 0)));
+  const dvec3 axis = cofactor * piece.axis, x = cofactor * s,
+              y = cofactor * glm::cross(piece.axis, s);
   const GaussRule& rule = gauss_rule(points);
   const double from = std::acos(piece.high), to = std::acos(piece.low);
   // Returns the integral over the piece's unit normals at phi, or their mean.
   const auto along = [&](const dvec3& across) {
-    if (piece.kind == Piece::side) return glm::length(piece.low * axis + std::sqrt(1 - piece.low * piece.low) * across);
+    if (piece.kind == Piece::side)
+      return glm::length(piece.low * axis + std::sqrt(1 - piece.low * piece.low) * across);
     double sum = 0;
     for (std::size_t i = 0; i < rule.x.size(); ++i) {
       const double theta = 0.5 * (from + to + (to - from) * rule.x[i]), sine = std::sin(theta);
@@ -132,7 +137,8 @@ AreaMap::AreaMap(const glm::dmat4& map) : m(map), similarity(similarity_scale(ma
 
 double placed_area(const FlatPrimitive& p, const std::vector<float>& leaves, const AreaMap& map,
                    std::span<const std::uint32_t> surfaces) {
-  if (map.similarity > 0 && surfaces.empty()) return primitive_area(p, leaves) * (map.similarity * map.similarity);
+  if (map.similarity > 0 && surfaces.empty())
+    return primitive_area(p, leaves) * (map.similarity * map.similarity);
   const glm::dmat3 a(map.m);
   const auto counted = [&](std::uint32_t surface) {
     return surfaces.empty() || std::ranges::find(surfaces, surface) != surfaces.end();

@@ -51,20 +51,30 @@ class BoundaryLowering {
     });
     out_.geometry_boundary.assign(out_.geometries.size(), CAPLET_NONE);
     for (const MediumInterface& one : all_) {
-      if (out_.boundaries.empty() || key(out_.boundaries.back()) != key(one.record)) out_.boundaries.push_back(one.record);
+      if (out_.boundaries.empty() || key(out_.boundaries.back()) != key(one.record))
+        out_.boundaries.push_back(one.record);
       std::fill(out_.geometry_boundary.begin() + static_cast<std::ptrdiff_t>(one.begin),
-                out_.geometry_boundary.begin() + static_cast<std::ptrdiff_t>(one.end), narrow<uint>(out_.boundaries.size() - 1));
+                out_.geometry_boundary.begin() + static_cast<std::ptrdiff_t>(one.end),
+                narrow<uint>(out_.boundaries.size() - 1));
     }
     if (out_.boundaries.size() > CAPLET_MOST_BOUNDARIES)
-      throw InputError(SourceLocation{scene_.source}, "the scene has more than 16 million shapes with different media");
+      throw InputError(SourceLocation{scene_.source},
+                       "the scene has more than 16 million shapes with different media");
   }
 
  private:
-  static std::pair<uint, uint> sides(const BoundaryRecord& record) { return {record.inside, record.outside}; }
-  static std::tuple<uint, uint, uint> key(const BoundaryRecord& record) { return {record.inside, record.outside, record.flags}; }
-  static bool is_closed(const BoundaryRecord& record) { return (record.flags & CAPLET_BOUNDARY_CLOSED) != 0; }
+  static std::pair<uint, uint> sides(const BoundaryRecord& record) {
+    return {record.inside, record.outside};
+  }
+  static std::tuple<uint, uint, uint> key(const BoundaryRecord& record) {
+    return {record.inside, record.outside, record.flags};
+  }
+  static bool is_closed(const BoundaryRecord& record) {
+    return (record.flags & CAPLET_BOUNDARY_CLOSED) != 0;
+  }
 
-  void add(const std::vector<Shape>& shapes, const LoweredShapes& lowered, const std::vector<glm::dmat4>& placed) {
+  void add(const std::vector<Shape>& shapes, const LoweredShapes& lowered,
+           const std::vector<glm::dmat4>& placed) {
     for (std::size_t i = 0; i < shapes.size(); ++i) {
       const Shape& shape = shapes[i];
       if (!shape.media.differ() || shape.one_sided || !lowered.extents[i].subtree) continue;
@@ -78,11 +88,13 @@ class BoundaryLowering {
         if (shape.reverse_orientation) std::swap(one.record.inside, one.record.outside);
       } else {
         one.record.flags =
-            CAPLET_BOUNDARY_SHEET | (!shape.reverse_orientation && open_edges(shape) == 0 ? CAPLET_BOUNDARY_CLOSED : 0u);
+            CAPLET_BOUNDARY_SHEET |
+            (!shape.reverse_orientation && open_edges(shape) == 0 ? CAPLET_BOUNDARY_CLOSED : 0u);
       }
       one.size = std::numeric_limits<double>::infinity();
       for (const glm::dmat4& m : placed)
-        one.size = std::min(one.size, surface_of(bounds_of(shape.geometry, m * shape.world_from_object)));
+        one.size =
+            std::min(one.size, surface_of(bounds_of(shape.geometry, m * shape.world_from_object)));
       all_.push_back(one);
     }
   }

@@ -18,7 +18,8 @@ void lower_camera(const Scene& scene, FlatView& out) {
   ViewRecord& view = out.view;
   view.width = narrow<uint>(film.width);
   view.height = narrow<uint>(film.height);
-  const std::array<int, 4> window = film.crop.value_or(std::array<int, 4>{0, film.width, 0, film.height});
+  const std::array<int, 4> window =
+      film.crop.value_or(std::array<int, 4>{0, film.width, 0, film.height});
   view.crop_x = narrow<uint>(window[0]);
   view.crop_y = narrow<uint>(window[2]);
   view.crop_width = narrow<uint>(window[1] - window[0]);
@@ -27,7 +28,8 @@ void lower_camera(const Scene& scene, FlatView& out) {
   CameraRecord& record = out.camera;
   record = CameraRecord{};
   for (int r = 0; r < 3; ++r)
-    for (int c = 0; c < 4; ++c) record.world_from_camera[r * 4 + c] = static_cast<float>(camera.world_from_camera[c][r]);
+    for (int c = 0; c < 4; ++c)
+      record.world_from_camera[r * 4 + c] = static_cast<float>(camera.world_from_camera[c][r]);
   std::array<double, 4> plane{0, 1, 1, 0};  // of spherical cameras: the unit square, y down
   if (const auto* spherical = std::get_if<SphericalProjection>(&camera.projection)) {
     const bool is_equal_area = spherical->mapping == SphericalProjection::Mapping::equal_area;
@@ -49,7 +51,8 @@ void lower_camera(const Scene& scene, FlatView& out) {
 RayRecord ray_of_pixel(const Scene& scene, int x, int y) {
   const CameraRay of = unproject(scene.camera, scene.film, {x + 0.5, y + 0.5});
   const glm::dmat4& world = scene.camera.world_from_camera;
-  const glm::dvec3 origin(world * glm::dvec4(of.origin, 1)), direction = glm::normalize(glm::dmat3(world) * of.direction);
+  const glm::dvec3 origin(world * glm::dvec4(of.origin, 1)),
+      direction = glm::normalize(glm::dmat3(world) * of.direction);
   RayRecord ray{};
   ray.ox = static_cast<float>(origin.x) + 0.0f;  // no -0
   ray.oy = static_cast<float>(origin.y) + 0.0f;

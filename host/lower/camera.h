@@ -9,9 +9,9 @@
 
 namespace caplet {
 
-/// Fills out.camera and view.width, height and crop_*. The field of view is that of the shorter side of the frame (its aspect
-/// is frame_aspect_ratio if given, else that of the image), or that of a screen window's unit. The scene must have passed
-/// validate().
+/// Fills out.camera and view.width, height and crop_*. The field of view is that of the shorter
+/// side of the frame (its aspect is frame_aspect_ratio if given, else that of the image), or that
+/// of a screen window's unit. The scene must have passed validate().
 void lower_camera(const Scene& scene, FlatView& out);
 
 /// Returns the ray through the middle of pixel (x, y) of the full image, from the top left, and the

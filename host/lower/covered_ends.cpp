@@ -59,7 +59,9 @@ struct End {
 class Primitive {
  public:
   Primitive(const Emitter& emitter, const FlatScene& flat)
-      : leaves_(flat.leaves), slot_(emitter.slot), shape_(flat.geometries[emitter.geometry].shape) {}
+      : leaves_(flat.leaves),
+        slot_(emitter.slot),
+        shape_(flat.geometries[emitter.geometry].shape) {}
 
   bool is_sphere() const { return shape_ == shape_sphere; }
   dvec3 center() const { return vector(sphere_at_c); }
@@ -68,7 +70,11 @@ class Primitive {
   std::optional<Capsule> capsule() const {
     Capsule out;
     if (shape_ == shape_capsule)
-      out = {{vector(capsule_at_p0), vector(capsule_at_p1)}, {datum(capsule_at_r), datum(capsule_at_r)}, {}, 0, 0};
+      out = {{vector(capsule_at_p0), vector(capsule_at_p1)},
+             {datum(capsule_at_r), datum(capsule_at_r)},
+             {},
+             0,
+             0};
     else if (shape_ == shape_tapered_capsule)
       out = {{vector(tapered_capsule_at_p0), vector(tapered_capsule_at_p1)},
              {datum(tapered_capsule_at_r0), datum(tapered_capsule_at_r1)},
@@ -86,7 +92,9 @@ class Primitive {
 
  private:
   double datum(std::uint32_t field) const { return leaves_[slot_ + 8 * (std::size_t{field} + 1)]; }
-  dvec3 vector(std::uint32_t field) const { return {datum(field), datum(field + 1), datum(field + 2)}; }
+  dvec3 vector(std::uint32_t field) const {
+    return {datum(field), datum(field + 1), datum(field + 2)};
+  }
 
   const std::vector<float>& leaves_;
   const std::size_t slot_;
@@ -96,7 +104,9 @@ class Primitive {
 std::array<std::uint32_t, 3> key_of(const dvec3& p) {
   std::array<std::uint32_t, 3> out;
   // 0 has two forms.
-  for (int k = 0; k < 3; ++k) out[static_cast<std::size_t>(k)] = std::bit_cast<std::uint32_t>(static_cast<float>(p[k]) + 0.0f);
+  for (int k = 0; k < 3; ++k)
+    out[static_cast<std::size_t>(k)] =
+        std::bit_cast<std::uint32_t>(static_cast<float>(p[k]) + 0.0f);
   return out;
 }
 
@@ -104,8 +114,8 @@ std::array<std::uint32_t, 3> key_of(const dvec3& p) {
 /// from outside.
 bool may_be_covered(const Emitter& emitter, const FlatScene& flat) {
   const GeometryRecord& geometry = flat.geometries[emitter.geometry];
-  return !emitter.two_sided && !emitter.unseen && !emitter.by_ball && geometry.alpha == CAPLET_NONE &&
-         (geometry.flags & CAPLET_GEOMETRY_FLIP_NORMAL) == 0;
+  return !emitter.two_sided && !emitter.unseen && !emitter.by_ball &&
+         geometry.alpha == CAPLET_NONE && (geometry.flags & CAPLET_GEOMETRY_FLIP_NORMAL) == 0;
 }
 
 /// EndCover is the part of an end that another capsule covers.
@@ -123,7 +133,8 @@ using EndCovers = std::vector<std::array<EndCover, 2>>;  // by emitter
 double open_share(const EndCover& cover, double s, double radius, double rounding) {
   if (cover.s <= -1) return 1;
   if (cover.deeper > rounding) return 0;
-  const double covered = std::acos(std::clamp(cover.s, -1.0, 1.0)) - std::sqrt(2 * rounding / radius);
+  const double covered =
+      std::acos(std::clamp(cover.s, -1.0, 1.0)) - std::sqrt(2 * rounding / radius);
   const double highest = std::cos(std::max(0.0, covered - cover.angle));
   return std::clamp((highest + s) / (1 + s), 0.0, 1.0);
 }
@@ -137,12 +148,14 @@ EndCover best_cover(const End& end, std::span<const End> others) {
     if (other.radius < end.radius) break;
     if (other.emitter == end.emitter) continue;
     double cosine = 0;
-    for (std::size_t k = 0; k < 3; ++k) cosine -= static_cast<double>(end.into[k]) * static_cast<double>(other.into[k]);
+    for (std::size_t k = 0; k < 3; ++k)
+      cosine -= static_cast<double>(end.into[k]) * static_cast<double>(other.into[k]);
     const EndCover cover{std::acos(std::clamp(cosine, -1.0, 1.0)), static_cast<double>(other.s),
                          static_cast<double>(other.radius) - static_cast<double>(end.radius)};
     // A sphere of the same radius covers nothing.
     if (other.s > 1 && !(cover.deeper > 0)) continue;
-    const double open = open_share(cover, static_cast<double>(end.s), static_cast<double>(end.radius), 0);
+    const double open =
+        open_share(cover, static_cast<double>(end.s), static_cast<double>(end.radius), 0);
     if (open < least) {
       least = open;
       best = cover;
@@ -159,23 +172,26 @@ EndCovers covers_of_part(std::span<const Emitter> emitters, const FlatScene& fla
     const Primitive primitive(emitters[i], flat);
     const auto index = narrow<std::uint32_t>(i);
     if (primitive.is_sphere()) {
-      ends.push_back({key_of(primitive.center()), static_cast<float>(primitive.radius()), {}, 2, index, 0});
+      ends.push_back(
+          {key_of(primitive.center()), static_cast<float>(primitive.radius()), {}, 2, index, 0});
     } else if (const std::optional<Capsule> c = primitive.capsule()) {
       for (const std::uint32_t which : {0u, 1u}) {
         const double sign = which == 0 ? 1 : -1;
         const dvec3 into = sign * c->d;
-        ends.push_back({key_of(c->p[which]),
-                        static_cast<float>(c->r[which]),
-                        {static_cast<float>(into.x), static_cast<float>(into.y), static_cast<float>(into.z)},
-                        static_cast<float>(sign * c->s),
-                        index,
-                        which});
+        ends.push_back(
+            {key_of(c->p[which]),
+             static_cast<float>(c->r[which]),
+             {static_cast<float>(into.x), static_cast<float>(into.y), static_cast<float>(into.z)},
+             static_cast<float>(sign * c->s),
+             index,
+             which});
       }
     }
   }
   tbb::parallel_sort(ends.begin(), ends.end());
   for (auto first = ends.begin(); first != ends.end();) {
-    const auto last = std::find_if(first, ends.end(), [&](const End& end) { return end.key != first->key; });
+    const auto last =
+        std::find_if(first, ends.end(), [&](const End& end) { return end.key != first->key; });
     const std::span others(first, std::min<std::ptrdiff_t>(last - first, most_at_a_point));
     for (auto end = first; end != last; ++end)
       if (end->s <= 1) out[end->emitter][end->which] = best_cover(*end, others);
@@ -193,11 +209,13 @@ LightCover cover_of(const Capsule& c, const std::array<EndCover, 2>& ends, doubl
   LightCover out;
   for (const std::size_t which : {std::size_t{0}, std::size_t{1}}) {
     const double s = which == 0 ? c.s : -c.s;
-    const int open = std::min(steps, static_cast<int>(open_share(ends[which], s, c.r[which], rounding) * steps) + 1);
+    const int open = std::min(
+        steps, static_cast<int>(open_share(ends[which], s, c.r[which], rounding) * steps) + 1);
     const double cap = c.r[which] * c.r[which] * (1 + s);
     whole += cap;
     left += cap * open / steps;
-    out.flags |= static_cast<std::uint32_t>(steps - open) << (which == 0 ? CAPLET_LIGHT_COVER_0 : CAPLET_LIGHT_COVER_1);
+    out.flags |= static_cast<std::uint32_t>(steps - open)
+                 << (which == 0 ? CAPLET_LIGHT_COVER_0 : CAPLET_LIGHT_COVER_1);
   }
   out.share = left / whole;
   return out;
@@ -208,14 +226,15 @@ LightCover cover_of(const Capsule& c, const std::array<EndCover, 2>& ends, doubl
 /// length. The bound matters for noise alone.
 double rounding_in(std::uint32_t instance, const FlatScene& flat) {
   const WorldRecord& world = flat.world;
-  const double reach = std::abs(double{world.center_x}) + std::abs(double{world.center_y}) + std::abs(double{world.center_z}) +
-                       2 * double{world.radius};
+  const double reach = std::abs(double{world.center_x}) + std::abs(double{world.center_y}) +
+                       std::abs(double{world.center_z}) + 2 * double{world.radius};
   double scale = 1;
   if (instance != CAPLET_NONE) {
     scale = 0;
     const float* m = flat.instances[instance].object_from_world;
     for (std::size_t row = 0; row < 12; row += 4)
-      scale = std::max(scale, double{std::abs(m[row])} + double{std::abs(m[row + 1])} + double{std::abs(m[row + 2])});
+      scale = std::max(scale, double{std::abs(m[row])} + double{std::abs(m[row + 1])} +
+                                  double{std::abs(m[row + 2])});
   }
   return 4 * 0x1p-24 * reach * scale;
 }
@@ -231,11 +250,13 @@ std::vector<LightCover> covered_ends(const std::vector<Emitter>& emitters, const
     std::size_t end = begin;
     while (end < emitters.size() && emitters[end].instance == instance) ++end;
     EndCovers& covers = of_parts[emitters[begin].slot];
-    if (covers.size() != end - begin) covers = covers_of_part(std::span(emitters).subspan(begin, end - begin), flat);
+    if (covers.size() != end - begin)
+      covers = covers_of_part(std::span(emitters).subspan(begin, end - begin), flat);
     const double rounding = rounding_in(instance, flat);
     for (std::size_t i = begin; i < end; ++i) {
       const std::array<EndCover, 2>& ends = covers[i - begin];
-      if (ends[0].s > -1 || ends[1].s > -1) out[i] = cover_of(*Primitive(emitters[i], flat).capsule(), ends, rounding);
+      if (ends[0].s > -1 || ends[1].s > -1)
+        out[i] = cover_of(*Primitive(emitters[i], flat).capsule(), ends, rounding);
     }
     begin = end;
   }

@@ -64,7 +64,8 @@ bvh::Reference reference_of(const FlatPrimitive& p, std::uint32_t index) {
 std::uint64_t least_rows(std::span<const std::uint64_t> counts) {
   CHECK_EQ_(counts.size(), std::size_t(shape_count));
   std::uint64_t rows = 0;
-  for (std::size_t s = 0; s < counts.size(); s++) rows += (counts[s] + 7) / 8 * rows_of(static_cast<std::uint32_t>(s));
+  for (std::size_t s = 0; s < counts.size(); s++)
+    rows += (counts[s] + 7) / 8 * rows_of(static_cast<std::uint32_t>(s));
   return rows;
 }
 
@@ -76,9 +77,12 @@ int leaf_kind_bits(std::uint64_t shapes) {
 void check_tree_limits(std::uint64_t rows, std::uint64_t nodes, int kind_bits) {
   const std::uint64_t most = max_rows(kind_bits);
   if (rows > most)
-    throw InputError(fmt::format("the scene needs {} rows of primitives, the layout holds {}: about {} million capsules", rows,
-                                 most, most / 8 * 6 / 1000000));
-  if (nodes > max_nodes) throw InputError(fmt::format("the scene needs {} tree nodes, the layout holds {}", nodes, max_nodes));
+    throw InputError(fmt::format(
+        "the scene needs {} rows of primitives, the layout holds {}: about {} million capsules",
+        rows, most, most / 8 * 6 / 1000000));
+  if (nodes > max_nodes)
+    throw InputError(
+        fmt::format("the scene needs {} tree nodes, the layout holds {}", nodes, max_nodes));
 }
 
 // The kernels' error is at most 16 eps (size + coordinates) for rays from nearby, eps = 2^-24, so
@@ -88,7 +92,8 @@ ReferenceBox reference_box(const FlatPrimitive& p) {
   const ExactBox box = exact_box(p);
   double reach = 0;
   for (std::size_t k = 0; k < 3; k++)
-    reach = std::max({reach, std::abs(box.min[k]), std::abs(box.max[k]), 2 * (box.max[k] - box.min[k])});
+    reach = std::max(
+        {reach, std::abs(box.min[k]), std::abs(box.max[k]), 2 * (box.max[k] - box.min[k])});
   const double pad = reach * 0x1p-20;
   ReferenceBox r{};
   const double largest = double(std::numeric_limits<float>::max());
@@ -107,8 +112,8 @@ void primitive_box(const FlatPrimitive& p, double min[3], double max[3]) {
   std::copy(box.max.begin(), box.max.end(), max);
 }
 
-EncodedTree encode_tree(std::span<const FlatPrimitive> primitives, std::vector<float>& nodes, std::vector<float>& leaves,
-                        int kind_bits) {
+EncodedTree encode_tree(std::span<const FlatPrimitive> primitives, std::vector<float>& nodes,
+                        std::vector<float>& leaves, int kind_bits) {
   // These are the least numbers of rows, before anything is allocated.
   const std::uint64_t node_base = nodes.size() / CAPLET_NODE_FLOATS, row_base = leaves.size() / 8;
   std::array<std::uint64_t, shape_count> counts{};
@@ -120,8 +125,9 @@ EncodedTree encode_tree(std::span<const FlatPrimitive> primitives, std::vector<f
   check_tree_limits(row_base + least_rows(counts), node_base + 1, kind_bits);
 
   std::vector<bvh::Reference> references(primitives.size());
-  tbb::parallel_for(std::size_t(0), primitives.size(),
-                    [&](std::size_t i) { references[i] = reference_of(primitives[i], static_cast<std::uint32_t>(i)); });
+  tbb::parallel_for(std::size_t(0), primitives.size(), [&](std::size_t i) {
+    references[i] = reference_of(primitives[i], static_cast<std::uint32_t>(i));
+  });
   const bvh::Tree tree = bvh::build(references, shape_instance);
   CHECK_LE_(tree.depth, bvh::max_depth);
 

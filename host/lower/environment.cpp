@@ -26,15 +26,20 @@ using std::numbers::pi;
 class Luminances {
  public:
   explicit Luminances(const EnvironmentImage& image)
-      : width_(image.width), height_(image.height), square_(image.equal_area), values_(image.rgb.size() / 3) {
+      : width_(image.width),
+        height_(image.height),
+        square_(image.equal_area),
+        values_(image.rgb.size() / 3) {
     const std::array<double, 9> xyz = xyz_from_rgb(image.space);
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, values_.size(), 4096), [&](const tbb::blocked_range<std::size_t>& r) {
-      for (std::size_t i = r.begin(); i < r.end(); ++i) {
-        const float* rgb = &image.rgb[3 * i];
-        values_[i] =
-            static_cast<float>(std::min(xyz[3] * usable(rgb[0]) + xyz[4] * usable(rgb[1]) + xyz[5] * usable(rgb[2]), 3e38));
-      }
-    });
+    tbb::parallel_for(
+        tbb::blocked_range<std::size_t>(0, values_.size(), 4096),
+        [&](const tbb::blocked_range<std::size_t>& r) {
+          for (std::size_t i = r.begin(); i < r.end(); ++i) {
+            const float* rgb = &image.rgb[3 * i];
+            values_[i] = static_cast<float>(std::min(
+                xyz[3] * usable(rgb[0]) + xyz[4] * usable(rgb[1]) + xyz[5] * usable(rgb[2]), 3e38));
+          }
+        });
   }
 
   double at(int x, int y) const {
@@ -44,7 +49,8 @@ class Luminances {
       x = (x + width_) % width_;
       y = std::clamp(y, 0, height_ - 1);
     }
-    return values_[static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x)];
+    return values_[static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) +
+                   static_cast<std::size_t>(x)];
   }
 
   /// Returns the mean over the texel's cell of the bilinear interpolation: 1/8, 6/8, 1/8 of the
@@ -101,16 +107,19 @@ glm::dvec3 environment_direction(bool equal_area, double u, double v) {
 
 void append_texels(const EnvironmentImage& image, FlatScene& out) {
   const std::size_t count = image.rgb.size() / 3, begin = out.light_texels.size();
-  CHECK_EQ_(image.rgb.size(), 3 * static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height));
+  CHECK_EQ_(image.rgb.size(),
+            3 * static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height));
   out.light_texels.resize(begin + 4 * count);
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, 1024), [&](const tbb::blocked_range<std::size_t>& range) {
-    for (std::size_t i = range.begin(); i < range.end(); ++i) {
-      const float* rgb = &image.rgb[3 * i];
-      const std::array<float, 4> texel =
-          environment_texel(glm::dvec3(usable(rgb[0]), usable(rgb[1]), usable(rgb[2])), image.space);
-      std::copy(texel.begin(), texel.end(), &out.light_texels[begin + 4 * i]);
-    }
-  });
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, 1024),
+                    [&](const tbb::blocked_range<std::size_t>& range) {
+                      for (std::size_t i = range.begin(); i < range.end(); ++i) {
+                        const float* rgb = &image.rgb[3 * i];
+                        const std::array<float, 4> texel = environment_texel(
+                            glm::dvec3(usable(rgb[0]), usable(rgb[1]), usable(rgb[2])),
+                            image.space);
+                        std::copy(texel.begin(), texel.end(), &out.light_texels[begin + 4 * i]);
+                      }
+                    });
 }
 
 glm::dvec3 sky_rgb(const EnvironmentImage& image, const glm::dvec3& d) {
@@ -136,8 +145,9 @@ glm::dvec3 sky_rgb(const EnvironmentImage& image, const glm::dvec3& d) {
         column = (column + image.width) % image.width;
         row = std::clamp(row, 0, image.height - 1);
       }
-      const float* rgb = &image.rgb[3 * (static_cast<std::size_t>(row) * static_cast<std::size_t>(image.width) +
-                                         static_cast<std::size_t>(column))];
+      const float* rgb =
+          &image.rgb[3 * (static_cast<std::size_t>(row) * static_cast<std::size_t>(image.width) +
+                          static_cast<std::size_t>(column))];
       const double weight = (i == 0 ? 1 - (x - x0) : x - x0) * (j == 0 ? 1 - (y - y0) : y - y0);
       sum += weight * glm::dvec3(usable(rgb[0]), usable(rgb[1]), usable(rgb[2]));
     }
@@ -145,31 +155,36 @@ glm::dvec3 sky_rgb(const EnvironmentImage& image, const glm::dvec3& d) {
 }
 
 EnvironmentIntegrals lower_environment(const EnvironmentImage& image, FlatScene& out) {
-  const auto width = static_cast<std::size_t>(image.width), height = static_cast<std::size_t>(image.height);
+  const auto width = static_cast<std::size_t>(image.width),
+             height = static_cast<std::size_t>(image.height);
   append_texels(image, out);
   const std::size_t begin = out.light_cdf.size();
   out.light_cdf.resize(begin + (height + 1) + height * (width + 1));
 
   const Luminances luminances(image);
   std::vector<double> rows(height), facing(height);
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, height), [&](const tbb::blocked_range<std::size_t>& range) {
-    std::vector<double> weights(width);
-    for (std::size_t y = range.begin(); y < range.end(); ++y) {
-      // `cell` is the solid angle of a cell of this row.
-      const double top = pi * static_cast<double>(y) / static_cast<double>(height);
-      const double bottom = pi * static_cast<double>(y + 1) / static_cast<double>(height);
-      const double cell = image.equal_area ? 4 * pi / static_cast<double>(width * height)
-                                           : (std::cos(top) - std::cos(bottom)) * 2 * pi / static_cast<double>(width);
-      facing[y] = 0;
-      for (std::size_t x = 0; x < width; ++x) {
-        weights[x] = cell * luminances.cell_mean(static_cast<int>(x), static_cast<int>(y));
-        const glm::dvec3 d = environment_direction(image.equal_area, (static_cast<double>(x) + 0.5) / static_cast<double>(width),
-                                                   (static_cast<double>(y) + 0.5) / static_cast<double>(height));
-        facing[y] += weights[x] * std::max(0.0, d.z);
-      }
-      rows[y] = running_sum(weights, &out.light_cdf[begin + (height + 1) + y * (width + 1)]);
-    }
-  });
+  tbb::parallel_for(
+      tbb::blocked_range<std::size_t>(0, height),
+      [&](const tbb::blocked_range<std::size_t>& range) {
+        std::vector<double> weights(width);
+        for (std::size_t y = range.begin(); y < range.end(); ++y) {
+          // `cell` is the solid angle of a cell of this row.
+          const double top = pi * static_cast<double>(y) / static_cast<double>(height);
+          const double bottom = pi * static_cast<double>(y + 1) / static_cast<double>(height);
+          const double cell = image.equal_area ? 4 * pi / static_cast<double>(width * height)
+                                               : (std::cos(top) - std::cos(bottom)) * 2 * pi /
+                                                     static_cast<double>(width);
+          facing[y] = 0;
+          for (std::size_t x = 0; x < width; ++x) {
+            weights[x] = cell * luminances.cell_mean(static_cast<int>(x), static_cast<int>(y));
+            const glm::dvec3 d = environment_direction(
+                image.equal_area, (static_cast<double>(x) + 0.5) / static_cast<double>(width),
+                (static_cast<double>(y) + 0.5) / static_cast<double>(height));
+            facing[y] += weights[x] * std::max(0.0, d.z);
+          }
+          rows[y] = running_sum(weights, &out.light_cdf[begin + (height + 1) + y * (width + 1)]);
+        }
+      });
   EnvironmentIntegrals integrals;
   integrals.luminance = running_sum(rows, out.light_cdf.data() + begin);
   for (const double row : facing) integrals.illuminance += row;

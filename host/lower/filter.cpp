@@ -14,8 +14,12 @@ namespace {
 
 double mitchell(double x, double b, double c) {
   x = std::abs(x);
-  if (x <= 1) return ((12 - 9 * b - 6 * c) * x * x * x + (-18 + 12 * b + 6 * c) * x * x + (6 - 2 * b)) / 6;
-  if (x <= 2) return ((-b - 6 * c) * x * x * x + (6 * b + 30 * c) * x * x + (-12 * b - 48 * c) * x + (8 * b + 24 * c)) / 6;
+  if (x <= 1)
+    return ((12 - 9 * b - 6 * c) * x * x * x + (-18 + 12 * b + 6 * c) * x * x + (6 - 2 * b)) / 6;
+  if (x <= 2)
+    return ((-b - 6 * c) * x * x * x + (6 * b + 30 * c) * x * x + (-12 * b - 48 * c) * x +
+            (8 * b + 24 * c)) /
+           6;
   return 0;
 }
 
@@ -59,7 +63,8 @@ uint append_axis(const PixelFilter& filter, double radius, std::vector<float>& t
     const double value = filter_value(filter, x, radius);
     // A node at a zero crossing is exact to bisection only: its value becomes 0, so that its cell
     // does not have both signs.
-    values.push_back(std::abs(value) < 1e-12 * std::abs(filter_value(filter, 0, radius)) ? 0 : value);
+    values.push_back(std::abs(value) < 1e-12 * std::abs(filter_value(filter, 0, radius)) ? 0
+                                                                                         : value);
   }
   std::vector<double> running = {0};
   double integral = 0;
@@ -87,7 +92,9 @@ double filter_value(const PixelFilter& filter, double x, double radius) {
     case PixelFilter::Kind::triangle:
       return radius - x;
     case PixelFilter::Kind::gaussian: {
-      const auto bell = [&](double t) { return std::exp(-t * t / (2 * filter.sigma * filter.sigma)); };
+      const auto bell = [&](double t) {
+        return std::exp(-t * t / (2 * filter.sigma * filter.sigma));
+      };
       return std::max(0.0, bell(x) - bell(radius));
     }
     case PixelFilter::Kind::mitchell:

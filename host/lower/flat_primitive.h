@@ -20,7 +20,9 @@ struct FlatPrimitive {
   const float* kept_box() const { return data + data_of[shape]; }
   float* kept_box() { return data + data_of[shape]; }
 };
-#define SHAPE(name, traits) static_assert(name##_data + ((traits)&trait_kept_box ? 6 : 0) <= 12, "FlatPrimitive holds a " #name);
+#define SHAPE(name, traits)                                            \
+  static_assert(name##_data + ((traits)&trait_kept_box ? 6 : 0) <= 12, \
+                "FlatPrimitive holds a " #name);
 #include "shared/shapes.def"
 #undef SHAPE
 

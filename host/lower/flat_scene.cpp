@@ -37,17 +37,21 @@ std::uint64_t FlatScene::light_kinds() const { return kinds_of(lights); }
 std::uint64_t FlatScene::medium_kinds() const { return kinds_of(mediums); }
 
 bool FlatScene::has_media() const {
-  const auto passes = [](const MaterialRecord& material) { return (material_traits[material.kind] & trait_passes) != 0; };
+  const auto passes = [](const MaterialRecord& material) {
+    return (material_traits[material.kind] & trait_passes) != 0;
+  };
   return !mediums.empty() || std::ranges::any_of(materials, passes);
 }
 
 bool FlatScene::multiscatters() const {
-  return std::ranges::any_of(materials, [](const MaterialRecord& m) { return (m.flags & CAPLET_MATERIAL_MULTISCATTER) != 0; });
+  return std::ranges::any_of(materials, [](const MaterialRecord& m) {
+    return (m.flags & CAPLET_MATERIAL_MULTISCATTER) != 0;
+  });
 }
 
 std::uint64_t FlatScene::geometry_bytes() const {
-  return bytes_of(nodes) + bytes_of(leaves) + bytes_of(primitive_geometry) + bytes_of(instances) + bytes_of(mesh_indices) +
-         bytes_of(mesh_normals) + bytes_of(mesh_uvs);
+  return bytes_of(nodes) + bytes_of(leaves) + bytes_of(primitive_geometry) + bytes_of(instances) +
+         bytes_of(mesh_indices) + bytes_of(mesh_normals) + bytes_of(mesh_uvs);
 }
 
 std::uint64_t FlatScene::device_bytes() const {

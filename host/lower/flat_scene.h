@@ -27,7 +27,8 @@ struct FlatScene {
   // Kernels are built for these (stage_options): the kinds of shapes there are (bit k: kind k),
   // operands of csg among them, and the bits of leaf references for them.
   std::uint64_t shapes = ~std::uint64_t{0};
-  std::uint64_t material_kinds() const;  // likewise, of `materials`, `textures` and `lights` as they are
+  std::uint64_t material_kinds()
+      const;  // likewise, of `materials`, `textures` and `lights` as they are
   std::uint64_t texture_kinds() const;
   std::uint64_t light_kinds() const;
   std::uint64_t medium_kinds() const;
@@ -43,7 +44,8 @@ struct FlatScene {
   double bvh_sah = 0;
   double build_seconds = 0;
   std::uint64_t device_bytes() const;
-  std::uint64_t geometry_bytes() const;  // nodes, leaves, primitive_geometry, instances, mesh arrays
+  std::uint64_t geometry_bytes()
+      const;  // nodes, leaves, primitive_geometry, instances, mesh arrays
 };
 
 /// FlatView is what is rendered of a scene: its camera, film and sampler.

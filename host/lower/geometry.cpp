@@ -23,14 +23,19 @@ namespace {
 using Matrix = glm::dmat4;
 using glm::dvec3;
 
-std::vector<std::array<std::uint32_t, 3>>& faces_of(TriangleMeshShape& mesh) { return mesh.triangles; }
-std::vector<std::array<std::uint32_t, 4>>& faces_of(BilinearMeshShape& mesh) { return mesh.patches; }
+std::vector<std::array<std::uint32_t, 3>>& faces_of(TriangleMeshShape& mesh) {
+  return mesh.triangles;
+}
+std::vector<std::array<std::uint32_t, 4>>& faces_of(BilinearMeshShape& mesh) {
+  return mesh.patches;
+}
 
 /// Reserves room for `count` more; at least doubles what it allocates, so that many small additions
 /// move each element a bounded number of times.
 template <class T>
 void reserve_more(std::vector<T>& values, std::size_t count) {
-  if (values.capacity() - values.size() < count) values.reserve(std::max(values.size() + count, 2 * values.capacity()));
+  if (values.capacity() - values.size() < count)
+    values.reserve(std::max(values.size() + count, 2 * values.capacity()));
 }
 
 /// Returns the same mesh, with each corner of each face a vertex of its own, and with the uvs of a
@@ -53,8 +58,8 @@ Mesh with_uvs(Mesh mesh) {
 
 /// A mirroring transform turns normals that follow the winding, but not those of disks and solids.
 bool turns_normals(const Shape& shape, const Matrix& m) {
-  const bool wound =
-      std::holds_alternative<TriangleMeshShape>(shape.geometry) || std::holds_alternative<BilinearMeshShape>(shape.geometry);
+  const bool wound = std::holds_alternative<TriangleMeshShape>(shape.geometry) ||
+                     std::holds_alternative<BilinearMeshShape>(shape.geometry);
   return shape.reverse_orientation != (wound && glm::determinant(glm::dmat3(m)) < 0);
 }
 
@@ -62,12 +67,14 @@ bool turns_normals(const Shape& shape, const Matrix& m) {
 /// seen from where their normal points.
 uint unseen_sides(const Shape& shape, const Matrix& m) {
   if (!shape.one_sided) return 0;
-  return !is_closed(shape) && turns_normals(shape, m) ? CAPLET_INSTANCE_NO_ENTERING : CAPLET_INSTANCE_NO_LEAVING;
+  return !is_closed(shape) && turns_normals(shape, m) ? CAPLET_INSTANCE_NO_ENTERING
+                                                      : CAPLET_INSTANCE_NO_LEAVING;
 }
 
 class GeometryLowering {
  public:
-  GeometryLowering(const Scene& scene, const ImageNumbers& images, SpectrumTable& spectra, FlatScene& out)
+  GeometryLowering(const Scene& scene, const ImageNumbers& images, SpectrumTable& spectra,
+                   FlatScene& out)
       : scene_(scene), images_(images), spectra_(spectra), out_(out) {}
 
   LoweredGeometry run() {
@@ -75,7 +82,8 @@ class GeometryLowering {
     LoweredGeometry lowered;
     lowered.world = lower_shapes(scene_.shapes, 0);
     const auto object_number = narrow<std::uint32_t>(scene_.shapes.size());
-    for (const Object& object : scene_.objects) lowered.objects.push_back(lower_shapes(object.shapes, object_number));
+    for (const Object& object : scene_.objects)
+      lowered.objects.push_back(lower_shapes(object.shapes, object_number));
 
     find_shapes(lowered);
     std::deque<Subtree>& world = lowered.world.subtrees;
@@ -91,7 +99,8 @@ class GeometryLowering {
       const Instance& instance = scene_.instances[i];
       for (const Subtree& subtree : lowered.objects[instance.object].subtrees)
         if (!subtree.primitives.empty())
-          place(subtree, instance.world_from_object * subtree.placed, narrow<std::uint32_t>(i), top, lowered.placed);
+          place(subtree, instance.world_from_object * subtree.placed, narrow<std::uint32_t>(i), top,
+                lowered.placed);
     }
     encode(top);
     // World-space emitters come first: their light_offset is absolute.
@@ -143,9 +152,12 @@ class GeometryLowering {
   void check_counts() const {
     std::array<std::uint64_t, shape_count> counts{};
     const auto add = [&](const Shape& shape) {
-      if (const auto* capsules = std::get_if<CapsulesShape>(&shape.geometry)) counts[shape_sphere] += capsules->p0.size();
-      if (const auto* mesh = std::get_if<TriangleMeshShape>(&shape.geometry)) counts[shape_triangle] += mesh->triangles.size();
-      if (const auto* mesh = std::get_if<BilinearMeshShape>(&shape.geometry)) counts[shape_bilinear] += mesh->patches.size();
+      if (const auto* capsules = std::get_if<CapsulesShape>(&shape.geometry))
+        counts[shape_sphere] += capsules->p0.size();
+      if (const auto* mesh = std::get_if<TriangleMeshShape>(&shape.geometry))
+        counts[shape_triangle] += mesh->triangles.size();
+      if (const auto* mesh = std::get_if<BilinearMeshShape>(&shape.geometry))
+        counts[shape_bilinear] += mesh->patches.size();
     };
     for (const Shape& shape : scene_.shapes) add(shape);
     for (const Object& object : scene_.objects)
@@ -157,8 +169,9 @@ class GeometryLowering {
   /// shapes.
   void find_shapes(const LoweredGeometry& lowered) {
     out_.shapes = 0;
-    out_.has_chains =
-        std::ranges::any_of(out_.geometries, [](const GeometryRecord& one) { return (one.flags & CAPLET_GEOMETRY_CHAIN) != 0; });
+    out_.has_chains = std::ranges::any_of(out_.geometries, [](const GeometryRecord& one) {
+      return (one.flags & CAPLET_GEOMETRY_CHAIN) != 0;
+    });
     const auto add = [&](const LoweredShapes& shapes) {
       for (const Subtree& subtree : shapes.subtrees)
         for (const FlatPrimitive& p : subtree.primitives) {
@@ -170,7 +183,8 @@ class GeometryLowering {
     };
     add(lowered.world);
     for (const LoweredShapes& object : lowered.objects) add(object);
-    if (lowered.world.subtrees.size() > 1 || !scene_.instances.empty()) out_.shapes |= shape_bit(shape_instance);
+    if (lowered.world.subtrees.size() > 1 || !scene_.instances.empty())
+      out_.shapes |= shape_bit(shape_instance);
     // Kernels have at least one kind.
     if (out_.shapes == 0) out_.shapes = shape_bit(shape_sphere);
     kind_bits_ = out_.leaf_kind_bits = leaf_kind_bits(out_.shapes);
@@ -217,7 +231,8 @@ class GeometryLowering {
   uint alpha_of(const Shape& shape) {
     if (!shape.alpha) return CAPLET_NONE;
     const auto* number = std::get_if<ConstantSpectrum>(&shape.alpha->value);
-    const auto [found, fresh] = alphas_.try_emplace({shape.alpha->texture.value_or(CAPLET_NONE), number ? number->value : 0}, 0);
+    const auto [found, fresh] = alphas_.try_emplace(
+        {shape.alpha->texture.value_or(CAPLET_NONE), number ? number->value : 0}, 0);
     if (fresh) found->second = lower_alpha(scene_, *shape.alpha, images_, spectra_, out_);
     return found->second;
   }
@@ -228,8 +243,10 @@ class GeometryLowering {
     std::vector<uint> rows = surface_materials(shape);
     if (shape.emission && !shape.emission->surfaces.empty())
       for (std::size_t i = 0; i < rows.size(); ++i)
-        if (std::ranges::find(shape.emission->surfaces, i) == shape.emission->surfaces.end()) rows[i] |= CAPLET_SURFACE_DARK;
-    if (std::ranges::all_of(rows, [&](uint row) { return row == shape.material; })) return CAPLET_NONE;
+        if (std::ranges::find(shape.emission->surfaces, i) == shape.emission->surfaces.end())
+          rows[i] |= CAPLET_SURFACE_DARK;
+    if (std::ranges::all_of(rows, [&](uint row) { return row == shape.material; }))
+      return CAPLET_NONE;
     const auto begin = narrow<uint>(out_.surface_materials.size());
     out_.surface_materials.insert(out_.surface_materials.end(), rows.begin(), rows.end());
     return begin;
@@ -256,20 +273,25 @@ class GeometryLowering {
 
   FlatPrimitive& add_primitive(Subtree& subtree, int shape, uint geometry) {
     FlatPrimitive& p = subtree.primitives.emplace_back();
-    p = FlatPrimitive{static_cast<std::uint32_t>(shape), narrow<std::uint32_t>(out_.primitive_geometry.size()), {}};
+    p = FlatPrimitive{static_cast<std::uint32_t>(shape),
+                      narrow<std::uint32_t>(out_.primitive_geometry.size()),
+                      {}};
     out_.primitive_geometry.push_back(geometry);
     return p;
   }
 
   /// Appends shapes of one primitive.
   template <class Geometry>
-  void append(const Geometry& geometry, const Matrix& m, const GeometryRecord& record, Subtree& subtree) {
+  void append(const Geometry& geometry, const Matrix& m, const GeometryRecord& record,
+              Subtree& subtree) {
     const FlatPrimitive flat = flat_primitive(geometry, m, out_.leaves);
-    FlatPrimitive& p = add_primitive(subtree, static_cast<int>(flat.shape), add_geometry(record, static_cast<int>(flat.shape)));
+    FlatPrimitive& p = add_primitive(subtree, static_cast<int>(flat.shape),
+                                     add_geometry(record, static_cast<int>(flat.shape)));
     std::copy(std::begin(flat.data), std::end(flat.data), std::begin(p.data));
   }
 
-  void append(const CapsulesShape& capsules, const Matrix& m, const GeometryRecord& record, Subtree& subtree) {
+  void append(const CapsulesShape& capsules, const Matrix& m, const GeometryRecord& record,
+              Subtree& subtree) {
     const double scale = similarity_scale(m);
     std::map<std::pair<int, uint>, uint> geometry_of;  // by kind and material
     const bool identity = m == Matrix(1);
@@ -296,8 +318,8 @@ class GeometryLowering {
     }
   }
 
-  void add_vertex_data(const std::vector<glm::vec3>& normals, const std::vector<glm::vec2>& uvs, const Matrix& m,
-                       GeometryRecord& record) {
+  void add_vertex_data(const std::vector<glm::vec3>& normals, const std::vector<glm::vec2>& uvs,
+                       const Matrix& m, GeometryRecord& record) {
     if (!normals.empty()) {
       record.flags |= CAPLET_GEOMETRY_NORMALS;
       record.normal_begin = narrow<uint>(out_.mesh_normals.size());
@@ -305,7 +327,8 @@ class GeometryLowering {
       for (const glm::vec3& n : normals) {
         const dvec3 turned = normal_matrix * dvec3(n);
         const double length = glm::length(turned);
-        for (int k = 0; k < 3; ++k) out_.mesh_normals.push_back(length > 0 ? static_cast<float>(turned[k] / length) : 0.f);
+        for (int k = 0; k < 3; ++k)
+          out_.mesh_normals.push_back(length > 0 ? static_cast<float>(turned[k] / length) : 0.f);
       }
     }
     if (!uvs.empty()) {
@@ -322,7 +345,8 @@ class GeometryLowering {
     record.flags &= ~CAPLET_GEOMETRY_NORMALS;
   }
 
-  void append(const TriangleMeshShape& mesh, const Matrix& m, GeometryRecord record, Subtree& subtree) {
+  void append(const TriangleMeshShape& mesh, const Matrix& m, GeometryRecord record,
+              Subtree& subtree) {
     record.index_begin = narrow<uint>(out_.mesh_indices.size());
     add_vertex_data(mesh.normals, mesh.uvs, m, record);
     std::vector<glm::vec3> moved;
@@ -351,17 +375,19 @@ class GeometryLowering {
 
   /// By pbrt's rule a mesh with normals has its outside where they point, whatever the winding.
   /// `normal`: by winding.
-  bool against_normals(const GeometryRecord& record, const dvec3& normal, std::span<const std::uint32_t> corners,
-                       bool flipped) const {
+  bool against_normals(const GeometryRecord& record, const dvec3& normal,
+                       std::span<const std::uint32_t> corners, bool flipped) const {
     if (record.normal_begin == CAPLET_NONE) return false;
     dvec3 sum(0);
     for (const std::uint32_t v : corners)
-      for (int k = 0; k < 3; ++k) sum[k] += out_.mesh_normals[record.normal_begin + 3 * v + static_cast<std::uint32_t>(k)];
+      for (int k = 0; k < 3; ++k)
+        sum[k] += out_.mesh_normals[record.normal_begin + 3 * v + static_cast<std::uint32_t>(k)];
     const double side = glm::dot(normal, sum) * (reversed_ ? -1 : 1);
     return (flipped ? -side : side) < 0;
   }
 
-  void append(const BilinearMeshShape& mesh, const Matrix& m, GeometryRecord record, Subtree& subtree) {
+  void append(const BilinearMeshShape& mesh, const Matrix& m, GeometryRecord record,
+              Subtree& subtree) {
     record.index_begin = narrow<uint>(out_.mesh_indices.size());
     add_vertex_data(mesh.normals, mesh.uvs, m, record);
     const bool flipped = (record.flags & CAPLET_GEOMETRY_FLIP_NORMAL) != 0;
@@ -369,8 +395,10 @@ class GeometryLowering {
       return apply_point(m, dvec3(mesh.positions[patch[k]]));
     };
     const auto turned = [&](const std::array<std::uint32_t, 4>& patch) {
-      return against_normals(record, glm::cross(corner(patch, 3) - corner(patch, 0), corner(patch, 2) - corner(patch, 1)), patch,
-                             flipped);
+      return against_normals(
+          record,
+          glm::cross(corner(patch, 3) - corner(patch, 0), corner(patch, 2) - corner(patch, 1)),
+          patch, flipped);
     };
     if (mesh.uvs.empty() && std::ranges::any_of(mesh.patches, turned)) {
       drop_vertex_data(record);
@@ -393,19 +421,21 @@ class GeometryLowering {
     out_.bvh_depth = std::max(out_.bvh_depth, subtree.tree.depth);
   }
 
-  void place(const Subtree& subtree, const Matrix& world_from_subtree, std::uint32_t scene_instance, Subtree& top,
-             std::vector<PlacedSubtree>& placed) {
+  void place(const Subtree& subtree, const Matrix& world_from_subtree, std::uint32_t scene_instance,
+             Subtree& top, std::vector<PlacedSubtree>& placed) {
     const auto index = narrow<uint>(out_.instances.size());
     const auto shapes = narrow<std::uint32_t>(scene_.shapes.size());
     out_.instances.push_back(
-        instance_record(subtree, world_from_subtree, scene_instance == CAPLET_NONE ? CAPLET_NONE : shapes + scene_instance));
+        instance_record(subtree, world_from_subtree,
+                        scene_instance == CAPLET_NONE ? CAPLET_NONE : shapes + scene_instance));
     placed.push_back({&subtree, index, world_from_subtree, scene_instance, top.primitives.size()});
     FlatPrimitive& p = top.primitives.emplace_back();
     p = FlatPrimitive{shape_instance, index, {}};
     set_instance_box(subtree, world_from_subtree, p);
   }
 
-  void add_emitters(const Subtree& subtree, uint instance, const Matrix& world_from_subtree, std::vector<Emitter>& emitters) {
+  void add_emitters(const Subtree& subtree, uint instance, const Matrix& world_from_subtree,
+                    std::vector<Emitter>& emitters) {
     for (const Subtree::Emissive& emissive : subtree.emissive) {
       emitters.resize(emitters.size() + emissive.count);
       set_emitters(subtree, emissive, instance, world_from_subtree, group_++, spectra_, out_,
@@ -426,18 +456,21 @@ class GeometryLowering {
 }  // namespace
 
 SubtreeKey subtree_key(const Shape& shape, const Matrix& m) {
-  // There is one subtree for what is baked into the shapes' common space, then one for each transform
-  // that cannot be baked.
-  const bool stays = !std::visit([&](const auto& geometry) { return bakes_under(geometry, m); }, shape.geometry);
+  // There is one subtree for what is baked into the shapes' common space, then one for each
+  // transform that cannot be baked.
+  const bool stays =
+      !std::visit([&](const auto& geometry) { return bakes_under(geometry, m); }, shape.geometry);
   return {stays ? m : Matrix(1), unseen_sides(shape, m), stays ? Matrix(1) : m};
 }
 
-LoweredGeometry lower_geometry(const Scene& scene, const ImageNumbers& images, SpectrumTable& spectra, FlatScene& out) {
+LoweredGeometry lower_geometry(const Scene& scene, const ImageNumbers& images,
+                               SpectrumTable& spectra, FlatScene& out) {
   return GeometryLowering(scene, images, spectra, out).run();
 }
 
-Subtree lower_shape_alone(const Scene& scene, const Shape& shape, const Matrix& baked, std::uint32_t object,
-                       const ImageNumbers& images, SpectrumTable& spectra, FlatScene& out) {
+Subtree lower_shape_alone(const Scene& scene, const Shape& shape, const Matrix& baked,
+                          std::uint32_t object, const ImageNumbers& images, SpectrumTable& spectra,
+                          FlatScene& out) {
   Subtree subtree;
   GeometryLowering(scene, images, spectra, out).lower_shape(shape, baked, object, subtree);
   return subtree;

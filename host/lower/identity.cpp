@@ -18,12 +18,14 @@ Identity identity_of(const Scene& scene, const PickRecord& pick) {
 }
 
 std::uint32_t object_number(const Scene& scene, const Identity& identity) {
-  return narrow<std::uint32_t>(identity.instance ? scene.shapes.size() + *identity.instance
-                                                 : static_cast<std::size_t>(identity.shape - scene.shapes.data()));
+  return narrow<std::uint32_t>(
+      identity.instance ? scene.shapes.size() + *identity.instance
+                        : static_cast<std::size_t>(identity.shape - scene.shapes.data()));
 }
 
 std::string object_label(const Scene& scene, const Identity& identity) {
-  return identity.shape->name.empty() ? std::to_string(object_number(scene, identity)) : identity.shape->name;
+  return identity.shape->name.empty() ? std::to_string(object_number(scene, identity))
+                                      : identity.shape->name;
 }
 
 std::string material_label(const Scene& scene, std::uint32_t material) {

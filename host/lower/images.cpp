@@ -32,27 +32,34 @@ Level halved(const Level& from, std::size_t channels) {
   Level to{std::max<std::size_t>(1, from.width / 2), std::max<std::size_t>(1, from.height / 2), {}};
   to.values.resize(to.width * to.height * channels);
   const std::size_t across = from.width / to.width, down = from.height / to.height;
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, to.height, 16), [&](const tbb::blocked_range<std::size_t>& range) {
-    for (std::size_t y = range.begin(); y < range.end(); ++y)
-      for (std::size_t x = 0; x < to.width; ++x)
-        for (std::size_t c = 0; c < channels; ++c) {
-          double sum = 0;
-          for (std::size_t j = 0; j < down; ++j)
-            for (std::size_t i = 0; i < across; ++i)
-              sum += static_cast<double>(from.values[((down * y + j) * from.width + across * x + i) * channels + c]);
-          to.values[(y * to.width + x) * channels + c] = static_cast<float>(sum / static_cast<double>(across * down));
-        }
-  });
+  tbb::parallel_for(
+      tbb::blocked_range<std::size_t>(0, to.height, 16),
+      [&](const tbb::blocked_range<std::size_t>& range) {
+        for (std::size_t y = range.begin(); y < range.end(); ++y)
+          for (std::size_t x = 0; x < to.width; ++x)
+            for (std::size_t c = 0; c < channels; ++c) {
+              double sum = 0;
+              for (std::size_t j = 0; j < down; ++j)
+                for (std::size_t i = 0; i < across; ++i)
+                  sum += static_cast<double>(
+                      from.values[((down * y + j) * from.width + across * x + i) * channels + c]);
+              to.values[(y * to.width + x) * channels + c] =
+                  static_cast<float>(sum / static_cast<double>(across * down));
+            }
+      });
   return to;
 }
 
 /// Returns sin(pi x) / (pi x).
-double sinc_pi(double x) { return x == 0 ? 1 : std::sin(std::numbers::pi * x) / (std::numbers::pi * x); }
+double sinc_pi(double x) {
+  return x == 0 ? 1 : std::sin(std::numbers::pi * x) / (std::numbers::pi * x);
+}
 
 /// Taps are, along one axis, the four texels about a new one's centre, by Lanczos' filter.
 struct Taps {
   Taps(std::size_t i, std::size_t from, std::size_t to) {
-    const double center = (static_cast<double>(i) + 0.5) * static_cast<double>(from) / static_cast<double>(to);
+    const double center =
+        (static_cast<double>(i) + 0.5) * static_cast<double>(from) / static_cast<double>(to);
     first = static_cast<int>(std::floor(center - 1.5));
     double sum = 0;
     for (int j = 0; j < 4; ++j) {
@@ -79,7 +86,8 @@ std::optional<std::size_t> wrapped(int x, int y, int width, int height, int wrap
   }
   x = std::clamp(x, 0, width - 1);
   y = std::clamp(y, 0, height - 1);
-  return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
+  return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
+         static_cast<std::size_t>(x);
 }
 
 Level resampled(const Level& from, std::size_t channels, int wrap) {
@@ -88,26 +96,31 @@ Level resampled(const Level& from, std::size_t channels, int wrap) {
   const int width = narrow<int>(from.width), height = narrow<int>(from.height);
   std::vector<Taps> columns;
   for (std::size_t x = 0; x < to.width; ++x) columns.emplace_back(x, from.width, to.width);
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, to.height, 16), [&](const tbb::blocked_range<std::size_t>& range) {
-    for (std::size_t y = range.begin(); y < range.end(); ++y) {
-      const Taps rows(y, from.height, to.height);
-      for (std::size_t x = 0; x < to.width; ++x) {
-        double sums[4] = {};
-        for (int j = 0; j < 4; ++j)
-          for (int i = 0; i < 4; ++i)
-            if (const auto at = wrapped(columns[x].first + i, rows.first + j, width, height, wrap))
-              for (std::size_t c = 0; c < channels; ++c)
-                sums[c] += rows.weights[j] * columns[x].weights[i] * static_cast<double>(from.values[*at * channels + c]);
-        for (std::size_t c = 0; c < channels; ++c)
-          to.values[(y * to.width + x) * channels + c] = static_cast<float>(std::max(0.0, sums[c]));
-      }
-    }
-  });
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, to.height, 16),
+                    [&](const tbb::blocked_range<std::size_t>& range) {
+                      for (std::size_t y = range.begin(); y < range.end(); ++y) {
+                        const Taps rows(y, from.height, to.height);
+                        for (std::size_t x = 0; x < to.width; ++x) {
+                          double sums[4] = {};
+                          for (int j = 0; j < 4; ++j)
+                            for (int i = 0; i < 4; ++i)
+                              if (const auto at = wrapped(columns[x].first + i, rows.first + j,
+                                                          width, height, wrap))
+                                for (std::size_t c = 0; c < channels; ++c)
+                                  sums[c] += rows.weights[j] * columns[x].weights[i] *
+                                             static_cast<double>(from.values[*at * channels + c]);
+                          for (std::size_t c = 0; c < channels; ++c)
+                            to.values[(y * to.width + x) * channels + c] =
+                                static_cast<float>(std::max(0.0, sums[c]));
+                        }
+                      }
+                    });
   return to;
 }
 
 bool has_powers_of_two(const TextureImage& image) {
-  return std::has_single_bit(static_cast<unsigned>(image.width)) && std::has_single_bit(static_cast<unsigned>(image.height));
+  return std::has_single_bit(static_cast<unsigned>(image.width)) &&
+         std::has_single_bit(static_cast<unsigned>(image.height));
 }
 
 struct Uses : IgnoresFields {
@@ -119,7 +132,9 @@ struct Uses : IgnoresFields {
   void choice(const Field& field, int value, const Names&) {
     if (std::string_view(field.name) == "wrap") add(image_use(*last, value));
   }
-  void vectors(const Field&, const std::shared_ptr<const TextureImage>& of) { add(image_use(*of, std::nullopt)); }
+  void vectors(const Field&, const std::shared_ptr<const TextureImage>& of) {
+    add(image_use(*of, std::nullopt));
+  }
   void add(const ImageUse& use) { found.try_emplace(use, narrow<std::uint32_t>(found.size())); }
 };
 
@@ -128,7 +143,8 @@ std::uint8_t encoded(const std::array<float, 256>& decoded, float value) {
   const auto above = std::ranges::lower_bound(decoded, value);
   if (above == decoded.begin()) return 0;
   const auto at = static_cast<std::size_t>(above - decoded.begin());
-  return static_cast<std::uint8_t>(at == 256 || value - decoded[at - 1] <= decoded[at] - value ? at - 1 : at);
+  return static_cast<std::uint8_t>(
+      at == 256 || value - decoded[at - 1] <= decoded[at] - value ? at - 1 : at);
 }
 
 /// FewValues holds the values of a level if 16 bits can number them, as for images of 16 bits and
@@ -150,7 +166,9 @@ class FewValues {
     return true;
   }
   const std::vector<std::uint32_t>& all() const { return all_; }
-  std::uint16_t number_of(float value) { return static_cast<std::uint16_t>(slot_of(std::bit_cast<std::uint32_t>(value)) - 1); }
+  std::uint16_t number_of(float value) {
+    return static_cast<std::uint16_t>(slot_of(std::bit_cast<std::uint32_t>(value)) - 1);
+  }
 
  private:
   /// Returns the entry of a hash table for these bits: the number of the value + 1, or 0.
@@ -165,7 +183,10 @@ class FewValues {
 class ImageLowering {
  public:
   ImageLowering(const ImageUse& use, FlatScene& out)
-      : image_(*use.image), wrap_(use.wrap), out_(out), channels_(static_cast<std::size_t>(use.image->channels)) {}
+      : image_(*use.image),
+        wrap_(use.wrap),
+        out_(out),
+        channels_(static_cast<std::size_t>(use.image->channels)) {}
 
   ImageRecord run() {
     ImageRecord record{};
@@ -175,7 +196,8 @@ class ImageLowering {
       record.decode = narrow<uint>(out_.texels.size());
       for (const float value : image_.decoded) out_.texels.push_back(std::bit_cast<uint>(value));
     }
-    Level level{static_cast<std::size_t>(image_.width), static_cast<std::size_t>(image_.height), {}};
+    Level level{
+        static_cast<std::size_t>(image_.width), static_cast<std::size_t>(image_.height), {}};
     if (wrap_) level.values = linear();
     const bool is_new = wrap_ && !has_powers_of_two(image_);
     if (is_new) level = resampled(level, channels_, *wrap_);
@@ -187,8 +209,8 @@ class ImageLowering {
       const std::vector<float>& floats = i > 0 || is_new ? level.values : image_.floats;
       uint how = image_.bytes.empty() ? CAPLET_TEXELS_FLOATS : CAPLET_TEXELS_BYTES;
       // An image has one table: that of the first level, which is most of it.
-      if (FewValues few; i == 0 && how == CAPLET_TEXELS_FLOATS && floats.size() > 1024 && few.take(floats) &&
-                         few.all().size() + floats.size() / 2 < floats.size()) {
+      if (FewValues few; i == 0 && how == CAPLET_TEXELS_FLOATS && floats.size() > 1024 &&
+                         few.take(floats) && few.all().size() + floats.size() / 2 < floats.size()) {
         how = CAPLET_TEXELS_NUMBERS;
         record.decode = narrow<uint>(out_.texels.size());
         out_.texels.insert(out_.texels.end(), few.all().begin(), few.all().end());
@@ -212,7 +234,8 @@ class ImageLowering {
     if (image_.bytes.empty()) return image_.floats;
     std::vector<float> out(image_.bytes.size());
     for (std::size_t i = 0; i < out.size(); ++i)
-      out[i] = is_alpha(i) ? static_cast<float>(image_.bytes[i]) / 255.f : image_.decoded[image_.bytes[i]];
+      out[i] = is_alpha(i) ? static_cast<float>(image_.bytes[i]) / 255.f
+                           : image_.decoded[image_.bytes[i]];
     return out;
   }
 
@@ -228,8 +251,10 @@ class ImageLowering {
   void add(const Level& level) {
     std::vector<std::uint8_t> bytes(level.values.size());
     for (std::size_t i = 0; i < bytes.size(); ++i)
-      bytes[i] = is_alpha(i) ? static_cast<std::uint8_t>(std::lround(std::min(level.values[i], 1.f) * 255.f))
-                             : encoded(image_.decoded, level.values[i]);
+      bytes[i] =
+          is_alpha(i)
+              ? static_cast<std::uint8_t>(std::lround(std::min(level.values[i], 1.f) * 255.f))
+              : encoded(image_.decoded, level.values[i]);
     add_bytes(bytes);
   }
 
@@ -268,7 +293,8 @@ ImageUse image_use(const TextureImage& image, std::optional<int> wrap) {
 
 ImageNumbers image_numbers(const std::vector<Texture>& textures) {
   Uses uses;
-  for (const Texture& texture : textures) std::visit([&](const auto& model) { model.fields(model, uses); }, texture.model);
+  for (const Texture& texture : textures)
+    std::visit([&](const auto& model) { model.fields(model, uses); }, texture.model);
   return uses.found;
 }
 
@@ -279,9 +305,11 @@ void lower_images(const Scene& scene, const ImageNumbers& numbers, FlatScene& ou
   // again as the first level.
   double words = 0;
   for (const ImageUse& use : uses)
-    words += 512 + 8 * static_cast<double>(use.image->values() + 4) / (use.image->bytes.empty() ? 1 : 4);
+    words +=
+        512 + 8 * static_cast<double>(use.image->values() + 4) / (use.image->bytes.empty() ? 1 : 4);
   if (words > static_cast<double>(std::numeric_limits<uint>::max()))
-    throw InputError(SourceLocation{scene.source}, "the images of textures have more texels than 32 bits number");
+    throw InputError(SourceLocation{scene.source},
+                     "the images of textures have more texels than 32 bits number");
   for (const ImageUse& use : uses) out.images.push_back(ImageLowering(use, out).run());
 }
 

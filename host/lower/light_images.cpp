@@ -25,14 +25,17 @@ constexpr int side_without_image = 64;
 
 void append_grey(const EnvironmentImage& image, FlatScene& out) {
   for (std::size_t i = 0; i + 2 < image.rgb.size(); i += 3)
-    out.light_texels.push_back((usable(image.rgb[i]) + usable(image.rgb[i + 1]) + usable(image.rgb[i + 2])) / 3);
+    out.light_texels.push_back(
+        (usable(image.rgb[i]) + usable(image.rgb[i + 1]) + usable(image.rgb[i + 2])) / 3);
 }
 
 /// Returns the mean over its texels of the value that lights use.
 double mean_of(const EnvironmentImage& image, bool is_grey) {
   double sum = 0;
   for (std::size_t i = 0; i + 2 < image.rgb.size(); i += 3)
-    sum += is_grey ? (static_cast<double>(usable(image.rgb[i])) + usable(image.rgb[i + 1]) + usable(image.rgb[i + 2])) / 3
+    sum += is_grey ? (static_cast<double>(usable(image.rgb[i])) + usable(image.rgb[i + 1]) +
+                      usable(image.rgb[i + 2])) /
+                         3
                    : luminance_of(&image.rgb[i], image.space);
   return sum / (static_cast<double>(image.width) * image.height);
 }
@@ -47,14 +50,15 @@ struct PortalCell {
     const double alpha = pi * ((x + 0.5) / width - 0.5), beta = pi * ((y + 0.5) / height - 0.5);
     direction = glm::normalize(glm::dvec3(std::tan(alpha), std::tan(beta), 1));
     const glm::dvec3 squared = direction * direction;
-    solid_angle =
-        pi * pi * (squared.y + squared.z) * (squared.x + squared.z) / direction.z / (static_cast<double>(width) * height);
+    solid_angle = pi * pi * (squared.y + squared.z) * (squared.x + squared.z) / direction.z /
+                  (static_cast<double>(width) * height);
   }
 };
 
 /// Appends sums of whole numbers in proportion to `weights` over all rectangles from the first
 /// corner, two words each.
-void append_sums(const std::vector<double>& weights, std::size_t width, std::size_t height, FlatScene& out) {
+void append_sums(const std::vector<double>& weights, std::size_t width, std::size_t height,
+                 FlatScene& out) {
   double total = 0;
   for (const double weight : weights) total += weight;
   const double unit = total > 0 ? 0x1p62 / total : 0;
@@ -81,11 +85,13 @@ void append_sums(const std::vector<double>& weights, std::size_t width, std::siz
 
 /// Lowers the image as the portal shows it: each of its texels has the sky's radiance at its
 /// middle, as in pbrt-v4.
-void lower_portal(const InfiniteLight& light, const glm::dmat3& image_from_portal, LoweredPicture& picture, FlatScene& out) {
+void lower_portal(const InfiniteLight& light, const glm::dmat3& image_from_portal,
+                  LoweredPicture& picture, FlatScene& out) {
   const int height = light.image ? light.image->height : side_without_image, width = height;
   picture.field[2] = picture.field[3] = narrow<std::uint32_t>(height);
   picture.field[4] = light.image ? 0 : 1;
-  EnvironmentImage rectified{width, height, {}, light.image ? light.image->space : ColorSpace::srgb, false};
+  EnvironmentImage rectified{
+      width, height, {}, light.image ? light.image->space : ColorSpace::srgb, false};
   const auto columns = static_cast<std::size_t>(width), rows = static_cast<std::size_t>(height);
   std::vector<double> weights(columns * rows), facing(rows, 0), all(rows, 0);
   if (light.image) rectified.rgb.resize(3 * weights.size());
@@ -135,14 +141,18 @@ void LightImages::end(FlatScene& out) {
 }
 
 template <class Make>
-const LoweredPicture& LightImages::find(Use use, const std::shared_ptr<const void>& of, const glm::dmat3& turn, FlatScene& out,
-                                        Make&& make) {
-  const auto is_it = [&](const Entry& entry) { return entry.use == use && entry.of == of && entry.turn == turn; };
+const LoweredPicture& LightImages::find(Use use, const std::shared_ptr<const void>& of,
+                                        const glm::dmat3& turn, FlatScene& out, Make&& make) {
+  const auto is_it = [&](const Entry& entry) {
+    return entry.use == use && entry.of == of && entry.turn == turn;
+  };
   const auto asked = entries_.begin() + static_cast<std::ptrdiff_t>(asked_);
-  if (const auto found = std::find_if(entries_.begin(), asked, is_it); found != asked) return found->picture;
+  if (const auto found = std::find_if(entries_.begin(), asked, is_it); found != asked)
+    return found->picture;
   if (asked_ == entries_.size() || !is_it(*asked)) {
     end(out);
-    Entry& fresh = entries_.emplace_back(Entry{use, of, turn, {}, out.light_texels.size(), out.light_cdf.size()});
+    Entry& fresh = entries_.emplace_back(
+        Entry{use, of, turn, {}, out.light_texels.size(), out.light_cdf.size()});
     fresh.picture.field[0] = narrow<std::uint32_t>(out.light_texels.size());
     fresh.picture.field[1] = narrow<std::uint32_t>(out.light_cdf.size());
     make(fresh.picture);
@@ -154,7 +164,8 @@ const LoweredPicture& LightImages::find(Use use, const std::shared_ptr<const voi
   return entries_[asked_++].picture;
 }
 
-const LoweredPicture& LightImages::sky(const std::shared_ptr<const EnvironmentImage>& image, FlatScene& out) {
+const LoweredPicture& LightImages::sky(const std::shared_ptr<const EnvironmentImage>& image,
+                                       FlatScene& out) {
   return find(Use::sky, image, glm::dmat3(1), out, [&](LoweredPicture& picture) {
     picture.field[2] = narrow<std::uint32_t>(image->width);
     picture.field[3] = narrow<std::uint32_t>(image->height);
@@ -164,15 +175,17 @@ const LoweredPicture& LightImages::sky(const std::shared_ptr<const EnvironmentIm
 }
 
 const LoweredPicture& LightImages::picture(const LightPicture& of, FlatScene& out) {
-  return find(of.is_grey ? Use::grey : Use::color, of.image, glm::dmat3(1), out, [&](LoweredPicture& picture) {
-    picture.field[2] = narrow<std::uint32_t>(of.image->width);
-    picture.field[3] = narrow<std::uint32_t>(of.image->height);
-    picture.mean = mean_of(*of.image, of.is_grey);
-    of.is_grey ? append_grey(*of.image, out) : append_texels(*of.image, out);
-  });
+  return find(of.is_grey ? Use::grey : Use::color, of.image, glm::dmat3(1), out,
+              [&](LoweredPicture& picture) {
+                picture.field[2] = narrow<std::uint32_t>(of.image->width);
+                picture.field[3] = narrow<std::uint32_t>(of.image->height);
+                picture.mean = mean_of(*of.image, of.is_grey);
+                of.is_grey ? append_grey(*of.image, out) : append_texels(*of.image, out);
+              });
 }
 
-const LoweredPicture& LightImages::profile(const std::shared_ptr<const IesProfile>& profile, FlatScene& out) {
+const LoweredPicture& LightImages::profile(const std::shared_ptr<const IesProfile>& profile,
+                                           FlatScene& out) {
   return find(Use::profile, profile, glm::dmat3(1), out, [&](LoweredPicture& picture) {
     picture.field[2] = narrow<std::uint32_t>(profile->azimuths.size());
     picture.field[3] = narrow<std::uint32_t>(profile->polar.size());
@@ -183,8 +196,11 @@ const LoweredPicture& LightImages::profile(const std::shared_ptr<const IesProfil
 
 const LoweredPicture& LightImages::portal(const InfiniteLight& light, FlatScene& out) {
   // A rotation's inverse is its transpose.
-  const glm::dmat3 turn = light.image ? glm::transpose(portal_from_world(*light.portal) * light.world_from_light) : glm::dmat3(1);
-  return find(Use::portal, light.image, turn, out, [&](LoweredPicture& picture) { lower_portal(light, turn, picture, out); });
+  const glm::dmat3 turn =
+      light.image ? glm::transpose(portal_from_world(*light.portal) * light.world_from_light)
+                  : glm::dmat3(1);
+  return find(Use::portal, light.image, turn, out,
+              [&](LoweredPicture& picture) { lower_portal(light, turn, picture, out); });
 }
 
 }  // namespace caplet

@@ -27,9 +27,10 @@ std::vector<double> wanted_chances(const std::vector<LightShare>& lights) {
   std::vector<double> chances;
   chances.reserve(lights.size());
   for (const LightShare& light : lights)
-    chances.push_back(light.power > 0 ? 0.5 * light.power / total +
-                                            0.5 * (light.power / groups[light.group]) / static_cast<double>(groups.size())
-                                      : 0);
+    chances.push_back(light.power > 0
+                          ? 0.5 * light.power / total + 0.5 * (light.power / groups[light.group]) /
+                                                            static_cast<double>(groups.size())
+                          : 0);
   return chances;
 }
 
@@ -39,8 +40,10 @@ std::vector<std::uint64_t> whole_shares(const std::vector<double>& chances, std:
   std::vector<std::uint64_t> counts;
   std::uint64_t sum = 0;
   for (const double chance : chances) {
-    counts.push_back(chance > 0 ? std::max<std::uint64_t>(1, static_cast<std::uint64_t>(chance * static_cast<double>(units)))
-                                : 0);
+    counts.push_back(chance > 0
+                         ? std::max<std::uint64_t>(
+                               1, static_cast<std::uint64_t>(chance * static_cast<double>(units)))
+                         : 0);
     sum += counts.back();
   }
   if (sum == 0) return counts;
@@ -71,7 +74,8 @@ std::vector<AliasRecord> light_table(const std::vector<LightShare>& lights) {
   std::vector<std::size_t> less, more;
   for (std::size_t i = 0; i < n; ++i) {
     counts[i] *= unit;
-    table[i].probability = static_cast<float>(static_cast<double>(counts[i]) / static_cast<double>(numbers));
+    table[i].probability =
+        static_cast<float>(static_cast<double>(counts[i]) / static_cast<double>(numbers));
     table[i].keep = 0xffffffffu;
     table[i].alias = narrow<uint>(i);
     (counts[i] < size(i) ? less : more).push_back(i);

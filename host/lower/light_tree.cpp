@@ -27,7 +27,8 @@ namespace {
 using glm::dvec3;
 
 constexpr int width = bvh::width;
-constexpr std::uint32_t ahead = 24;  // lights that are asked for before they are needed: they lie anywhere
+constexpr std::uint32_t ahead =
+    24;  // lights that are asked for before they are needed: they lie anywhere
 constexpr std::uint32_t no_group = 0xffffffff;
 constexpr double cells = 65535;  // of the grid, along each axis
 static_assert(CAPLET_LIGHT_NODE == 7 * width);
@@ -41,7 +42,8 @@ std::uint32_t octahedral_bits(const dvec3& n) {
     y = (1 - std::abs(x)) * (y < 0 ? -1 : 1);
     x = fold;
   }
-  const auto low = static_cast<std::uint32_t>(x * 32767 + 32767.5), high = static_cast<std::uint32_t>(y * 32767 + 32767.5);
+  const auto low = static_cast<std::uint32_t>(x * 32767 + 32767.5),
+             high = static_cast<std::uint32_t>(y * 32767 + 32767.5);
   return low | high << 16;
 }
 
@@ -56,8 +58,10 @@ class CosineBits {
   std::uint32_t operator()(double cosine) {
     if (cosine != cosine_) {
       cosine_ = cosine;
-      const double angle = std::min(std::acos(std::clamp(cosine, -1.0, 1.0)) + axis_error, std::numbers::pi);
-      bits_ = static_cast<std::uint32_t>(std::clamp(std::floor((std::cos(angle) + 1) * 0.5 * 65535), 0.0, 65535.0));
+      const double angle =
+          std::min(std::acos(std::clamp(cosine, -1.0, 1.0)) + axis_error, std::numbers::pi);
+      bits_ = static_cast<std::uint32_t>(
+          std::clamp(std::floor((std::cos(angle) + 1) * 0.5 * 65535), 0.0, 65535.0));
     }
     return bits_;
   }
@@ -76,7 +80,8 @@ struct Grid {
       // These are floats, as the kernel has them; the last cell ends beyond the box.
       min[k] = std::nextafter(static_cast<float>(low[k]), -INFINITY);
       cell[k] = std::nextafter(static_cast<float>((high[k] - min[k]) / cells), INFINITY);
-      while (min[k] + cell[k] * cells < high[k]) cell[k] = std::nextafter(static_cast<float>(cell[k]), INFINITY);
+      while (min[k] + cell[k] * cells < high[k])
+        cell[k] = std::nextafter(static_cast<float>(cell[k]), INFINITY);
     }
   }
   std::uint32_t ends(int k, double low, double high) const {
@@ -86,7 +91,9 @@ struct Grid {
   }
 
  private:
-  static std::uint32_t whole(double x) { return static_cast<std::uint32_t>(std::clamp(x, 0.0, cells)); }
+  static std::uint32_t whole(double x) {
+    return static_cast<std::uint32_t>(std::clamp(x, 0.0, cells));
+  }
 };
 
 /// Extent is the box of some lights.
@@ -105,7 +112,8 @@ namespace {
 /// Sets the smallest cone that holds both.
 void unite_cones(LightBounds& out, const LightBounds& b) {
   const LightBounds a = out;
-  const LightBounds &wide = a.cos_cone < b.cos_cone ? a : b, &narrow = a.cos_cone < b.cos_cone ? b : a;
+  const LightBounds &wide = a.cos_cone < b.cos_cone ? a : b,
+                    &narrow = a.cos_cone < b.cos_cone ? b : a;
   const double theta_wide = std::acos(std::clamp(wide.cos_cone, -1.0, 1.0)),
                theta_narrow = std::acos(std::clamp(narrow.cos_cone, -1.0, 1.0));
   const double between = std::acos(std::clamp(glm::dot(a.axis, b.axis), -1.0, 1.0));
@@ -148,8 +156,11 @@ LightBounds united(const LightBounds& a, const LightBounds& b) {
 }
 
 void TreeLights::add(std::uint32_t light, const LightBounds& of) {
-  One& one =
-      lights.emplace_back(One{{of.min.x, of.min.y, of.min.z}, {of.max.x, of.max.y, of.max.z}, of.intensity, light, all_around});
+  One& one = lights.emplace_back(One{{of.min.x, of.min.y, of.min.z},
+                                     {of.max.x, of.max.y, of.max.z},
+                                     of.intensity,
+                                     light,
+                                     all_around});
   if (of.cos_cone <= -1 && of.cos_reach == 0) return;
   one.cone = narrow<std::uint32_t>(cones.size());
   cones.push_back({of.axis, of.cos_cone, of.cos_reach});
@@ -172,7 +183,8 @@ LightBounds TreeLights::bounds_of(const One& light) const {
 namespace {
 
 /// Returns the box of each light, for the tree's builder, and the extent of all.
-std::pair<std::unique_ptr<bvh::Reference[]>, Extent> boxes_of(const std::vector<TreeLights::One>& lights) {
+std::pair<std::unique_ptr<bvh::Reference[]>, Extent> boxes_of(
+    const std::vector<TreeLights::One>& lights) {
   auto boxes = std::make_unique_for_overwrite<bvh::Reference[]>(lights.size());
   const Extent extent = tbb::parallel_reduce(
       tbb::blocked_range<std::size_t>(0, lights.size(), 4096), Extent{},
@@ -197,10 +209,12 @@ std::pair<std::unique_ptr<bvh::Reference[]>, Extent> boxes_of(const std::vector<
   return {std::move(boxes), extent};
 }
 
-/// Writes a built tree as nodes of the device. Leaves of several lights become nodes, behind the others.
+/// Writes a built tree as nodes of the device. Leaves of several lights become nodes, behind the
+/// others.
 class LightTreeWriter {
  public:
-  LightTreeWriter(const TreeLights& lights, const bvh::Tree& tree, const Grid& grid, std::size_t light_count, FlatScene& out)
+  LightTreeWriter(const TreeLights& lights, const bvh::Tree& tree, const Grid& grid,
+                  std::size_t light_count, FlatScene& out)
       : lights_(lights),
         tree_(tree),
         grid_(grid),
@@ -223,7 +237,8 @@ class LightTreeWriter {
                           if (node_of_leaf_[i] != CAPLET_NONE) write_leaf(i, cosines);
                       });
     Cosines cosines;
-    for (std::size_t i = tree_.nodes.size(); i-- > 0;) write_node(i, cosines);  // children before parents
+    for (std::size_t i = tree_.nodes.size(); i-- > 0;)
+      write_node(i, cosines);  // children before parents
   }
 
  private:
@@ -236,9 +251,12 @@ class LightTreeWriter {
     LightBounds bounds;
   };
 
-  const TreeLights::One& light(std::size_t ordered) const { return lights_.lights[tree_.order[ordered]]; }
+  const TreeLights::One& light(std::size_t ordered) const {
+    return lights_.lights[tree_.order[ordered]];
+  }
   uint& reference_at(std::size_t node, std::uint32_t slot) {
-    return out_.light_nodes[node * std::size_t{CAPLET_LIGHT_NODE} + CAPLET_LIGHT_NODE_CHILDREN + slot];
+    return out_
+        .light_nodes[node * std::size_t{CAPLET_LIGHT_NODE} + CAPLET_LIGHT_NODE_CHILDREN + slot];
   }
   Child of_light(std::size_t ordered) const {
     const TreeLights::One& one = light(ordered);
@@ -250,7 +268,8 @@ class LightTreeWriter {
       return {number, bounds_[number]};
     }
     const auto leaf = static_cast<std::uint32_t>(~node.child[slot]);
-    if (const std::uint32_t number = node_of_leaf_[leaf]; number != CAPLET_NONE) return {number, bounds_[number]};
+    if (const std::uint32_t number = node_of_leaf_[leaf]; number != CAPLET_NONE)
+      return {number, bounds_[number]};
     return of_light(tree_.leaves[leaf].first);
   }
 
@@ -262,7 +281,8 @@ class LightTreeWriter {
         reference_at(node, k) = CAPLET_NONE;
         continue;
       }
-      __builtin_prefetch(&light(std::min(leaf.first + k + std::size_t{ahead}, lights_.lights.size() - 1)));
+      __builtin_prefetch(
+          &light(std::min(leaf.first + k + std::size_t{ahead}, lights_.lights.size() - 1)));
       write_slot(node, k, of_light(leaf.first + k), k == 0, cosines);
     }
   }
@@ -279,7 +299,8 @@ class LightTreeWriter {
     }
   }
 
-  void write_slot(std::size_t node, std::uint32_t slot, const Child& child, bool is_first, Cosines& cosines) {
+  void write_slot(std::size_t node, std::uint32_t slot, const Child& child, bool is_first,
+                  Cosines& cosines) {
     const LightBounds& of = child.bounds;
     if (is_first)
       bounds_[node] = of;
@@ -292,7 +313,8 @@ class LightTreeWriter {
     rows[40] = std::bit_cast<uint>(static_cast<float>(std::clamp(of.intensity, 0x1p-100, 0x1p100)));
     rows[CAPLET_LIGHT_NODE_CHILDREN] = child.reference;
     const bool is_light = (child.reference & CAPLET_LIGHT_LEAF) != 0;
-    const std::size_t place = is_light ? child.reference & ~CAPLET_LIGHT_LEAF : light_count_ + child.reference;
+    const std::size_t place =
+        is_light ? child.reference & ~CAPLET_LIGHT_LEAF : light_count_ + child.reference;
     out_.light_places[place] = narrow<uint>(node * width + slot);
   }
 

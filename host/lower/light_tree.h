@@ -15,7 +15,9 @@ namespace caplet {
 /// LightBounds is what the light tree stores of a light, or of several together.
 struct LightBounds {
   glm::dvec3 min{0}, max{0};  // box in the world
-  glm::dvec3 axis{0, 0, 1};   // of a cone that holds the directions of its normals, and that cone's cosine; -1: all
+  glm::dvec3 axis{
+      0, 0,
+      1};  // of a cone that holds the directions of its normals, and that cone's cosine; -1: all
   double cos_cone = -1;
   double cos_reach = 0;  // of the greatest angle between a normal and light that goes off
   double intensity = 0;  // luminous, seen along a normal from afar; > 0
@@ -31,7 +33,8 @@ struct TreeLights {
   struct alignas(64) One {
     double min[3], max[3], intensity;  // as in LightBounds
     std::uint32_t light;
-    std::uint32_t cone;  // of `cones`; all_around: normals everywhere, and light up to a right angle off them
+    std::uint32_t
+        cone;  // of `cones`; all_around: normals everywhere, and light up to a right angle off them
   };
   static_assert(sizeof(One) == 64);
   struct Cone {

@@ -55,9 +55,12 @@ double integral_of(const Model& light) {
   for (int y = 0; y < image.height; ++y)
     for (int x = 0; x < image.width; ++x) {
       const float* rgb =
-          &image.rgb[3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) + static_cast<std::size_t>(x))];
-      const double value = HasColors<Model> ? luminance_of(rgb, image.space)
-                                            : (static_cast<double>(usable(rgb[0])) + usable(rgb[1]) + usable(rgb[2])) / 3;
+          &image.rgb[3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) +
+                          static_cast<std::size_t>(x))];
+      const double value =
+          HasColors<Model>
+              ? luminance_of(rgb, image.space)
+              : (static_cast<double>(usable(rgb[0])) + usable(rgb[1]) + usable(rgb[2])) / 3;
       sum += value * light.solid_angle((x + 0.5) / image.width, (y + 0.5) / image.height);
     }
   return sum / (static_cast<double>(image.width) * image.height);
@@ -91,16 +94,18 @@ class LightLowering {
           if constexpr (requires { model.reach(); }) {
             if (!(shares.back().power > 0)) return;
             const LightReach reach = model.reach();
-            bounded.add(narrow<uint>(shares.size() - 1), {reach.position, reach.position, reach.axis, std::cos(reach.cone),
-                                                          std::cos(reach.reach), power / reach.solid_angle});
+            bounded.add(narrow<uint>(shares.size() - 1),
+                        {reach.position, reach.position, reach.axis, std::cos(reach.cone),
+                         std::cos(reach.reach), power / reach.solid_angle});
           }
         },
         light.model);
   }
 
  private:
-  // Every function fills `record` and returns the luminous power that reaches the scene. pbrt's "power" and "illuminance" replace
-  // the magnitude that the spectrum (normalised to luminance 1; rgb as written) has by itself.
+  // Every function fills `record` and returns the luminous power that reaches the scene. pbrt's
+  // "power" and "illuminance" replace the magnitude that the spectrum (normalised to luminance 1;
+  // rgb as written) has by itself.
 
   template <class Model>
   double lower(const Model& light, LightRecord& record) {
@@ -110,9 +115,12 @@ class LightLowering {
       unit = integral_of(light);
     else
       unit = light.per_unit();
-    Emission emission(*this, record, replaced(Model::unit == LightUnit::power ? light_->power : light_->illuminance, unit));
+    Emission emission(
+        *this, record,
+        replaced(Model::unit == LightUnit::power ? light_->power : light_->illuminance, unit));
     Model::fields(light, emission);
-    if constexpr (HasColors<Model>) emission.emission({"filename", ""}, RgbSpectrum{glm::dvec3(1), light.image->space});
+    if constexpr (HasColors<Model>)
+      emission.emission({"filename", ""}, RgbSpectrum{glm::dvec3(1), light.image->space});
     FamilyData data = data_of(record);
     light.data([&](const char* field, const auto& value) { put(data, field, value); });
     data.finish();
@@ -126,7 +134,9 @@ class LightLowering {
   void put(FamilyData& data, const char* field, const Value& value) {
     data.put(field, value);
   }
-  void put(FamilyData& data, const char* field, const glm::dmat3& turn) { data.put_rows(field, turn); }
+  void put(FamilyData& data, const char* field, const glm::dmat3& turn) {
+    data.put_rows(field, turn);
+  }
   void put(FamilyData& data, const char* field, const LightPicture& picture) {
     data.put_picture(field, images_.picture(picture, out_).field);
   }
@@ -148,8 +158,9 @@ class LightLowering {
     record.kind = light_image;
     record.spectrum = spectra_.add_illuminant(RgbSpectrum{glm::dvec3(1), light.image->space});
     const double power = replaced(light_->power, of.luminance * pi * radius_ * radius_);
-    record.scale =
-        static_cast<float>(light_->scale * (light_->illuminance ? replaced(light_->illuminance, of.illuminance) : power));
+    record.scale = static_cast<float>(
+        light_->scale *
+        (light_->illuminance ? replaced(light_->illuminance, of.illuminance) : power));
     FamilyData data = data_of(record);
     data.put_rows("light_from_world", light.world_from_light);  // the transpose is the inverse
     data.put_picture("picture", picture.field);
@@ -161,15 +172,18 @@ class LightLowering {
   /// is chosen by what goes through the portal.
   double lower_portal(const InfiniteLight& light, LightRecord& record) {
     EnvironmentIntegrals sky{4 * pi, pi};
-    if (FlatScene scratch; light.image && (light_->power || light_->illuminance)) sky = lower_environment(*light.image, scratch);
+    if (FlatScene scratch; light.image && (light_->power || light_->illuminance))
+      sky = lower_environment(*light.image, scratch);
     const LoweredPicture picture = images_.portal(light, out_);
     record.kind = light_portal;
-    const Spectrum color = light.image ? RgbSpectrum{glm::dvec3(1), light.image->space} : light.radiance;
+    const Spectrum color =
+        light.image ? RgbSpectrum{glm::dvec3(1), light.image->space} : light.radiance;
     emit(record, color,
          light_->illuminance ? replaced(light_->illuminance, sky.illuminance)
                              : replaced(light_->power, sky.luminance * pi * radius_ * radius_));
     const LightPortal& corners = *light.portal;
-    const double width = glm::length(corners[3] - corners[0]), height = glm::length(corners[1] - corners[0]);
+    const double width = glm::length(corners[3] - corners[0]),
+                 height = glm::length(corners[1] - corners[0]);
     FamilyData data = data_of(record);
     data.put("corner", corners[0]);
     data.put_rows("portal_from_world", glm::transpose(portal_from_world(corners)));
@@ -191,7 +205,8 @@ class LightLowering {
 
   /// Takes the spectrum from what scene/lights.def visits.
   struct Emission : IgnoresFields {
-    Emission(LightLowering& all, LightRecord& to, double times) : lowering(all), record(to), factor(times) {}
+    Emission(LightLowering& all, LightRecord& to, double times)
+        : lowering(all), record(to), factor(times) {}
     LightLowering& lowering;
     LightRecord& record;
     double factor;
@@ -240,7 +255,8 @@ LightBounds bounds_of(const Emitter& emitter, double power) {
 /// Makes the tree of `bounded` and leaves in `shares` the lights that the table has beside it,
 /// without `emitters` and the lights of the tree. The tree is one choice more: half of the random
 /// numbers go by power, half evenly to groups, as in light_table.
-void lower_many_lights(const TreeLights& bounded, std::size_t emitters, std::vector<LightShare>& shares, FlatScene& out) {
+void lower_many_lights(const TreeLights& bounded, std::size_t emitters,
+                       std::vector<LightShare>& shares, FlatScene& out) {
   static const TreeLights none;
   const bool many = bounded.lights.size() >= CAPLET_LIGHT_TREE_FROM;
   lower_light_tree(many ? bounded : none, shares.size(), out);
@@ -249,25 +265,28 @@ void lower_many_lights(const TreeLights& bounded, std::size_t emitters, std::vec
   if (!many) return;
   std::vector<std::uint32_t> groups;  // of the others
   double of_tree = 0, of_others = 0;
-  for (const TreeLights::One& light : bounded.lights) of_tree += std::exchange(shares[light.light].power, 0);
+  for (const TreeLights::One& light : bounded.lights)
+    of_tree += std::exchange(shares[light.light].power, 0);
   for (const LightShare& share : shares) {
     if (!(share.power > 0)) continue;
     of_others += share.power;
     groups.push_back(share.group);
   }
   std::ranges::sort(groups);
-  const auto others = static_cast<double>(std::distance(groups.begin(), std::unique(groups.begin(), groups.end())));
+  const auto others =
+      static_cast<double>(std::distance(groups.begin(), std::unique(groups.begin(), groups.end())));
   const double chance = 0.5 * of_tree / (of_tree + of_others) + 0.5 / (1 + others);
   // Rows are for lights that may be chosen: emissive primitives stand first.
   out.lighting.table_begin = others > 0 ? narrow<uint>(emitters) : out.lighting.light_count;
   shares.erase(shares.begin(), shares.begin() + out.lighting.table_begin);
-  out.lighting.tree_share = others > 0 ? static_cast<uint>(std::clamp(chance, 0x1p-8, 1 - 0x1p-8) * 0x1p32) : CAPLET_NONE;
+  out.lighting.tree_share =
+      others > 0 ? static_cast<uint>(std::clamp(chance, 0x1p-8, 1 - 0x1p-8) * 0x1p32) : CAPLET_NONE;
 }
 
 }  // namespace
 
-void lower_lights(const Scene& scene, const std::vector<Emitter>& emitters, SpectrumTable& spectra, LightImages& images,
-                  FlatScene& out) {
+void lower_lights(const Scene& scene, const std::vector<Emitter>& emitters, SpectrumTable& spectra,
+                  LightImages& images, FlatScene& out) {
   out.lights.clear();
   out.light_data.clear();
   images.begin();
@@ -313,9 +332,11 @@ void lower_lights(const Scene& scene, const std::vector<Emitter>& emitters, Spec
     }
     out.lights.push_back(record);
     brightest = std::max(brightest, luminance);
-    const double power = pi * emitter.area * covers[i].share * luminance * (emitter.two_sided ? 2 : 1);
+    const double power =
+        pi * emitter.area * covers[i].share * luminance * (emitter.two_sided ? 2 : 1);
     shares.push_back({std::isfinite(power) && power > 0 ? power : 0, emitter.group});
-    if (shares.back().power > 0) bounded.add(narrow<uint>(shares.size() - 1), bounds_of(emitter, power));
+    if (shares.back().power > 0)
+      bounded.add(narrow<uint>(shares.size() - 1), bounds_of(emitter, power));
   }
   LightLowering lowering(spectra, images, out);
   for (const Light& light : scene.lights)
@@ -326,8 +347,8 @@ void lower_lights(const Scene& scene, const std::vector<Emitter>& emitters, Spec
   images.end(out);
   out.lighting.radiance = static_cast<float>(std::max(brightest, lowering.brightest()));
   out.lighting.light_count = narrow<uint>(out.lights.size());
-  out.lighting.sampled_light_count =
-      narrow<uint>(std::ranges::count_if(shares, [](const LightShare& share) { return share.power > 0; }));
+  out.lighting.sampled_light_count = narrow<uint>(
+      std::ranges::count_if(shares, [](const LightShare& share) { return share.power > 0; }));
   lower_many_lights(bounded, emitters.size(), shares, out);
   out.light_alias = light_table(shares);
 }

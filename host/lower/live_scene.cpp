@@ -78,8 +78,9 @@ struct LiveScene::State {
     const Matrix baked = subtree_key(shape, shape.world_from_object).baked;
     const std::size_t at = of.first + edit.capsule;
     FlatPrimitive& p = of.subtree->primitives[at];
-    const FlatPrimitive moved = flat_capsule(std::get<CapsulesShape>(shape.geometry), edit.capsule,
-                                             baked == Matrix(1) ? nullptr : &baked, similarity_scale(baked));
+    const FlatPrimitive moved =
+        flat_capsule(std::get<CapsulesShape>(shape.geometry), edit.capsule,
+                     baked == Matrix(1) ? nullptr : &baked, similarity_scale(baked));
     if (moved.shape != p.shape) return false;
     std::copy(std::begin(moved.data), std::end(moved.data), std::begin(p.data));
     trees->move(*of.subtree, at, changes);
@@ -91,9 +92,11 @@ struct LiveScene::State {
     const Shape& shape = shape_at(scene, edit.at);
     ShapeExtent& of = extent(edit.at);
     if (!of.subtree) return false;
-    const SubtreeKey old = subtree_key(shape, before.world_from_object), now = subtree_key(shape, edit.world_from_object);
+    const SubtreeKey old = subtree_key(shape, before.world_from_object),
+                     now = subtree_key(shape, edit.world_from_object);
     const bool other_subtree = !now.same_subtree(old);
-    if (other_subtree && (now.is_common() || old.is_common() || of.subtree->shapes.size() != 1)) return false;
+    if (other_subtree && (now.is_common() || old.is_common() || of.subtree->shapes.size() != 1))
+      return false;
     if (now.baked != old.baked && !bake(shape, of, now.baked)) return false;
     of.subtree->placed = now.placed;
     of.subtree->flags = now.flags;
@@ -107,14 +110,19 @@ struct LiveScene::State {
     const std::size_t count = of.end.primitives - of.begin.primitives;
     if (count > most_moved && count * least_unmoved_share > subtree.primitives.size()) return false;
     for (std::size_t i = 0; i < count; ++i)  // what they have in `leaves` tells where it is
-      if (const auto kind = subtree.primitives[of.first + i].shape; kind == shape_csg || kind == shape_polyhedron) return false;
+      if (const auto kind = subtree.primitives[of.first + i].shape;
+          kind == shape_csg || kind == shape_polyhedron)
+        return false;
     FlatScene fresh;
-    const Subtree own = lower_shape_alone(scene, shape, baked, 0, lowering->images, lowering->spectra, fresh);
+    const Subtree own =
+        lower_shape_alone(scene, shape, baked, 0, lowering->images, lowering->spectra, fresh);
     const auto as_long = [&](std::size_t size, std::size_t Lengths::*length) {
       return size == of.end.*length - of.begin.*length;
     };
-    if (!as_long(fresh.geometries.size(), &Lengths::geometries) || !as_long(own.primitives.size(), &Lengths::primitives) ||
-        !as_long(fresh.mesh_indices.size(), &Lengths::indices) || !as_long(fresh.mesh_normals.size(), &Lengths::normals) ||
+    if (!as_long(fresh.geometries.size(), &Lengths::geometries) ||
+        !as_long(own.primitives.size(), &Lengths::primitives) ||
+        !as_long(fresh.mesh_indices.size(), &Lengths::indices) ||
+        !as_long(fresh.mesh_normals.size(), &Lengths::normals) ||
         !as_long(fresh.mesh_uvs.size(), &Lengths::uvs))
       return false;
     for (std::size_t i = 0; i < count; ++i)
@@ -185,9 +193,11 @@ struct LiveScene::State {
 
   bool follow(const MaterialEdit& edit, const MaterialEdit& before) {
     const Material& material = scene.materials[edit.material];
-    if (!edit.textures.empty() || !before.textures.empty() || material.normalmap || material.displacement)
+    if (!edit.textures.empty() || !before.textures.empty() || material.normalmap ||
+        material.displacement)
       return false;  // other steps, and perhaps other kinds of them
-    flat().materials[edit.material] = lower_material(scene, edit.material, lowering->images, lowering->spectra, flat());
+    flat().materials[edit.material] =
+        lower_material(scene, edit.material, lowering->images, lowering->spectra, flat());
     changes.materials.add(edit.material, 1);
     changes.material_data.add(flat().materials[edit.material].data, material_stride);
     return true;
@@ -199,7 +209,8 @@ struct LiveScene::State {
   }
 
   bool follow(const ViewEdit& edit, const ViewEdit& before) {
-    return edit.film.space == before.film.space && edit.film.backdrop.has_value() == before.film.backdrop.has_value();
+    return edit.film.space == before.film.space &&
+           edit.film.backdrop.has_value() == before.film.backdrop.has_value();
   }
 
   /// Call this when `subtree` has other primitives or another place; `shape`, where it emits, has
@@ -217,9 +228,10 @@ struct LiveScene::State {
   /// Updates an instance's record, its box in the world, and its lights.
   void place_again(PlacedSubtree& placed) {
     const Subtree& subtree = *placed.subtree;
-    placed.world_from_subtree = placed.scene_instance == CAPLET_NONE
-                                    ? subtree.placed
-                                    : scene.instances[placed.scene_instance].world_from_object * subtree.placed;
+    placed.world_from_subtree =
+        placed.scene_instance == CAPLET_NONE
+            ? subtree.placed
+            : scene.instances[placed.scene_instance].world_from_object * subtree.placed;
     InstanceRecord& record = flat().instances[placed.instance];
     InstanceRecord fresh = instance_record(subtree, placed.world_from_subtree, record.object);
     fresh.light_base = record.light_base;
@@ -242,14 +254,16 @@ struct LiveScene::State {
       if (&subtree == &top()) emit_again(subtree, emissive, CAPLET_NONE, Matrix(1), 0);
       for (const PlacedSubtree& placed : geometry().placed)
         if (placed.subtree == &subtree)
-          emit_again(subtree, emissive, placed.instance, placed.world_from_subtree, flat().instances[placed.instance].light_base);
+          emit_again(subtree, emissive, placed.instance, placed.world_from_subtree,
+                     flat().instances[placed.instance].light_base);
     }
   }
 
-  void emit_again(const Subtree& subtree, const Subtree::Emissive& emissive, uint instance, const Matrix& world_from_subtree,
-                  uint light_base) {
+  void emit_again(const Subtree& subtree, const Subtree::Emissive& emissive, uint instance,
+                  const Matrix& world_from_subtree, uint light_base) {
     Emitter* first = &geometry().emitters[light_base + emissive.offset];
-    set_emitters(subtree, emissive, instance, world_from_subtree, first->group, lowering->spectra, flat(), first);
+    set_emitters(subtree, emissive, instance, world_from_subtree, first->group, lowering->spectra,
+                 flat(), first);
     lights_are_old = true;
   }
 
@@ -291,17 +305,20 @@ struct LiveScene::State {
       const auto* material = std::get_if<MaterialEdit>(&one);
       return material && std::holds_alternative<InterfaceMaterial>(material->to);
     };
-    const bool moves = std::holds_alternative<CapsuleEdit>(edit) || std::holds_alternative<TransformEdit>(edit) ||
+    const bool moves = std::holds_alternative<CapsuleEdit>(edit) ||
+                       std::holds_alternative<TransformEdit>(edit) ||
                        std::holds_alternative<InstanceEdit>(edit);
     return (moves && !lowering->flat.boundaries.empty()) || passes(edit) != passes(before);
   }
 
   bool has_bad_tree() const {
     const auto is_bad = [&](const Subtree& subtree) {
-      return subtree.primitives.size() >= rebuilt_from_primitives && trees->cost_growth(subtree) > rebuilt_at_growth;
+      return subtree.primitives.size() >= rebuilt_from_primitives &&
+             trees->cost_growth(subtree) > rebuilt_at_growth;
     };
     const LoweredGeometry& all = lowering->geometry;
-    return std::ranges::any_of(all.world.subtrees, is_bad) || std::ranges::any_of(all.objects, [&](const LoweredShapes& object) {
+    return std::ranges::any_of(all.world.subtrees, is_bad) ||
+           std::ranges::any_of(all.objects, [&](const LoweredShapes& object) {
              return std::ranges::any_of(object.subtrees, is_bad);
            });
   }
@@ -311,9 +328,12 @@ struct LiveScene::State {
     put_edit(scene, edit);
     try {
       const std::size_t spectra = flat().spectra.size(), tables = flat().spectrum_tables.size();
-      const bool followed =
-          !parts_media(edit, before) &&
-          std::visit([&](const auto& one) { return follow(one, std::get<std::decay_t<decltype(one)>>(before)); }, edit);
+      const bool followed = !parts_media(edit, before) &&
+                            std::visit(
+                                [&](const auto& one) {
+                                  return follow(one, std::get<std::decay_t<decltype(one)>>(before));
+                                },
+                                edit);
       if (!followed || has_bad_tree()) {
         lower_all();
         return before;
@@ -336,7 +356,9 @@ struct LiveScene::State {
   bool lights_are_old = false;
 };
 
-LiveScene::LiveScene(Scene scene) : state_(std::make_unique<State>(std::move(scene))) { state_->changes = {}; }
+LiveScene::LiveScene(Scene scene) : state_(std::make_unique<State>(std::move(scene))) {
+  state_->changes = {};
+}
 LiveScene::LiveScene(LiveScene&&) noexcept = default;
 LiveScene& LiveScene::operator=(LiveScene&&) noexcept = default;
 LiveScene::~LiveScene() = default;

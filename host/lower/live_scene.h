@@ -29,11 +29,12 @@ class LiveScene {
   /// Returns the view of its picture.
   FlatView view() const;
 
-  /// Makes a change, and returns the edit that undoes it. A moved capsule changes only the path from
-  /// its leaf to the root; boxes along it are the exact unions that a fresh tree would have. The
-  /// whole is lowered again if the arrays cannot hold the change in place (a capsule that becomes a
-  /// sphere, a transform that a shape's form cannot hold), or if edits have doubled the cost of a
-  /// tree since it was built. Throws InputError as check_edit and lower() do, and then changes nothing.
+  /// Makes a change, and returns the edit that undoes it. A moved capsule changes only the path
+  /// from its leaf to the root; boxes along it are the exact unions that a fresh tree would have.
+  /// The whole is lowered again if the arrays cannot hold the change in place (a capsule that
+  /// becomes a sphere, a transform that a shape's form cannot hold), or if edits have doubled the
+  /// cost of a tree since it was built. Throws InputError as check_edit and lower() do, and then
+  /// changes nothing.
   SceneEdit edit(const SceneEdit& edit);
   /// Does the same with an edit that check_edit has already passed.
   SceneEdit put(const SceneEdit& edit);

@@ -17,7 +17,8 @@
 
 namespace caplet {
 
-Lowering::Lowering(const Scene& scene) : images(image_numbers(scene.textures)), spectra(flat, scene.film.space) {
+Lowering::Lowering(const Scene& scene)
+    : images(image_numbers(scene.textures)), spectra(flat, scene.film.space) {
   const auto start = std::chrono::steady_clock::now();
   flat.sky_is_unseen = scene.film.backdrop.has_value();
   lower_images(scene, images, flat);
@@ -27,7 +28,8 @@ Lowering::Lowering(const Scene& scene) : images(image_numbers(scene.textures)), 
   geometry = lower_geometry(scene, images, spectra, flat);
   lower_boundaries(scene, geometry, flat);
   lower_lights(scene, geometry.emitters, spectra, light_images, flat);
-  flat.build_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  flat.build_seconds =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
 namespace {
@@ -41,7 +43,8 @@ void lower_sampler(const SamplerSettings& sampler, ViewRecord& out) {
     out.sampler_y = narrow<uint>(strata[1]);
     if (!sampler.jitter) out.strategy |= CAPLET_STRATEGY_UNJITTERED;
   } else {
-    out.sampler_x = narrow<uint>(std::bit_width(narrow<uint>(sampler.samples_per_pixel) - 1));  // zsobol
+    out.sampler_x =
+        narrow<uint>(std::bit_width(narrow<uint>(sampler.samples_per_pixel) - 1));  // zsobol
   }
 }
 
@@ -52,7 +55,8 @@ void lower_integrator(const IntegratorSettings& integrator, ViewRecord& out) {
     case path:
       break;
     case ambient_occlusion:
-      out.strategy |= CAPLET_STRATEGY_OCCLUSION | (integrator.cosine_sample ? 0 : CAPLET_STRATEGY_UNIFORM);
+      out.strategy |=
+          CAPLET_STRATEGY_OCCLUSION | (integrator.cosine_sample ? 0 : CAPLET_STRATEGY_UNIFORM);
       out.max_distance = static_cast<float>(integrator.max_distance);
       out.max_depth = 1;
       break;
@@ -77,9 +81,10 @@ FlatView lower_view(const Scene& scene) {
   lower_sampler(scene.sampler, out.view);
   lower_integrator(scene.integrator, out.view);
   if (scene.film.max_component_value > 0)
-    out.view.sample_limit =
-        static_cast<float>(scene.film.max_component_value / (scene.film.exposure_time * scene.film.iso / 100));
-  std::ranges::transform(picture_from_xyz(scene.film), out.view.rgb_from_xyz, [](double v) { return static_cast<float>(v); });
+    out.view.sample_limit = static_cast<float>(scene.film.max_component_value /
+                                               (scene.film.exposure_time * scene.film.iso / 100));
+  std::ranges::transform(picture_from_xyz(scene.film), out.view.rgb_from_xyz,
+                         [](double v) { return static_cast<float>(v); });
   return out;
 }
 

@@ -13,7 +13,8 @@ namespace caplet {
 
 namespace {
 
-static_assert(std::ranges::all_of(material_floats, [](std::uint32_t floats) { return floats <= material_stride; }),
+static_assert(std::ranges::all_of(material_floats,
+                                  [](std::uint32_t floats) { return floats <= material_stride; }),
               "material_stride is too small");
 
 template <class Model>
@@ -48,7 +49,8 @@ struct MaterialWriter : CompositesInParts<MaterialWriter> {
   }
   /// If the scene's `parameter` is a texture, makes the field of `name` one, with a last step of
   /// this kind if there is one, and returns true.
-  bool textured(const std::string& parameter, const std::string& name, TextureUse use, std::optional<uint> last = {}) {
+  bool textured(const std::string& parameter, const std::string& name, TextureUse use,
+                std::optional<uint> last = {}) {
     const auto texture = texture_of(material, parameter);
     if (!texture) return false;
     for (const FamilyField& field : material_fields[record.kind])
@@ -59,14 +61,17 @@ struct MaterialWriter : CompositesInParts<MaterialWriter> {
   bool textured(const std::string& name, TextureUse use) { return textured(name, name, use); }
 
   void albedo(const Field& field, const Spectrum& value) {
-    if (!textured(field.name, TextureUse::albedo)) data.put_index(field_of(field.name), spectra.add_reflectance(value));
+    if (!textured(field.name, TextureUse::albedo))
+      data.put_index(field_of(field.name), spectra.add_reflectance(value));
   }
   void unbounded(const Field& field, const Spectrum& value) {
-    if (!textured(field.name, TextureUse::unbounded)) data.put_index(field_of(field.name), spectra.add_unbounded(value));
+    if (!textured(field.name, TextureUse::unbounded))
+      data.put_index(field_of(field.name), spectra.add_unbounded(value));
   }
   void index(const Field& field, const Spectrum& value) {
     data.put_index(field_of(field.name), spectra.add_unbounded(value));
-    if ((material_traits[record.kind] & trait_dispersive) != 0 && !is_constant(value)) record.flags |= CAPLET_MATERIAL_DISPERSIVE;
+    if ((material_traits[record.kind] & trait_dispersive) != 0 && !is_constant(value))
+      record.flags |= CAPLET_MATERIAL_DISPERSIVE;
   }
   void number(const Field& field, double value) {
     if (!textured(field.name, TextureUse::number)) data.put(field_of(field.name), value);
@@ -80,41 +85,48 @@ struct MaterialWriter : CompositesInParts<MaterialWriter> {
     data.put_index("first", materials[0]);
     data.put_index("second", materials[1]);
   }
-  void pigment(const PigmentFields& fields, const Spectrum& sigma_a, const std::optional<Spectrum>& reflectance) {
+  void pigment(const PigmentFields& fields, const Spectrum& sigma_a,
+               const std::optional<Spectrum>& reflectance) {
     data.put("is_color", reflectance ? 1 : 0);
     if (reflectance ? textured(fields.reflectance.name, "pigment", TextureUse::albedo)
                     : textured(fields.sigma_a.name, "pigment", TextureUse::unbounded))
       return;
-    data.put_index("pigment", reflectance ? spectra.add_reflectance(*reflectance) : spectra.add_unbounded(sigma_a));
+    data.put_index("pigment", reflectance ? spectra.add_reflectance(*reflectance)
+                                          : spectra.add_unbounded(sigma_a));
   }
-  void metal(const MetalFields& fields, const Spectrum& eta, const Spectrum& k, const std::optional<Spectrum>& reflectance) {
+  void metal(const MetalFields& fields, const Spectrum& eta, const Spectrum& k,
+             const std::optional<Spectrum>& reflectance) {
     unbounded(fields.eta, reflectance ? ConstantSpectrum{1} : eta);
     if (!reflectance)
       unbounded(fields.k, k);
-    else if (!textured(fields.reflectance.name, fields.k.name, TextureUse::albedo, texture_extinction))
+    else if (!textured(fields.reflectance.name, fields.k.name, TextureUse::albedo,
+                       texture_extinction))
       data.put_index(field_of(fields.k.name), spectra.add_extinction(*reflectance));
   }
 };
 
 }  // namespace
 
-MaterialRecord lower_material(const Scene& scene, std::uint32_t index, const ImageNumbers& images, SpectrumTable& spectra,
-                              FlatScene& out) {
+MaterialRecord lower_material(const Scene& scene, std::uint32_t index, const ImageNumbers& images,
+                              SpectrumTable& spectra, FlatScene& out) {
   const Material& material = scene.materials[index];
   MaterialRecord record{};
   record.data = index * material_stride;
   record.bump = CAPLET_NONE;
   if (const auto bump = material.normalmap ? material.normalmap : material.displacement) {
-    const std::optional<uint> last = material.normalmap ? std::nullopt : std::optional<uint>(texture_displacement);
+    const std::optional<uint> last =
+        material.normalmap ? std::nullopt : std::optional<uint>(texture_displacement);
     record.bump = lower_texture(scene, *bump, TextureUse::number, last, images, spectra, out);
     record.bump_kind = last.value_or(texture_normalmap);
   }
-  if (out.material_data.size() < record.data + material_stride) out.material_data.resize(record.data + material_stride);
+  if (out.material_data.size() < record.data + material_stride)
+    out.material_data.resize(record.data + material_stride);
   std::visit(
       [&](const auto& model) {
         record.kind = material_kinds<std::decay_t<decltype(model)>>;
         FamilyData data(material_fields[record.kind], &out.material_data[record.data]);
-        model.fields(model, MaterialWriter{{}, data, spectra, record, scene, material, images, out});
+        model.fields(model,
+                     MaterialWriter{{}, data, spectra, record, scene, material, images, out});
         data.finish();
       },
       material.model);

@@ -63,11 +63,12 @@ struct MediumWriter {
   void asymmetry(double g) { data.put("g", g); }
   void bounds(const MediumBounds& of) {
     const glm::dvec3 sides = of.p1 - of.p0;
-    const glm::dmat4 m =
-        glm::scale(glm::dmat4(1), 1.0 / sides) * glm::translate(glm::dmat4(1), -of.p0) * glm::inverse(of.world_from_medium);
+    const glm::dmat4 m = glm::scale(glm::dmat4(1), 1.0 / sides) *
+                         glm::translate(glm::dmat4(1), -of.p0) * glm::inverse(of.world_from_medium);
     std::array<float, 12> rows;
     for (int r = 0; r < 3; ++r)
-      for (int c = 0; c < 4; ++c) rows[static_cast<std::size_t>(4 * r + c)] = static_cast<float>(m[c][r]);
+      for (int c = 0; c < 4; ++c)
+        rows[static_cast<std::size_t>(4 * r + c)] = static_cast<float>(m[c][r]);
     data.put_floats("place", rows);
     if (!has("low")) return;
     data.put("low", of.p0);
@@ -80,8 +81,9 @@ struct MediumWriter {
   }
   void grid(const Field& given, const FloatGrid& of, const GridCounts&, bool) {
     std::string field = given.name;
-    std::ranges::transform(field, field.begin(),
-                           [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+    std::ranges::transform(field, field.begin(), [](char c) {
+      return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+    });
     data.put_index(field, of ? add(*of) : CAPLET_NONE);
   }
   void grid(const Field& field, const ColorGrid& of, const GridCounts&) {
@@ -93,10 +95,12 @@ struct MediumWriter {
   void heat(const std::optional<Spectrum>& radiance, const FloatGrid& temperature) {
     data.put("le_scale", temperature ? illuminant_magnitude : radiance ? 1 : 0);
   }
-  void volume(const SparseGridPointer& density, const SparseGridPointer& temperature, const glm::dmat4& world_from_medium) {
+  void volume(const SparseGridPointer& density, const SparseGridPointer& temperature,
+              const glm::dmat4& world_from_medium) {
     bounds({density->box.min, density->box.max, world_from_medium});
     data.put_index("density", add(sparse_floats(*density, world_from_medium)));
-    data.put_index("temperature", temperature ? add(sparse_floats(*temperature, world_from_medium)) : CAPLET_NONE);
+    data.put_index("temperature",
+                   temperature ? add(sparse_floats(*temperature, world_from_medium)) : CAPLET_NONE);
   }
   void any_of(const ColorGrid&, const ColorGrid&, const ColorGrid&) {}
 

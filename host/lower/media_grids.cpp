@@ -47,7 +47,9 @@ std::vector<float> most_within(const GridCounts& counts, const std::vector<float
 /// Returns the greatest value of a sigmoid spectrum at any wavelength in range.
 float most_of(const float* texel) {
   double most = -1e9;
-  const auto at = [&](double l) { most = std::max(most, (texel[0] * l + texel[1]) * l + texel[2]); };
+  const auto at = [&](double l) {
+    most = std::max(most, (texel[0] * l + texel[1]) * l + texel[2]);
+  };
   at(double{CAPLET_LAMBDA_MIN});
   at(double{CAPLET_LAMBDA_MAX});
   if (const double vertex = -texel[1] / (2.0 * texel[0]);
@@ -73,13 +75,16 @@ std::vector<float> grid_spectra(const ColorGrid& grid) {
   out.reserve(grid.rgb->size() / 3 * 4);
   for (std::size_t i = 0; i < grid.rgb->size(); i += 3) {
     const float* rgb = &(*grid.rgb)[i];
-    const std::array<float, 4> texel = environment_texel(glm::dvec3(rgb[0], rgb[1], rgb[2]), grid.space);
+    const std::array<float, 4> texel =
+        environment_texel(glm::dvec3(rgb[0], rgb[1], rgb[2]), grid.space);
     out.insert(out.end(), texel.begin(), texel.end());
   }
   return out;
 }
 
-std::vector<float> medium_majorants(const UniformGridMedium& medium) { return most_within(medium.counts, *medium.density); }
+std::vector<float> medium_majorants(const UniformGridMedium& medium) {
+  return most_within(medium.counts, *medium.density);
+}
 
 std::vector<float> medium_majorants(const RgbGridMedium& medium) {
   std::vector<float> both(cells_of(medium.counts));
@@ -90,6 +95,8 @@ std::vector<float> medium_majorants(const RgbGridMedium& medium) {
 
 std::vector<float> medium_majorants(const CloudMedium&) { return {1}; }
 
-std::vector<float> medium_majorants(const NanovdbMedium& medium) { return sparse_majorants(*medium.density); }
+std::vector<float> medium_majorants(const NanovdbMedium& medium) {
+  return sparse_majorants(*medium.density);
+}
 
 }  // namespace caplet

@@ -16,7 +16,8 @@ namespace caplet {
 /// the exact one by 2^-13 of a step at least, which the slab test's rounding needs, and by two
 /// steps at most, a step being the least power of two of which 255 span the node, or the last place
 /// of its coordinates if that is more. Axes with coordinates beyond 2^126 are not tested.
-void pack_node(std::span<const float, CAPLET_NODE_FLOATS> node, std::span<float, CAPLET_PACKED_NODE_FLOATS> packed);
+void pack_node(std::span<const float, CAPLET_NODE_FLOATS> node,
+               std::span<float, CAPLET_PACKED_NODE_FLOATS> packed);
 
 /// Packs all of an array of nodes.
 std::vector<float> packed_nodes(std::span<const float> nodes);

@@ -32,14 +32,17 @@ Bounds placed_bounds(const Subtree& subtree, const Matrix& world_from_subtree) {
     for (const Shape* shape : subtree.shapes) {
       Shape moved = *shape;
       // A subtree with its own transform holds its shapes in their object space.
-      moved.world_from_object = subtree.placed == Matrix(1) ? world_from_subtree * shape->world_from_object : world_from_subtree;
+      moved.world_from_object = subtree.placed == Matrix(1)
+                                    ? world_from_subtree * shape->world_from_object
+                                    : world_from_subtree;
       box.extend(bounds_of(moved));
     }
     return box;
   }
   for (int corner = 0; corner < 8; ++corner) {
     dvec3 p;
-    for (int k = 0; k < 3; ++k) p[k] = (corner >> k) & 1 ? subtree.tree.max[k] : subtree.tree.min[k];
+    for (int k = 0; k < 3; ++k)
+      p[k] = (corner >> k) & 1 ? subtree.tree.max[k] : subtree.tree.min[k];
     box.extend(apply_point(world_from_subtree, p));
   }
   return box;
@@ -48,7 +51,9 @@ Bounds placed_bounds(const Subtree& subtree, const Matrix& world_from_subtree) {
 /// Placement is shared by lights that are placed together.
 struct Placement {
   explicit Placement(const Matrix& m)
-      : world_from_subtree(m), stays(m == Matrix(1)), normals(glm::transpose(glm::inverse(glm::dmat3(m)))) {}
+      : world_from_subtree(m),
+        stays(m == Matrix(1)),
+        normals(glm::transpose(glm::inverse(glm::dmat3(m)))) {}
   Matrix world_from_subtree;
   bool stays;
   glm::dmat3 normals;
@@ -89,12 +94,14 @@ void set_reach(const FlatPrimitive& p, const Placement& to, bool flipped, Emitte
 /// Sets the ball around the image of the primitive's box, for kinds that are sampled by it.
 void set_ball(const FlatPrimitive& p, const Matrix& world_from_subtree, Emitter& emitter) {
   const bool has_round_end =
-      p.shape == shape_cylinder && (cylinder_cap0(p.data) == CAPLET_CAP_ROUND || cylinder_cap1(p.data) == CAPLET_CAP_ROUND);
+      p.shape == shape_cylinder &&
+      (cylinder_cap0(p.data) == CAPLET_CAP_ROUND || cylinder_cap1(p.data) == CAPLET_CAP_ROUND);
   emitter.by_ball = !shape_has(p.shape, trait_own_light) || has_round_end;
   if (!emitter.by_ball) return;
   double low[3], high[3];
   primitive_box(p, low, high);
-  const dvec3 a(low[0], low[1], low[2]), b(high[0], high[1], high[2]), center = apply_point(world_from_subtree, 0.5 * (a + b));
+  const dvec3 a(low[0], low[1], low[2]), b(high[0], high[1], high[2]),
+      center = apply_point(world_from_subtree, 0.5 * (a + b));
   double radius = 0;
   for (int corner = 0; corner < 8; ++corner) {
     const dvec3 x(corner & 1 ? b.x : a.x, corner & 2 ? b.y : a.y, corner & 4 ? b.z : a.z);
@@ -115,7 +122,8 @@ bool is_unseen(const Shape& shape) {
 
 }  // namespace
 
-InstanceRecord instance_record(const Subtree& subtree, const Matrix& world_from_subtree, std::uint32_t object) {
+InstanceRecord instance_record(const Subtree& subtree, const Matrix& world_from_subtree,
+                               std::uint32_t object) {
   InstanceRecord record{};
   const Matrix subtree_from_world = glm::inverse(world_from_subtree);
   write_matrix(record.object_from_world, subtree_from_world);
@@ -124,14 +132,17 @@ InstanceRecord instance_record(const Subtree& subtree, const Matrix& world_from_
   record.light_base = CAPLET_NONE;
   record.object = object;
   record.flags = subtree.flags;
-  if (glm::determinant(glm::dmat3(world_from_subtree)) < 0) record.flags |= CAPLET_INSTANCE_MIRRORED;
+  if (glm::determinant(glm::dmat3(world_from_subtree)) < 0)
+    record.flags |= CAPLET_INSTANCE_MIRRORED;
   return record;
 }
 
-void set_instance_box(const Subtree& subtree, const Matrix& world_from_subtree, FlatPrimitive& instance) {
+void set_instance_box(const Subtree& subtree, const Matrix& world_from_subtree,
+                      FlatPrimitive& instance) {
   const Bounds box = placed_bounds(subtree, world_from_subtree);
   double largest = 0;
-  for (int k = 0; k < 3; ++k) largest = std::max({largest, std::abs(box.min[k]), std::abs(box.max[k])});
+  for (int k = 0; k < 3; ++k)
+    largest = std::max({largest, std::abs(box.min[k]), std::abs(box.max[k])});
   // Moving a ray into the object and a hit back costs a few roundings of the largest coordinate on
   // either side: 32 units are ample.
   const double slack = 32 * 0x1p-24 * largest;
@@ -141,8 +152,9 @@ void set_instance_box(const Subtree& subtree, const Matrix& world_from_subtree, 
   }
 }
 
-void set_emitters(const Subtree& subtree, const Subtree::Emissive& emissive, std::uint32_t instance, const Matrix& world_from_subtree,
-                  std::uint32_t group, SpectrumTable& spectra, const FlatScene& flat, Emitter* out) {
+void set_emitters(const Subtree& subtree, const Subtree::Emissive& emissive, std::uint32_t instance,
+                  const Matrix& world_from_subtree, std::uint32_t group, SpectrumTable& spectra,
+                  const FlatScene& flat, Emitter* out) {
   const AreaEmission& emission = *emissive.shape->emission;
   const AreaMap area_map(world_from_subtree);
   std::vector<double> areas(emissive.count);
@@ -153,7 +165,8 @@ void set_emitters(const Subtree& subtree, const Subtree::Emissive& emissive, std
                       });
   };
   each([&](std::size_t i) {
-    areas[i] = placed_area(subtree.primitives[emissive.first + i], flat.leaves, area_map, emission.surfaces);
+    areas[i] = placed_area(subtree.primitives[emissive.first + i], flat.leaves, area_map,
+                           emission.surfaces);
   });
   double total_area = 0;
   for (const double area : areas) total_area += area;
@@ -161,7 +174,8 @@ void set_emitters(const Subtree& subtree, const Subtree::Emissive& emissive, std
   emitter.group = group;
   emitter.instance = instance;
   emitter.two_sided = emission.two_sided;
-  const Spectrum color = emission.image ? RgbSpectrum{dvec3(1), emission.image->space} : emission.radiance;
+  const Spectrum color =
+      emission.image ? RgbSpectrum{dvec3(1), emission.image->space} : emission.radiance;
   emitter.spectrum = spectra.add_illuminant(color);
   emitter.of_image = emission.image ? &emission : nullptr;
   emitter.unseen = is_unseen(*emissive.shape);
@@ -171,7 +185,9 @@ void set_emitters(const Subtree& subtree, const Subtree::Emissive& emissive, std
   if (emission.power) {
     // In pbrt-v4 the power is that of a light of radiance 1, whatever the colour.
     const double sides = emission.two_sided ? 2 : 1;
-    emitter.scale = total_area > 0 ? emission.scale * *emission.power / (total_area * std::numbers::pi * sides) : 0;
+    emitter.scale = total_area > 0
+                        ? emission.scale * *emission.power / (total_area * std::numbers::pi * sides)
+                        : 0;
   }
   emitter.luminance = luminance * emitter.scale;
   const Placement placement(world_from_subtree);
@@ -184,7 +200,8 @@ void set_emitters(const Subtree& subtree, const Subtree::Emissive& emissive, std
     to.geometry = flat.primitive_geometry[p.id];
     to.area = areas[i];
     set_ball(p, world_from_subtree, to);
-    set_reach(p, placement, (flat.geometries[to.geometry].flags & CAPLET_GEOMETRY_FLIP_NORMAL) != 0, to);
+    set_reach(p, placement, (flat.geometries[to.geometry].flags & CAPLET_GEOMETRY_FLIP_NORMAL) != 0,
+              to);
     // This guess affects only the choice among lights: half of the ball's area, however little of
     // it the solid fills.
     if (p.shape == shape_csg) to.area = 2 * std::numbers::pi * to.ball[3] * to.ball[3];

@@ -32,12 +32,14 @@ std::vector<float> sparse_floats(const SparseGrid& grid, const glm::dmat4& world
     high[k] = (*std::ranges::max_element(grid.bricks, by))[k] + 1;
   }
   std::array<std::size_t, 3> count;
-  for (std::size_t k = 0; k < 3; ++k) count[k] = static_cast<std::size_t>(std::int64_t{high[k]} - low[k]);
+  for (std::size_t k = 0; k < 3; ++k)
+    count[k] = static_cast<std::size_t>(std::int64_t{high[k]} - low[k]);
   const std::size_t table = count[0] * count[1] * count[2];
   std::vector<float> out(head + table, bits(CAPLET_NONE));
   const glm::dmat4 m = glm::inverse(world_from_medium * grid.medium_from_voxels);
   for (int r = 0; r < 3; ++r)
-    for (int c = 0; c < 4; ++c) out[static_cast<std::size_t>(4 * r + c)] = static_cast<float>(m[c][r]);
+    for (int c = 0; c < 4; ++c)
+      out[static_cast<std::size_t>(4 * r + c)] = static_cast<float>(m[c][r]);
   for (std::size_t k = 0; k < 3; ++k) {
     out[12 + k] = bits(static_cast<std::uint32_t>(low[k]));
     out[15 + k] = bits(narrow<std::uint32_t>(count[k]));
@@ -46,7 +48,8 @@ std::vector<float> sparse_floats(const SparseGrid& grid, const glm::dmat4& world
   out[19] = 0;
   for (std::size_t i = 0; i < grid.bricks.size(); ++i) {
     std::array<std::size_t, 3> at;
-    for (std::size_t k = 0; k < 3; ++k) at[k] = static_cast<std::size_t>(std::int64_t{grid.bricks[i][k]} - low[k]);
+    for (std::size_t k = 0; k < 3; ++k)
+      at[k] = static_cast<std::size_t>(std::int64_t{grid.bricks[i][k]} - low[k]);
     out[head + (at[2] * count[1] + at[1]) * count[0] + at[0]] = bits(narrow<std::uint32_t>(i));
   }
   out.insert(out.end(), grid.values.begin(), grid.values.end());
@@ -54,10 +57,12 @@ std::vector<float> sparse_floats(const SparseGrid& grid, const glm::dmat4& world
 }
 
 std::vector<float> sparse_majorants(const SparseGrid& grid) {
-  std::vector<float> out(static_cast<std::size_t>(sparse_majorant_cells) * sparse_majorant_cells * sparse_majorant_cells);
+  std::vector<float> out(static_cast<std::size_t>(sparse_majorant_cells) * sparse_majorant_cells *
+                         sparse_majorant_cells);
   const glm::dvec3 extent = grid.box.max - grid.box.min;
-  const glm::dmat4 cells_from_voxels = glm::scale(glm::dmat4(1), double{sparse_majorant_cells} / extent) *
-                                       glm::translate(glm::dmat4(1), -grid.box.min) * grid.medium_from_voxels;
+  const glm::dmat4 cells_from_voxels =
+      glm::scale(glm::dmat4(1), double{sparse_majorant_cells} / extent) *
+      glm::translate(glm::dmat4(1), -grid.box.min) * grid.medium_from_voxels;
   // This is how far a voxel reaches, one to each side, in cells; a thousandth more, for points that
   // are rounded.
   glm::dvec3 reach(1e-3);
@@ -66,16 +71,20 @@ std::vector<float> sparse_majorants(const SparseGrid& grid) {
     for (int v = 0; v < 512; ++v) {
       const float value = grid.values[512 * i + static_cast<std::size_t>(v)];
       if (!(value > 0)) continue;
-      const glm::dvec3 voxel(8.0 * grid.bricks[i][0] + (v & 7), 8.0 * grid.bricks[i][1] + (v >> 3 & 7),
+      const glm::dvec3 voxel(8.0 * grid.bricks[i][0] + (v & 7),
+                             8.0 * grid.bricks[i][1] + (v >> 3 & 7),
                              8.0 * grid.bricks[i][2] + (v >> 6));
       const glm::dvec3 at(cells_from_voxels * glm::dvec4(voxel, 1));
-      const auto cell = [](double x) { return static_cast<int>(std::clamp(std::floor(x), 0.0, sparse_majorant_cells - 1.0)); };
+      const auto cell = [](double x) {
+        return static_cast<int>(std::clamp(std::floor(x), 0.0, sparse_majorant_cells - 1.0));
+      };
       for (int z = cell(at.z - reach.z); z <= cell(at.z + reach.z); ++z)
         for (int y = cell(at.y - reach.y); y <= cell(at.y + reach.y); ++y)
           for (int x = cell(at.x - reach.x); x <= cell(at.x + reach.x); ++x) {
-            float& most =
-                out[(static_cast<std::size_t>(z) * sparse_majorant_cells + static_cast<std::size_t>(y)) * sparse_majorant_cells +
-                    static_cast<std::size_t>(x)];
+            float& most = out[(static_cast<std::size_t>(z) * sparse_majorant_cells +
+                               static_cast<std::size_t>(y)) *
+                                  sparse_majorant_cells +
+                              static_cast<std::size_t>(x)];
             most = std::max(most, value);
           }
     }

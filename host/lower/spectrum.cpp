@@ -21,7 +21,8 @@ std::vector<float> make_wavelength_table() {
   const SpectrumSamples density = wavelength_density();
   std::array<double, CAPLET_LAMBDA_COUNT> cdf;
   cdf[0] = 0;
-  for (std::size_t i = 1; i < cdf.size(); ++i) cdf[i] = cdf[i - 1] + 0.5 * (density[i - 1] + density[i]);
+  for (std::size_t i = 1; i < cdf.size(); ++i)
+    cdf[i] = cdf[i - 1] + 0.5 * (density[i - 1] + density[i]);
   std::vector<float> table(cells + 1);
   std::size_t i = 0;
   for (std::size_t cell = 0; cell <= cells; ++cell) {
@@ -83,7 +84,8 @@ SpectrumTable::SpectrumTable(FlatScene& out, ColorSpace space) : out_(out), spac
   const auto& observer = normalized_observer();
   out_.observer.clear();
   for (std::size_t i = 0; i < observer[0].size(); ++i) {
-    for (const SpectrumSamples& samples : observer) out_.observer.push_back(static_cast<float>(samples[i]));
+    for (const SpectrumSamples& samples : observer)
+      out_.observer.push_back(static_cast<float>(samples[i]));
     out_.observer.push_back(0);
   }
   out_.wavelength_table = make_wavelength_table();
@@ -95,7 +97,8 @@ std::uint32_t SpectrumTable::illuminant_table(ColorSpace space) {
 }
 
 std::uint32_t SpectrumTable::uplift_table(ColorSpace space) {
-  const auto [found, fresh] = uplift_tables_.try_emplace(space, narrow<std::uint32_t>(out_.spectrum_tables.size()));
+  const auto [found, fresh] =
+      uplift_tables_.try_emplace(space, narrow<std::uint32_t>(out_.spectrum_tables.size()));
   if (!fresh) return found->second;
   const std::vector<float>& table = sigmoid_table(space);
   out_.spectrum_tables.insert(out_.spectrum_tables.end(), table.begin(), table.end());
@@ -103,8 +106,11 @@ std::uint32_t SpectrumTable::uplift_table(ColorSpace space) {
 }
 
 std::uint32_t SpectrumTable::add_table(std::vector<float> table) {
-  const auto [found, fresh] = tables_.try_emplace(std::move(table), narrow<std::uint32_t>(out_.spectrum_tables.size()));
-  if (fresh) out_.spectrum_tables.insert(out_.spectrum_tables.end(), found->first.begin(), found->first.end());
+  const auto [found, fresh] =
+      tables_.try_emplace(std::move(table), narrow<std::uint32_t>(out_.spectrum_tables.size()));
+  if (fresh)
+    out_.spectrum_tables.insert(out_.spectrum_tables.end(), found->first.begin(),
+                                found->first.end());
   return found->second;
 }
 
@@ -151,7 +157,8 @@ std::uint32_t SpectrumTable::add_extinction(const Spectrum& reflectance) {
     r = std::clamp(r, 0.0, 0.9999);
     return 2 * std::sqrt(r) / std::sqrt(1 - r);
   };
-  if (is_constant(reflectance)) return add_record(constant_record(k_of(constant_value(reflectance))));
+  if (is_constant(reflectance))
+    return add_record(constant_record(k_of(constant_value(reflectance))));
   const auto* rgb = std::get_if<RgbSpectrum>(&reflectance);
   if (!rgb) return add_samples(tabulate(sample(reflectance), k_of));
   const glm::dvec3 color = glm::clamp(rgb->rgb, 0.0, 1.0);
@@ -159,7 +166,8 @@ std::uint32_t SpectrumTable::add_extinction(const Spectrum& reflectance) {
   const SigmoidFit fit = fit_sigmoid(color, rgb->space);
   SpectrumSamples samples;
   for (std::size_t i = 0; i < samples.size(); ++i)
-    samples[i] = sigmoid_value(fit.coefficients, double{CAPLET_LAMBDA_MIN} + static_cast<double>(i));
+    samples[i] =
+        sigmoid_value(fit.coefficients, double{CAPLET_LAMBDA_MIN} + static_cast<double>(i));
   return add_samples(tabulate(samples, k_of));
 }
 
@@ -177,11 +185,13 @@ std::uint32_t SpectrumTable::add_illuminant(const Spectrum& spectrum) {
     record.table = illuminant_table(rgb->space);
     return add_record(record);
   }
-  if (is_constant(spectrum)) return add_record(constant_record(constant_value(spectrum) > 0 ? 1 : 0));
+  if (is_constant(spectrum))
+    return add_record(constant_record(constant_value(spectrum) > 0 ? 1 : 0));
   SpectrumSamples samples = sample(spectrum);
   for (double& value : samples) value = std::max(value, 0.0);
   const double luminance = xyz_of(samples).y;
-  return add_samples(tabulate(samples, [luminance](double v) { return luminance > 0 ? v / luminance : 0; }));
+  return add_samples(
+      tabulate(samples, [luminance](double v) { return luminance > 0 ? v / luminance : 0; }));
 }
 
 double SpectrumTable::illuminant_luminance(const Spectrum& spectrum) const {
@@ -191,7 +201,8 @@ double SpectrumTable::illuminant_luminance(const Spectrum& spectrum) const {
     const SigmoidFit fit = fit_sigmoid(color.rgb, rgb->space);
     SpectrumSamples samples = illuminant(rgb->space);
     for (std::size_t i = 0; i < samples.size(); ++i)
-      samples[i] *= color.scale * sigmoid_value(fit.coefficients, double{CAPLET_LAMBDA_MIN} + static_cast<double>(i));
+      samples[i] *= color.scale * sigmoid_value(fit.coefficients,
+                                                double{CAPLET_LAMBDA_MIN} + static_cast<double>(i));
     return xyz_of(samples).y;
   }
   SpectrumSamples samples = sample(spectrum);

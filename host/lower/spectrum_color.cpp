@@ -90,7 +90,8 @@ double sampled_at(const SampledSpectrum& spectrum, double nm) {
   if (wavelengths.empty()) return 0;
   if (nm <= wavelengths.front()) return values.front();
   if (nm >= wavelengths.back()) return values.back();
-  const auto after = static_cast<std::size_t>(std::upper_bound(wavelengths.begin(), wavelengths.end(), nm) - wavelengths.begin());
+  const auto after = static_cast<std::size_t>(
+      std::upper_bound(wavelengths.begin(), wavelengths.end(), nm) - wavelengths.begin());
   const double low = wavelengths[after - 1], high = wavelengths[after];
   return values[after - 1] + (nm - low) / (high - low) * (values[after] - values[after - 1]);
 }
@@ -103,8 +104,9 @@ glm::dvec3 daylight_white(double kelvin) {
     return xyz / xyz.y;
   }
   const double t = 1e3 / (kelvin * 1.4388 / 1.438);
-  const double x = kelvin * 1.4388 / 1.438 <= 7000 ? ((-4.607 * t + 2.9678) * t + 0.09911) * t + 0.244063
-                                                   : ((-2.0064 * t + 1.9018) * t + 0.24748) * t + 0.23704;
+  const double x = kelvin * 1.4388 / 1.438 <= 7000
+                       ? ((-4.607 * t + 2.9678) * t + 0.09911) * t + 0.244063
+                       : ((-2.0064 * t + 1.9018) * t + 0.24748) * t + 0.23704;
   const double y = (-3 * x + 2.87) * x - 0.275;
   return {x / y, 1, (1 - x - y) / y};
 }
@@ -118,7 +120,8 @@ const std::array<SpectrumSamples, 3>& normalized_observer() {
 
 SpectrumSamples sample(const Spectrum& spectrum) {
   SpectrumSamples samples;
-  for (std::size_t i = 0; i < count; ++i) samples[i] = evaluate(spectrum, double{CAPLET_LAMBDA_MIN} + static_cast<double>(i));
+  for (std::size_t i = 0; i < count; ++i)
+    samples[i] = evaluate(spectrum, double{CAPLET_LAMBDA_MIN} + static_cast<double>(i));
   return samples;
 }
 
@@ -129,7 +132,8 @@ glm::dvec3 xyz_of(const SpectrumSamples& samples) {
 }
 
 const SpectrumSamples& illuminant(ColorSpace space) {
-  static const SpectrumSamples d65 = make_illuminant("stdillum-D65"), d60 = make_illuminant("illum-acesD60");
+  static const SpectrumSamples d65 = make_illuminant("stdillum-D65"),
+                               d60 = make_illuminant("illum-acesD60");
   return space == ColorSpace::aces2065_1 ? d60 : d65;
 }
 
@@ -146,10 +150,12 @@ SpectrumSamples wavelength_density() {
     double nm, logarithm;
   };
   constexpr double step = 390.0 / 21;
-  constexpr std::array<double, 22> logarithms = {-4.66, -2.76, -1.06, -0.18, 0.00,  -0.19, -0.42, -0.46, -0.30, -0.22, -0.31,
-                                                 -0.24, -0.10, -0.22, -0.13, -0.48, -1.09, -1.67, -2.68, -3.60, -5.69, -5.86};
+  constexpr std::array<double, 22> logarithms = {
+      -4.66, -2.76, -1.06, -0.18, 0.00,  -0.19, -0.42, -0.46, -0.30, -0.22, -0.31,
+      -0.24, -0.10, -0.22, -0.13, -0.48, -1.09, -1.67, -2.68, -3.60, -5.69, -5.86};
   std::vector<Node> nodes = {{360, logarithms.front() - 1}};
-  for (std::size_t i = 0; i < logarithms.size(); ++i) nodes.push_back({370 + step * static_cast<double>(i), logarithms[i]});
+  for (std::size_t i = 0; i < logarithms.size(); ++i)
+    nodes.push_back({370 + step * static_cast<double>(i), logarithms[i]});
   nodes.push_back({830, logarithms.back() - 2});
   SpectrumSamples density;
   std::size_t node = 0;
@@ -157,26 +163,35 @@ SpectrumSamples wavelength_density() {
     const double nm = double{CAPLET_LAMBDA_MIN} + static_cast<double>(i);
     while (node + 2 < nodes.size() && nodes[node + 1].nm < nm) ++node;
     const Node low = nodes[node], high = nodes[node + 1];
-    density[i] = std::exp(low.logarithm + (nm - low.nm) / (high.nm - low.nm) * (high.logarithm - low.logarithm));
+    density[i] = std::exp(low.logarithm +
+                          (nm - low.nm) / (high.nm - low.nm) * (high.logarithm - low.logarithm));
   }
   return density;
 }
 
-std::array<double, 9> xyz_from_rgb(ColorSpace space) { return row_major(xyz_from_rgb_matrix(space)); }
-std::array<double, 9> rgb_from_xyz(ColorSpace space) { return row_major(glm::inverse(xyz_from_rgb_matrix(space))); }
+std::array<double, 9> xyz_from_rgb(ColorSpace space) {
+  return row_major(xyz_from_rgb_matrix(space));
+}
+std::array<double, 9> rgb_from_xyz(ColorSpace space) {
+  return row_major(glm::inverse(xyz_from_rgb_matrix(space)));
+}
 
 std::array<double, 9> picture_from_xyz(const FilmSettings& film) {
   if (film.white_balance == 0) return rgb_from_xyz(film.space);
-  const glm::dmat3 cones = glm::transpose(glm::dmat3(0.8951, 0.2664, -0.1614, -0.7502, 1.7135, 0.0367, 0.0389, -0.0685, 1.0296));
+  const glm::dmat3 cones = glm::transpose(
+      glm::dmat3(0.8951, 0.2664, -0.1614, -0.7502, 1.7135, 0.0367, 0.0389, -0.0685, 1.0296));
   const glm::dvec3 white = xyz_of(illuminant(film.space));
-  const glm::dvec3 gains = (cones * (white / white.y)) / (cones * daylight_white(film.white_balance));
+  const glm::dvec3 gains =
+      (cones * (white / white.y)) / (cones * daylight_white(film.white_balance));
   glm::dmat3 balance(0);
   for (int c = 0; c < 3; ++c) balance[c][c] = gains[c];
-  return row_major(glm::inverse(xyz_from_rgb_matrix(film.space)) * glm::inverse(cones) * balance * cones);
+  return row_major(glm::inverse(xyz_from_rgb_matrix(film.space)) * glm::inverse(cones) * balance *
+                   cones);
 }
 
 bool is_constant(const Spectrum& spectrum) {
-  if (const auto* rgb = std::get_if<RgbSpectrum>(&spectrum)) return rgb->rgb.r == rgb->rgb.g && rgb->rgb.g == rgb->rgb.b;
+  if (const auto* rgb = std::get_if<RgbSpectrum>(&spectrum))
+    return rgb->rgb.r == rgb->rgb.g && rgb->rgb.g == rgb->rgb.b;
   if (const auto* sampled = std::get_if<SampledSpectrum>(&spectrum))
     return std::all_of(sampled->values.begin(), sampled->values.end(),
                        [sampled](double v) { return v == sampled->values.front(); });
@@ -185,10 +200,12 @@ bool is_constant(const Spectrum& spectrum) {
 
 double evaluate(const Spectrum& spectrum, double nm) {
   if (const auto* constant = std::get_if<ConstantSpectrum>(&spectrum)) return constant->value;
-  if (const auto* sampled = std::get_if<SampledSpectrum>(&spectrum)) return sampled_at(*sampled, nm);
+  if (const auto* sampled = std::get_if<SampledSpectrum>(&spectrum))
+    return sampled_at(*sampled, nm);
   const auto* blackbody = std::get_if<BlackbodySpectrum>(&spectrum);
   CHECK_EQ_(blackbody != nullptr, true);  // RGB has no wavelengths before its use is known
-  constexpr double wien = 2.897771955e6;  // nm K: the wavelength of the maximum times the temperature
+  constexpr double wien =
+      2.897771955e6;  // nm K: the wavelength of the maximum times the temperature
   return planck(nm, blackbody->kelvin) / planck(wien / blackbody->kelvin, blackbody->kelvin);
 }
 

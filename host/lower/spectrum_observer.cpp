@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Made by tools/spectral_tables.py: the CIE 1931 2 degree standard observer at 1 nm, 360 to 830 nm: x y z.
+// Made by tools/spectral_tables.py: the CIE 1931 2 degree standard observer at 1 nm, 360 to 830 nm:
+// x y z.
 #include "lower/detail/spectrum_observer.h"
 
 namespace caplet {

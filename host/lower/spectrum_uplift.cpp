@@ -40,7 +40,8 @@ Response make_response(ColorSpace space, int step) {
   const std::array<double, 9> m = rgb_from_xyz(space);
   Response out;
   const int last = CAPLET_LAMBDA_COUNT - 1;
-  for (int i = 0; i <= last; i += step) out.t.push_back((double{CAPLET_LAMBDA_MIN} + i - middle) / half_width);
+  for (int i = 0; i <= last; i += step)
+    out.t.push_back((double{CAPLET_LAMBDA_MIN} + i - middle) / half_width);
   out.weight.assign(out.t.size(), glm::dvec3(0));
   glm::dvec3 total(0);
   for (int i = 0; i <= last; ++i) {
@@ -48,7 +49,8 @@ Response make_response(ColorSpace space, int step) {
     const double end = i == 0 || i == last ? 0.5 : 1;
     glm::dvec3 rgb(0);
     for (std::size_t c = 0; c < 3; ++c)
-      for (int row = 0; row < 3; ++row) rgb[row] += m[3 * static_cast<std::size_t>(row) + c] * observer[c][at] * light[at] * end;
+      for (int row = 0; row < 3; ++row)
+        rgb[row] += m[3 * static_cast<std::size_t>(row) + c] * observer[c][at] * light[at] * end;
     total += rgb;
     const auto node = static_cast<std::size_t>(i / step);
     const double f = static_cast<double>(i % step) / step;
@@ -96,11 +98,14 @@ glm::dvec3 color(const Response& response, const glm::dvec3& c, glm::dmat3* jaco
 
 double sqr(double x) { return x * x; }
 
-double largest(const glm::dvec3& v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); }
+double largest(const glm::dvec3& v) {
+  return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
+}
 
 /// Makes Gauss-Newton steps, damped (Levenberg-Marquardt) where they do not help. Returns the
 /// residual.
-double solve(const Response& response, const glm::dvec3& target, double tolerance, int iterations, glm::dvec3& c) {
+double solve(const Response& response, const glm::dvec3& target, double tolerance, int iterations,
+             glm::dvec3& c) {
   // Beyond this, |x| > 500 nearly everywhere and the spectrum is a box to 1e-6: nothing is gained,
   // and floats lose digits.
   constexpr double limit = 2000;
@@ -111,7 +116,8 @@ double solve(const Response& response, const glm::dvec3& target, double toleranc
     const glm::dmat3 transposed = glm::transpose(jacobian);
     glm::dmat3 normal = transposed * jacobian;
     for (int k = 0; k < 3; ++k) normal[k][k] += damping * normal[k][k] + 1e-16;
-    const glm::dvec3 next = glm::clamp(c - glm::inverse(normal) * (transposed * residual), -limit, limit);
+    const glm::dvec3 next =
+        glm::clamp(c - glm::inverse(normal) * (transposed * residual), -limit, limit);
     glm::dmat3 next_jacobian;
     const glm::dvec3 next_residual = color(response, next, &next_jacobian) - target;
     if (glm::dot(next_residual, next_residual) < glm::dot(residual, residual)) {
@@ -155,7 +161,8 @@ class ChromaticityTable {
         target[static_cast<int>((top + 1) % 3)] = 0.5 * ratio_at(step);
         target[static_cast<int>((top + 2) % 3)] = 0.5 * ratio_at(row % size);
         if (step + 1 == size) {
-          for (int part = 1; part <= 8; ++part) solve(coarse, glm::mix(glm::dvec3(0.5), target, part / 8.0), 1e-6, 20, c);
+          for (int part = 1; part <= 8; ++part)
+            solve(coarse, glm::mix(glm::dvec3(0.5), target, part / 8.0), 1e-6, 20, c);
         } else {
           solve(coarse, target, 1e-6, 20, c);
         }
@@ -166,10 +173,12 @@ class ChromaticityTable {
 
   std::array<double, 3> at(std::size_t top, double second, double third) const {
     const double x = place(second), y = place(third);
-    const auto column = std::min(static_cast<std::size_t>(x), size - 2), row = std::min(static_cast<std::size_t>(y), size - 2);
+    const auto column = std::min(static_cast<std::size_t>(x), size - 2),
+               row = std::min(static_cast<std::size_t>(y), size - 2);
     const double u = x - static_cast<double>(column), v = y - static_cast<double>(row);
     const glm::dvec3* cell = &cells_[(top * size + row) * size + column];
-    return in_nanometres(glm::mix(glm::mix(cell[0], cell[1], u), glm::mix(cell[size], cell[size + 1], u), v));
+    return in_nanometres(
+        glm::mix(glm::mix(cell[0], cell[1], u), glm::mix(cell[size], cell[size + 1], u), v));
   }
 
  private:
@@ -191,10 +200,13 @@ std::vector<float> make_sigmoid_table(ColorSpace space) {
   constexpr double darkest = 2e-3;
   const Response& coarse = response(space, false);
   std::vector<float> table(CAPLET_UPLIFT_FLOATS);
-  const auto ratio_at = [](std::size_t node) { return sqr(static_cast<double>(node) / (ratios - 1)); };
+  const auto ratio_at = [](std::size_t node) {
+    return sqr(static_cast<double>(node) / (ratios - 1));
+  };
   tbb::parallel_for(std::size_t{0}, 3 * values * ratios, [&](std::size_t row) {
     const std::size_t top = row / ratios / values, third = row % ratios;
-    const double value = std::max(darkest, 1 - sqr(1 - static_cast<double>(row / ratios % values) / (values - 1)));
+    const double value =
+        std::max(darkest, 1 - sqr(1 - static_cast<double>(row / ratios % values) / (values - 1)));
     const auto color_at = [&](double second) {
       glm::dvec3 target;
       target[static_cast<int>(top)] = value;
@@ -204,11 +216,13 @@ std::vector<float> make_sigmoid_table(ColorSpace space) {
     };
     // Colours are solved from grey outwards: each solution starts the next.
     glm::dvec3 c = constant(value);
-    for (int part = 1; part < 8; ++part) solve(coarse, glm::mix(glm::dvec3(value), color_at(1), part / 8.0), 1e-5 * value, 20, c);
+    for (int part = 1; part < 8; ++part)
+      solve(coarse, glm::mix(glm::dvec3(value), color_at(1), part / 8.0), 1e-5 * value, 20, c);
     for (std::size_t step = ratios; step-- > 0;) {
       solve(coarse, color_at(ratio_at(step)), 1e-5 * value, 20, c);
       const std::array<double, 3> found = in_nanometres(c);
-      for (std::size_t k = 0; k < 3; ++k) table[3 * (row * ratios + step) + k] = static_cast<float>(found[k] * std::sqrt(value));
+      for (std::size_t k = 0; k < 3; ++k)
+        table[3 * (row * ratios + step) + k] = static_cast<float>(found[k] * std::sqrt(value));
     }
   });
   return table;
@@ -220,8 +234,10 @@ const ChromaticityTable& chromaticity_table(ColorSpace space) {
   const auto s = static_cast<std::size_t>(space);
   // The table is made in isolation: meanwhile the thread must not take up another task, which may
   // wait for the table.
-  std::call_once(once[s],
-                 [&] { tbb::this_task_arena::isolate([&] { tables[s] = std::make_unique<const ChromaticityTable>(space); }); });
+  std::call_once(once[s], [&] {
+    tbb::this_task_arena::isolate(
+        [&] { tables[s] = std::make_unique<const ChromaticityTable>(space); });
+  });
   return *tables[s];
 }
 
@@ -232,13 +248,16 @@ const std::vector<float>& sigmoid_table(ColorSpace space) {
   static std::array<std::once_flag, 4> once;
   const auto s = static_cast<std::size_t>(space);
   // This is isolated for the same reason as chromaticity_table.
-  std::call_once(once[s], [&] { tbb::this_task_arena::isolate([&] { tables[s] = make_sigmoid_table(space); }); });
+  std::call_once(once[s], [&] {
+    tbb::this_task_arena::isolate([&] { tables[s] = make_sigmoid_table(space); });
+  });
   return tables[s];
 }
 
 SigmoidFit fit_sigmoid(const glm::dvec3& rgb, ColorSpace space) {
   const glm::dvec3 target = glm::clamp(rgb, 0.0, 1.0);
-  const double low = std::min({target.x, target.y, target.z}), high = std::max({target.x, target.y, target.z});
+  const double low = std::min({target.x, target.y, target.z}),
+               high = std::max({target.x, target.y, target.z});
   glm::dvec3 c = constant((target.x + target.y + target.z) / 3);
   SigmoidFit fit;
   if (low == high) {
@@ -254,8 +273,8 @@ SigmoidFit fit_sigmoid(const glm::dvec3& rgb, ColorSpace space) {
     glm::dvec3 stepped = constant((low + high) / 2);
     double residual = 1;
     for (int step = 1; step <= 16; ++step)
-      residual =
-          solve(fine, glm::mix(glm::dvec3((low + high) / 2), target, step / 16.0), tolerance, step == 16 ? 200 : 20, stepped);
+      residual = solve(fine, glm::mix(glm::dvec3((low + high) / 2), target, step / 16.0), tolerance,
+                       step == 16 ? 200 : 20, stepped);
     if (residual < fit.residual) {
       fit.residual = residual;
       c = stepped;
@@ -275,12 +294,15 @@ glm::dvec3 sigmoid_rgb(const std::array<double, 3>& coefficients, ColorSpace spa
 
 std::array<float, 4> environment_texel(const glm::dvec3& rgb, ColorSpace space) {
   const glm::dvec3 color = glm::max(rgb, 0.0);
-  const std::size_t top = color.x >= color.y ? (color.x >= color.z ? 0 : 2) : (color.y >= color.z ? 1 : 2);
+  const std::size_t top =
+      color.x >= color.y ? (color.x >= color.z ? 0 : 2) : (color.y >= color.z ? 1 : 2);
   const double maximum = color[static_cast<int>(top)];
   if (!(maximum > 0)) return {0, 0, 0, 0};
-  const std::array<double, 3> c = chromaticity_table(space).at(top, color[static_cast<int>((top + 1) % 3)] / maximum,
-                                                               color[static_cast<int>((top + 2) % 3)] / maximum);
-  return {static_cast<float>(c[0]), static_cast<float>(c[1]), static_cast<float>(c[2]), static_cast<float>(2 * maximum)};
+  const std::array<double, 3> c =
+      chromaticity_table(space).at(top, color[static_cast<int>((top + 1) % 3)] / maximum,
+                                   color[static_cast<int>((top + 2) % 3)] / maximum);
+  return {static_cast<float>(c[0]), static_cast<float>(c[1]), static_cast<float>(c[2]),
+          static_cast<float>(2 * maximum)};
 }
 
 }  // namespace caplet

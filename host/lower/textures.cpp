@@ -23,8 +23,8 @@ constexpr std::uint32_t texture_kinds = texture_count;
   constexpr std::uint32_t texture_kinds<Type> = texture_##name;
 #include "scene/textures.def"
 
-// Every row of textures.def has its model: `constant` is a constant operand, `extinction`, `displacement` and `alpha` come after
-// textures.
+// Every row of textures.def has its model: `constant` is a constant operand, `extinction`,
+// `displacement` and `alpha` come after textures.
 #define TEXTURE_MODEL(name, Type) +1
 static_assert(4
 #include "scene/textures.def"
@@ -36,7 +36,11 @@ static_assert(most_texture_steps + 1 <= CAPLET_TEXTURE_MAX_STEPS);
 class Steps {
  public:
   Steps(const Scene& scene, const ImageNumbers& images, SpectrumTable& spectra, FlatScene& out)
-      : scene_(scene), images_(images), spectra_(spectra), out_(out), first_(narrow<std::uint32_t>(out.textures.size())) {}
+      : scene_(scene),
+        images_(images),
+        spectra_(spectra),
+        out_(out),
+        first_(narrow<std::uint32_t>(out.textures.size())) {}
 
   /// Returns the number of the step, from the first, that is the texture's value.
   std::uint32_t add(std::uint32_t texture, TextureUse use);
@@ -73,12 +77,14 @@ class Steps {
   SpectrumTable& spectra_;
   FlatScene& out_;
   std::uint32_t first_;
-  std::map<std::uint32_t, std::uint32_t> done_;  // the steps of textures: what is used twice is evaluated once
+  std::map<std::uint32_t, std::uint32_t>
+      done_;  // the steps of textures: what is used twice is evaluated once
 };
 
 /// Writes the fields that scene/textures.def visits, once the operands are there.
 struct Steps::Writer : IgnoresFields {
-  Writer(FamilyData& to, const std::map<std::string_view, std::uint32_t>& steps, Steps& all, TextureUse what)
+  Writer(FamilyData& to, const std::map<std::string_view, std::uint32_t>& steps, Steps& all,
+         TextureUse what)
       : data(to), operands(steps), of(all), use(what) {}
   FamilyData& data;
   const std::map<std::string_view, std::uint32_t>& operands;
@@ -86,13 +92,16 @@ struct Steps::Writer : IgnoresFields {
   TextureUse use;
   const TextureImage* last = nullptr;  // the image before "wrap"
 
-  void operand(const Field& field, const TextureOperand&) { data.put_index(field.name, operands.at(field.name)); }
+  void operand(const Field& field, const TextureOperand&) {
+    data.put_index(field.name, operands.at(field.name));
+  }
   void factor(const Field& field, const TextureOperand& of_texture) { operand(field, of_texture); }
   void number(const Field& field, double value) { data.put(field.name, value); }
   template <class Names>
   void choice(const Field& field, int value, const Names&) {
     data.put_index(field.name, narrow<std::uint32_t>(value));
-    if (std::string_view(field.name) == "wrap") data.put_index("image", of.images_.at(image_use(*last, value)));
+    if (std::string_view(field.name) == "wrap")
+      data.put_index("image", of.images_.at(image_use(*last, value)));
   }
   void flag(const Field& field, bool value) { data.put_index(field.name, value ? 1 : 0); }
   void image(const Field&, const std::shared_ptr<const TextureImage>& image) {
@@ -100,25 +109,31 @@ struct Steps::Writer : IgnoresFields {
     data.put_index("use", use == TextureUse::number      ? CAPLET_USE_NUMBER
                           : use == TextureUse::unbounded ? CAPLET_USE_UNBOUNDED
                                                          : CAPLET_USE_ALBEDO);
-    data.put_index("uplift", use == TextureUse::number || image->channels == 1 ? 0 : of.spectra_.uplift_table(image->space));
+    data.put_index("uplift", use == TextureUse::number || image->channels == 1
+                                 ? 0
+                                 : of.spectra_.uplift_table(image->space));
   }
   void mapping(const TextureMapping& of_texture) {
     std::array<float, 13> out{};
     using Kind = TextureMapping::Kind;
-    static_assert(int(Kind::uv) == CAPLET_MAPPING_UV && int(Kind::spherical) == CAPLET_MAPPING_SPHERICAL &&
-                  int(Kind::cylindrical) == CAPLET_MAPPING_CYLINDRICAL && int(Kind::planar) == CAPLET_MAPPING_PLANAR &&
-                  int(Kind::solid) == CAPLET_MAPPING_SOLID);
+    static_assert(
+        int(Kind::uv) == CAPLET_MAPPING_UV && int(Kind::spherical) == CAPLET_MAPPING_SPHERICAL &&
+        int(Kind::cylindrical) == CAPLET_MAPPING_CYLINDRICAL &&
+        int(Kind::planar) == CAPLET_MAPPING_PLANAR && int(Kind::solid) == CAPLET_MAPPING_SOLID);
     out[0] = std::bit_cast<float>(static_cast<std::uint32_t>(of_texture.kind));
     glm::dmat4 m = of_texture.texture_from_world;
     if (of_texture.kind == Kind::planar) {
       const glm::dvec3 &a = of_texture.v1, &b = of_texture.v2;
-      m = glm::transpose(glm::dmat4(glm::dvec4(a, of_texture.udelta), glm::dvec4(b, of_texture.vdelta), glm::dvec4(0),
+      m = glm::transpose(glm::dmat4(glm::dvec4(a, of_texture.udelta),
+                                    glm::dvec4(b, of_texture.vdelta), glm::dvec4(0),
                                     glm::dvec4(0, 0, 0, 1))) *
           m;
     }
     if (of_texture.kind == Kind::uv) {
-      const double values[] = {of_texture.uscale, of_texture.vscale, of_texture.udelta, of_texture.vdelta};
-      std::ranges::transform(values, out.begin() + 1, [](double value) { return static_cast<float>(value); });
+      const double values[] = {of_texture.uscale, of_texture.vscale, of_texture.udelta,
+                               of_texture.vdelta};
+      std::ranges::transform(values, out.begin() + 1,
+                             [](double value) { return static_cast<float>(value); });
     } else {
       rows_of(m, &out[1]);
     }
@@ -131,7 +146,9 @@ struct Steps::Writer : IgnoresFields {
     data.put_floats("place", out);
   }
   void direction(const Field& field, const glm::dvec3& v) { data.put(field.name, v); }
-  void integer(const Field& field, int value) { data.put_index(field.name, narrow<std::uint32_t>(value)); }
+  void integer(const Field& field, int value) {
+    data.put_index(field.name, narrow<std::uint32_t>(value));
+  }
   void colors() { data.put_index("uplift", of.spectra_.uplift_table(ColorSpace::srgb)); }
   void vectors(const Field&, const std::shared_ptr<const TextureImage>& image) {
     data.put_index("image", of.images_.at(image_use(*image, std::nullopt)));
@@ -146,7 +163,8 @@ struct Steps::Writer : IgnoresFields {
 std::uint32_t Steps::operand(const TextureOperand& of, TextureUse use) {
   if (of.texture) return add(*of.texture, use);
   return add_step(texture_constant, [&](FamilyData& data) {
-    data.put_index("value", use == TextureUse::number   ? spectra_.add_number(std::get<ConstantSpectrum>(of.value).value)
+    data.put_index("value", use == TextureUse::number
+                                ? spectra_.add_number(std::get<ConstantSpectrum>(of.value).value)
                             : use == TextureUse::albedo ? spectra_.add_reflectance(of.value)
                                                         : spectra_.add_unbounded(of.value));
   });
@@ -166,11 +184,13 @@ std::uint32_t Steps::add(std::uint32_t texture, TextureUse use) {
   const std::uint32_t step = std::visit(
       [&](const auto& model) {
         std::map<std::string_view, std::uint32_t> operands;
-        model.fields(model, Operands([&](const char* name, const TextureOperand& of, bool is_factor) {
+        model.fields(model,
+                     Operands([&](const char* name, const TextureOperand& of, bool is_factor) {
                        operands[name] = operand(of, is_factor ? TextureUse::number : use);
                      }));
-        return add_step(texture_kinds<std::decay_t<decltype(model)>>,
-                        [&](FamilyData& data) { model.fields(model, Writer(data, operands, *this, use)); });
+        return add_step(texture_kinds<std::decay_t<decltype(model)>>, [&](FamilyData& data) {
+          model.fields(model, Writer(data, operands, *this, use));
+        });
       },
       scene_.textures[texture].model);
   done_[texture] = step;
@@ -183,16 +203,17 @@ void Steps::add_last(uint kind, std::uint32_t of) {
 
 }  // namespace
 
-std::uint32_t lower_alpha(const Scene& scene, const TextureOperand& alpha, const ImageNumbers& images, SpectrumTable& spectra,
-                          FlatScene& out) {
+std::uint32_t lower_alpha(const Scene& scene, const TextureOperand& alpha,
+                          const ImageNumbers& images, SpectrumTable& spectra, FlatScene& out) {
   Steps steps(scene, images, spectra, out);
   const std::uint32_t value = steps.operand(alpha, TextureUse::number);
   steps.add_last(texture_alpha, value);
   return steps.finish();
 }
 
-std::uint32_t lower_texture(const Scene& scene, std::uint32_t texture, TextureUse use, std::optional<uint> last,
-                            const ImageNumbers& images, SpectrumTable& spectra, FlatScene& out) {
+std::uint32_t lower_texture(const Scene& scene, std::uint32_t texture, TextureUse use,
+                            std::optional<uint> last, const ImageNumbers& images,
+                            SpectrumTable& spectra, FlatScene& out) {
   Steps steps(scene, images, spectra, out);
   const std::uint32_t value = steps.add(texture, use);
   if (last) steps.add_last(*last, value);

@@ -65,21 +65,26 @@ TreeEdit::TreeEdit(FlatScene& flat, LoweredGeometry& geometry)
   const std::uint32_t row_mask = (1u << (31 - flat.leaf_kind_bits)) - 1;
   for (std::uint32_t node = 0; node < node_parent_.size(); ++node)
     for (std::uint32_t i = 0; i < 8; ++i) {
-      const auto child =
-          std::bit_cast<std::uint32_t>(flat.nodes[std::size_t{node} * CAPLET_NODE_FLOATS + CAPLET_NODE_CHILDREN + i]);
+      const auto child = std::bit_cast<std::uint32_t>(
+          flat.nodes[std::size_t{node} * CAPLET_NODE_FLOATS + CAPLET_NODE_CHILDREN + i]);
       if (child == no_child) continue;
       (child >> 31 ? row_parent_[child & row_mask] : node_parent_[child]) = node * 8 + i;
     }
 }
 
-void TreeEdit::leaves_have_grown() { row_parent_.resize((flat_.leaves.size() + 7) / 8, CAPLET_NONE); }
+void TreeEdit::leaves_have_grown() {
+  row_parent_.resize((flat_.leaves.size() + 7) / 8, CAPLET_NONE);
+}
 
-const FlatPrimitive& TreeEdit::primitive(const Subtree& subtree, std::uint32_t kind, std::uint32_t id) const {
+const FlatPrimitive& TreeEdit::primitive(const Subtree& subtree, std::uint32_t kind,
+                                         std::uint32_t id) const {
   if (kind == shape_instance) return subtree.primitives[geometry_.placed[id].top];
   const bool is_top = &subtree == &geometry_.world.subtrees[0] && !geometry_.placed.empty();
   const auto end =
-      is_top ? subtree.primitives.begin() + static_cast<std::ptrdiff_t>(geometry_.placed[0].top) : subtree.primitives.end();
-  const auto found = std::ranges::lower_bound(subtree.primitives.begin(), end, id, {}, &FlatPrimitive::id);
+      is_top ? subtree.primitives.begin() + static_cast<std::ptrdiff_t>(geometry_.placed[0].top)
+             : subtree.primitives.end();
+  const auto found =
+      std::ranges::lower_bound(subtree.primitives.begin(), end, id, {}, &FlatPrimitive::id);
   CHECK_EQ_(found != end && found->id == id, true);
   return *found;
 }
@@ -108,9 +113,11 @@ void TreeEdit::set_box(std::uint32_t node, std::uint32_t i, const ReferenceBox& 
 
 ReferenceBox TreeEdit::leaf_box(const Subtree& subtree, std::uint32_t row) const {
   const std::uint32_t parent = row_parent_[row];
-  const auto reference =
-      std::bit_cast<std::uint32_t>(flat_.nodes[std::size_t{parent / 8} * CAPLET_NODE_FLOATS + CAPLET_NODE_CHILDREN + parent % 8]);
-  const std::uint32_t kind = reference >> (31 - flat_.leaf_kind_bits) & ((1u << flat_.leaf_kind_bits) - 1);
+  const auto reference = std::bit_cast<std::uint32_t>(
+      flat_
+          .nodes[std::size_t{parent / 8} * CAPLET_NODE_FLOATS + CAPLET_NODE_CHILDREN + parent % 8]);
+  const std::uint32_t kind =
+      reference >> (31 - flat_.leaf_kind_bits) & ((1u << flat_.leaf_kind_bits) - 1);
   ReferenceBox box = nothing;
   for (std::uint32_t lane = 0; lane < 8; ++lane) {
     const auto id = std::bit_cast<std::uint32_t>(flat_.leaves[std::size_t{row} * 8 + lane]);

@@ -24,7 +24,9 @@ double distance_to_segment(const glm::dvec2& p, const glm::dvec2& a, const glm::
 void Mask::line(const glm::dvec2& from, const glm::dvec2& to, double width) {
   // Lines thinner than a pixel are drawn fainter, not thinner.
   const double strength = std::min(width, 1.0), half = 0.5 * std::max(width, 1.0), reach = half + 1;
-  const auto bound = [](double v, int end) { return static_cast<int>(std::clamp(v, 0.0, static_cast<double>(end))); };
+  const auto bound = [](double v, int end) {
+    return static_cast<int>(std::clamp(v, 0.0, static_cast<double>(end)));
+  };
   const glm::dvec2 low = glm::min(from, to) - reach, high = glm::max(from, to) + reach;
   for (int y = bound(std::floor(low.y), height_); y < bound(std::ceil(high.y), height_); ++y)
     for (int x = bound(std::floor(low.x), width_); x < bound(std::ceil(high.x), width_); ++x) {
@@ -38,10 +40,13 @@ void Mask::box(const glm::dvec2& low, const glm::dvec2& high) {
   const auto overlap = [](double a0, double a1, int pixel) {
     return std::max(0.0, std::min(a1, pixel + 1.0) - std::max(a0, static_cast<double>(pixel)));
   };
-  const auto bound = [](double v, int end) { return static_cast<int>(std::clamp(v, 0.0, static_cast<double>(end))); };
+  const auto bound = [](double v, int end) {
+    return static_cast<int>(std::clamp(v, 0.0, static_cast<double>(end)));
+  };
   for (int y = bound(std::floor(low.y), height_); y < bound(std::ceil(high.y), height_); ++y)
     for (int x = bound(std::floor(low.x), width_); x < bound(std::ceil(high.x), width_); ++x)
-      at(x, y) = std::max(at(x, y), static_cast<float>(overlap(low.x, high.x, x) * overlap(low.y, high.y, y)));
+      at(x, y) = std::max(
+          at(x, y), static_cast<float>(overlap(low.x, high.x, x) * overlap(low.y, high.y, y)));
 }
 
 void paint(Shown& picture, const Mask& mask, const std::array<float, 3>& srgb) {
@@ -49,9 +54,11 @@ void paint(Shown& picture, const Mask& mask, const std::array<float, 3>& srgb) {
   for (std::size_t i = 0; i < shares.size(); ++i) {
     const float share = shares[i];
     if (!(share > 0)) continue;
-    const float under = picture.has_alpha() ? picture.alpha[i] : 1.0f, over = share + (1 - share) * under;
+    const float under = picture.has_alpha() ? picture.alpha[i] : 1.0f,
+                over = share + (1 - share) * under;
     for (std::size_t c = 0; c < 3; ++c) {
-      const float mixed = (share * srgb[c] + (1 - share) * under * srgb_from_linear(picture.rgb[i][c])) / over;
+      const float mixed =
+          (share * srgb[c] + (1 - share) * under * srgb_from_linear(picture.rgb[i][c])) / over;
       picture.rgb[i][c] = linear_from_srgb(mixed);
     }
     if (picture.has_alpha()) picture.alpha[i] = over;

@@ -14,12 +14,15 @@
 
 namespace caplet::post {
 
-double text_size(const Shown& picture) { return std::max(8.0, 0.024 * std::min(picture.width, picture.height)); }
+double text_size(const Shown& picture) {
+  return std::max(8.0, 0.024 * std::min(picture.width, picture.height));
+}
 
 double margin(const Shown& picture) { return std::round(1.4 * text_size(picture)); }
 
 std::array<float, 3> ink_for(const Shown& picture, const LayeredImage& layers) {
-  if (picture.has_alpha()) return {0, 0, 0};  // a transparent picture is assumed to lie on white paper
+  if (picture.has_alpha())
+    return {0, 0, 0};  // a transparent picture is assumed to lie on white paper
   const std::vector<float>& coverage = layers.find("A")->floats;
   double sum = 0, count = 0;
   for (std::size_t i = 0; i < coverage.size(); ++i) {
@@ -34,13 +37,15 @@ std::array<float, 3> ink_for(const Shown& picture, const LayeredImage& layers) {
 }
 
 void draw_scale_bar(Shown& picture, const BarOnPicture& bar, const std::array<float, 3>& ink) {
-  const double size = text_size(picture), edge = margin(picture), thick = std::max(2.0, std::round(0.22 * size));
+  const double size = text_size(picture), edge = margin(picture),
+               thick = std::max(2.0, std::round(0.22 * size));
   // A bar that is nearly as wide as the picture gets a smaller margin, so that it is complete.
   const double right = std::max(picture.width - edge, bar.pixels), bottom = picture.height - edge;
   Mask mask(picture.width, picture.height);
   mask.box({right - bar.pixels, bottom - thick}, {right, bottom});
   const double wide = text_width(bar.label, size);
-  const double left = std::min(right - 0.5 * (bar.pixels + wide), picture.width - 0.5 * edge - wide);
+  const double left =
+      std::min(right - 0.5 * (bar.pixels + wide), picture.width - 0.5 * edge - wide);
   text(mask, {left, bottom - thick - 0.6 * size}, bar.label, size);
   paint(picture, mask, ink);
 }
@@ -72,34 +77,45 @@ void draw_axes(Shown& picture, const Scene& scene, const std::array<float, 3>& i
     mask.line(origin, end, 0.18 * size);
     if (seen > 0.5 * size) {
       const glm::dvec2 way = arrow.tip / seen, side(-way.y, way.x);
-      for (const double s : {-1.0, 1.0}) mask.line(end, end - 0.55 * size * way + s * 0.32 * size * side, 0.18 * size);
+      for (const double s : {-1.0, 1.0})
+        mask.line(end, end - 0.55 * size * way + s * 0.32 * size * side, 0.18 * size);
     }
     paint(picture, mask, colors.at(static_cast<std::size_t>(arrow.axis)));
     Mask letter(picture.width, picture.height);
     const std::string name(1, static_cast<char>('x' + arrow.axis));
     const glm::dvec2 away = seen > 0 ? arrow.tip / seen : glm::dvec2(0);
-    const glm::dvec2 middle = end + (seen > 0.5 * size ? 0.85 * size : 0.6 * size) * (seen > 0 ? away : glm::dvec2(0.7, -0.7));
-    text(letter, {middle.x - 0.5 * text_width(name, 0.85 * size), middle.y + 0.28 * size}, name, 0.85 * size);
+    const glm::dvec2 middle = end + (seen > 0.5 * size ? 0.85 * size : 0.6 * size) *
+                                        (seen > 0 ? away : glm::dvec2(0.7, -0.7));
+    text(letter, {middle.x - 0.5 * text_width(name, 0.85 * size), middle.y + 0.28 * size}, name,
+         0.85 * size);
     paint(picture, letter, ink);
   }
 }
 
 void draw_color_bar(Shown& picture, const Legend& legend, const std::array<float, 3>& ink) {
   const double size = text_size(picture), edge = margin(picture);
-  const std::string low = fmt::format("{:.4g}", legend.low), high = fmt::format("{:.4g}", legend.high);
-  const std::string title = legend.unit.empty() ? legend.title : legend.title + " (" + legend.unit + ")";
-  const double wide = std::round(0.9 * size), tall = std::round(std::min(12 * size, 0.4 * picture.height));
+  const std::string low = fmt::format("{:.4g}", legend.low),
+                    high = fmt::format("{:.4g}", legend.high);
+  const std::string title =
+      legend.unit.empty() ? legend.title : legend.title + " (" + legend.unit + ")";
+  const double wide = std::round(0.9 * size),
+               tall = std::round(std::min(12 * size, 0.4 * picture.height));
   const double number = std::max(text_width(low, size), text_width(high, size));
   const double right = picture.width - edge - number - 0.6 * size, top = edge + 2 * size;
   for (int y = 0; y < static_cast<int>(tall); ++y) {
     const double part = 1 - (y + 0.5) / tall;
     const auto steps = static_cast<double>(legend.colors.size());
-    const glm::dvec3 color = legend.colors.at(static_cast<std::size_t>(std::min(part * steps, steps - 1)));
+    const glm::dvec3 color =
+        legend.colors.at(static_cast<std::size_t>(std::min(part * steps, steps - 1)));
     for (int x = 0; x < static_cast<int>(wide); ++x) {
-      const auto column = static_cast<std::size_t>(std::max(0.0, right - wide + x)), row = static_cast<std::size_t>(top + y);
-      if (row >= static_cast<std::size_t>(picture.height) || column >= static_cast<std::size_t>(picture.width)) continue;
+      const auto column = static_cast<std::size_t>(std::max(0.0, right - wide + x)),
+                 row = static_cast<std::size_t>(top + y);
+      if (row >= static_cast<std::size_t>(picture.height) ||
+          column >= static_cast<std::size_t>(picture.width))
+        continue;
       const std::size_t pixel = row * static_cast<std::size_t>(picture.width) + column;
-      for (int c = 0; c < 3; ++c) picture.rgb[pixel][static_cast<std::size_t>(c)] = static_cast<float>(color[c]);
+      for (int c = 0; c < 3; ++c)
+        picture.rgb[pixel][static_cast<std::size_t>(c)] = static_cast<float>(color[c]);
       if (picture.has_alpha()) picture.alpha[pixel] = 1;
     }
   }

@@ -19,18 +19,20 @@ Layers Overlays::layers() const {
 void check(const Overlays& overlays, const Sight& sight, const std::string& flags) {
   if (overlays.scale_bar) bar_of(*overlays.scale_bar, sight, flags + "scale-bar");
   if (overlays.color_bar && !sight.scene.legend)
-    throw InputError(
-        SourceLocation{flags + "color-bar"},
-        fmt::format("the scene's colours tell no number (those of molecules do with {0}color bfactor, of neurons with "
-                    "{0}color order or a file)",
-                    flags));
+    throw InputError(SourceLocation{flags + "color-bar"},
+                     fmt::format("the scene's colours tell no number (those of molecules do with "
+                                 "{0}color bfactor, of neurons with "
+                                 "{0}color order or a file)",
+                                 flags));
 }
 
-void draw(Shown& picture, const LayeredImage& layers, const Sight& sight, const Overlays& overlays) {
+void draw(Shown& picture, const LayeredImage& layers, const Sight& sight,
+          const Overlays& overlays) {
   const std::array<float, 3> ink = ink_for(picture, layers);
   if (overlays.depth_cue) draw_depth_cue(picture, layers, *overlays.depth_cue);
   if (overlays.outline) draw_outline(picture, layers, *overlays.outline);
-  if (overlays.scale_bar) draw_scale_bar(picture, bar_of(*overlays.scale_bar, sight, "scale-bar"), ink);
+  if (overlays.scale_bar)
+    draw_scale_bar(picture, bar_of(*overlays.scale_bar, sight, "scale-bar"), ink);
   if (overlays.axes) draw_axes(picture, sight.scene, ink);
   if (overlays.color_bar && sight.scene.legend) draw_color_bar(picture, *sight.scene.legend, ink);
 }

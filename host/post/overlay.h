@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Overlays on rendered pictures: scale bar, axes, colour bar, outlines, depth cue. The film's layers do not change.
+// Overlays on rendered pictures: scale bar, axes, colour bar, outlines, depth cue. The film's
+// layers do not change.
 #pragma once
 
 #include <optional>
@@ -26,11 +27,12 @@ struct Overlays {
   Layers layers() const;
 };
 
-/// Throws InputError that names the option of an overlay which the scene does not allow. `flags`: the prefix of names, "--" in
-/// the program.
+/// Throws InputError that names the option of an overlay which the scene does not allow. `flags`:
+/// the prefix of names, "--" in the program.
 void check(const Overlays& overlays, const Sight& sight, const std::string& flags);
 
-/// Draws overlays that were checked. `layers`: a picture of the same window with the channels of Overlays::layers().
+/// Draws overlays that were checked. `layers`: a picture of the same window with the channels of
+/// Overlays::layers().
 void draw(Shown& picture, const LayeredImage& layers, const Sight& sight, const Overlays& overlays);
 
 }  // namespace caplet::post

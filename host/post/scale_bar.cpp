@@ -68,41 +68,52 @@ ScaleBar parse_scale_bar(const std::string& text, const std::string& flag) {
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), out.length);
   const std::string_view rest(end, static_cast<std::size_t>(text.data() + text.size() - end));
   if (error != std::errc() || !(out.length > 0) || !std::isfinite(out.length))
-    throw InputError(SourceLocation{flag}, fmt::format("'{}' is no length above 0, like \"50 um\"", text));
+    throw InputError(SourceLocation{flag},
+                     fmt::format("'{}' is no length above 0, like \"50 um\"", text));
   const std::size_t begin = rest.find_first_not_of(' ');
-  if (begin != std::string_view::npos) out.unit = rest.substr(begin, rest.find_last_not_of(' ') + 1 - begin);
+  if (begin != std::string_view::npos)
+    out.unit = rest.substr(begin, rest.find_last_not_of(' ') + 1 - begin);
   return out;
 }
 
 BarOnPicture bar_of(const ScaleBar& asked, const Sight& sight, const std::string& flag) {
   const auto& [scene, bounds] = sight;
-  if (bounds.empty()) throw InputError(SourceLocation{flag}, "the scene has no shapes that a bar could measure");
-  if (is_spherical(scene.camera)) throw InputError(SourceLocation{flag}, "a spherical camera's picture has no scale");
+  if (bounds.empty())
+    throw InputError(SourceLocation{flag}, "the scene has no shapes that a bar could measure");
+  if (is_spherical(scene.camera))
+    throw InputError(SourceLocation{flag}, "a spherical camera's picture has no scale");
   const glm::dvec3 middle = 0.5 * (bounds.min + bounds.max);
   const double footprint = pixel_footprint(scene.camera, scene.film, middle);
-  if (!(footprint > 0)) throw InputError(SourceLocation{flag}, "what is seen lies behind the camera");
+  if (!(footprint > 0))
+    throw InputError(SourceLocation{flag}, "what is seen lies behind the camera");
   const auto own = unit_named(scene.unit);
   double per_unit = 1;  // scene units per unit of the label
   std::string label = scene.unit;
   if (!asked.unit.empty()) {
     const auto wanted = unit_named(asked.unit);
     if (own && !wanted)
-      throw InputError(SourceLocation{flag}, fmt::format("'{}' is no unit of length (pm, A, nm, um, mm, cm, m, km)", asked.unit));
+      throw InputError(
+          SourceLocation{flag},
+          fmt::format("'{}' is no unit of length (pm, A, nm, um, mm, cm, m, km)", asked.unit));
     label = wanted ? wanted->label : asked.unit;
     if (own) per_unit = wanted->metres / own->metres;
   }
   BarOnPicture out;
-  const double length = asked.length > 0 ? asked.length : round_length(kMostOfWidth * scene.film.width * footprint / per_unit);
+  const double length = asked.length > 0
+                            ? asked.length
+                            : round_length(kMostOfWidth * scene.film.width * footprint / per_unit);
   out.pixels = length * per_unit / footprint;
   out.label = label.empty() ? fmt::format("{:g}", length) : fmt::format("{:g} {}", length, label);
   if (!is_orthographic(scene.camera)) {
     const glm::dmat4& m = scene.camera.world_from_camera;
     out.distance = glm::dot(middle - glm::dvec3(m[3]), glm::normalize(glm::dvec3(m[2])));
   }
-  const auto crop = scene.film.crop.value_or(std::array<int, 4>{0, scene.film.width, 0, scene.film.height});
+  const auto crop =
+      scene.film.crop.value_or(std::array<int, 4>{0, scene.film.width, 0, scene.film.height});
   if (out.pixels > crop[1] - crop[0])
     throw InputError(SourceLocation{flag},
-                     fmt::format("{} are {:.0f} pixels, more than the picture's {}", out.label, out.pixels, crop[1] - crop[0]));
+                     fmt::format("{} are {:.0f} pixels, more than the picture's {}", out.label,
+                                 out.pixels, crop[1] - crop[0]));
   return out;
 }
 

@@ -13,7 +13,8 @@ namespace caplet {
 
 namespace {
 
-/// Returns the smallest singular value of a matrix, by power iteration on the inverse of its Gram matrix.
+/// Returns the smallest singular value of a matrix, by power iteration on the inverse of its Gram
+/// matrix.
 double least_stretch(const glm::dmat4& m) {
   const glm::dmat3 linear(m), inverse = glm::inverse(glm::transpose(linear) * linear);
   glm::dvec3 v(0.6, 0.64, 0.48);
@@ -26,7 +27,8 @@ struct Place {
   double stretch;
 };
 
-std::size_t widen(Shape& shape, const std::vector<glm::dmat4>& worlds, const Scene& scene, double pixels) {
+std::size_t widen(Shape& shape, const std::vector<glm::dmat4>& worlds, const Scene& scene,
+                  double pixels) {
   auto* capsules = std::get_if<CapsulesShape>(&shape.geometry);
   auto* sphere = std::get_if<SphereShape>(&shape.geometry);
   if ((!capsules && !sphere) || worlds.empty()) return 0;
@@ -38,10 +40,11 @@ std::size_t widen(Shape& shape, const std::vector<glm::dmat4>& worlds, const Sce
   const auto least = [&](const glm::dvec3& p) {
     double radius = 0;
     for (const Place& place : places)
-      radius =
-          std::max(radius, 0.5 * pixels *
-                               pixel_footprint(scene.camera, scene.film, glm::dvec3(place.world_from_shape * glm::dvec4(p, 1))) /
-                               place.stretch);
+      radius = std::max(radius,
+                        0.5 * pixels *
+                            pixel_footprint(scene.camera, scene.film,
+                                            glm::dvec3(place.world_from_shape * glm::dvec4(p, 1))) /
+                            place.stretch);
     return radius;
   };
   std::size_t grown = 0;
@@ -77,7 +80,8 @@ std::size_t widen_to_least(Scene& scene) {
   std::size_t grown = 0;
   for (Shape& shape : scene.shapes) grown += widen(shape, {glm::dmat4(1)}, scene, pixels);
   std::vector<std::vector<glm::dmat4>> placed(scene.objects.size());
-  for (const Instance& instance : scene.instances) placed.at(instance.object).push_back(instance.world_from_object);
+  for (const Instance& instance : scene.instances)
+    placed.at(instance.object).push_back(instance.world_from_object);
   for (std::size_t i = 0; i < placed.size(); ++i)
     for (Shape& shape : scene.objects[i].shapes) grown += widen(shape, placed[i], scene, pixels);
   return grown;

@@ -42,7 +42,9 @@ std::optional<glm::dvec3> three_numbers(std::string_view text) {
 }
 
 /// Normalises as scene files do.
-glm::dvec3 normalized(const glm::dvec3& v) { return is_unit(glm::length(v)) ? v : v / glm::length(v); }
+glm::dvec3 normalized(const glm::dvec3& v) {
+  return is_unit(glm::length(v)) ? v : v / glm::length(v);
+}
 
 glm::dvec3 linear(const glm::dvec3& srgb) {
   return {decoded_value({}, srgb.x), decoded_value({}, srgb.y), decoded_value({}, srgb.z)};
@@ -63,14 +65,15 @@ std::optional<glm::dvec3> hex_color(std::string_view text) {
 }
 
 const std::map<std::string, glm::dvec3>& named_colors() {
-  static const std::map<std::string, glm::dvec3> colors = {{"white", glm::dvec3(1)},
-                                                           {"black", glm::dvec3(0)},
-                                                           {"grey", linear(glm::dvec3(128 / 255.0))},
-                                                           {"gray", linear(glm::dvec3(128 / 255.0))},
-                                                           {"lightgrey", linear(glm::dvec3(211 / 255.0))},
-                                                           {"lightgray", linear(glm::dvec3(211 / 255.0))},
-                                                           {"darkgrey", linear(glm::dvec3(48 / 255.0))},
-                                                           {"darkgray", linear(glm::dvec3(48 / 255.0))}};
+  static const std::map<std::string, glm::dvec3> colors = {
+      {"white", glm::dvec3(1)},
+      {"black", glm::dvec3(0)},
+      {"grey", linear(glm::dvec3(128 / 255.0))},
+      {"gray", linear(glm::dvec3(128 / 255.0))},
+      {"lightgrey", linear(glm::dvec3(211 / 255.0))},
+      {"lightgray", linear(glm::dvec3(211 / 255.0))},
+      {"darkgrey", linear(glm::dvec3(48 / 255.0))},
+      {"darkgray", linear(glm::dvec3(48 / 255.0))}};
   return colors;
 }
 
@@ -79,7 +82,8 @@ const std::map<std::string, glm::dvec3>& named_colors() {
 glm::dvec3 parse_axis(const std::string& text, const std::string& flag) {
   const bool is_negative = text.starts_with('-');
   const std::string axis = text.substr(is_negative || text.starts_with('+') ? 1 : 0);
-  if (axis.size() != 1 || axis[0] < 'x' || axis[0] > 'z') refuse(flag, text, "is none of: x, y, z, -x, -y, -z");
+  if (axis.size() != 1 || axis[0] < 'x' || axis[0] > 'z')
+    refuse(flag, text, "is none of: x, y, z, -x, -y, -z");
   glm::dvec3 out(0);
   out[axis[0] - 'x'] = is_negative ? -1 : 1;
   return out;
@@ -101,22 +105,26 @@ glm::dmat3 turned_up(const glm::dvec3& up) {
 }
 
 glm::dvec3 parse_view(const std::string& text, const glm::dvec3& up, const std::string& flag) {
-  static const std::map<std::string, glm::dvec3> views = {{"front", {0, 0, 1}}, {"back", {0, 0, -1}}, {"right", {1, 0, 0}},
-                                                          {"left", {-1, 0, 0}}, {"top", {0, 1, 0}},   {"bottom", {0, -1, 0}},
-                                                          {"iso", {1, 1, 1}}};
-  if (const auto found = views.find(text); found != views.end()) return normalized(glm::transpose(turned_up(up)) * found->second);
+  static const std::map<std::string, glm::dvec3> views = {
+      {"front", {0, 0, 1}}, {"back", {0, 0, -1}},   {"right", {1, 0, 0}}, {"left", {-1, 0, 0}},
+      {"top", {0, 1, 0}},   {"bottom", {0, -1, 0}}, {"iso", {1, 1, 1}}};
+  if (const auto found = views.find(text); found != views.end())
+    return normalized(glm::transpose(turned_up(up)) * found->second);
   if (const auto direction = three_numbers(text)) {
-    if (!(glm::length(*direction) > 0) || !std::isfinite(glm::length(*direction))) refuse(flag, text, "has no direction");
+    if (!(glm::length(*direction) > 0) || !std::isfinite(glm::length(*direction)))
+      refuse(flag, text, "has no direction");
     return normalized(*direction);
   }
   std::vector<std::string> names;
   for (const auto& [name, direction] : views) names.push_back(name);
   refuse(flag, text,
-         "is no view (front, back, left, right, top, bottom, iso, or x,y,z toward the viewer); the nearest is '" +
+         "is no view (front, back, left, right, top, bottom, iso, or x,y,z toward the viewer); the "
+         "nearest is '" +
              nearest_name(text, names) + "'");
 }
 
-Backdrop parse_backdrop(const std::string& text, const ImageReader& images, const std::string& flag) {
+Backdrop parse_backdrop(const std::string& text, const ImageReader& images,
+                        const std::string& flag) {
   Backdrop out;
   if (text == "transparent") return out;
   out.kind = Backdrop::Kind::color;
@@ -130,7 +138,8 @@ Backdrop parse_backdrop(const std::string& text, const ImageReader& images, cons
   }
   if (const auto color = three_numbers(text)) {
     for (int i = 0; i < 3; ++i)
-      if (!((*color)[i] >= 0 && (*color)[i] <= 1)) refuse(flag, text, "must have numbers from 0 to 1");
+      if (!((*color)[i] >= 0 && (*color)[i] <= 1))
+        refuse(flag, text, "must have numbers from 0 to 1");
     out.color = linear(*color);
     return out;
   }
@@ -139,7 +148,8 @@ Backdrop parse_backdrop(const std::string& text, const ImageReader& images, cons
     std::vector<std::string> names{"transparent"};
     for (const auto& [name, color] : named_colors()) names.push_back(name);
     refuse(flag, text,
-           "is no file, and no colour (a name, #rrggbb or r,g,b); the nearest name is '" + nearest_name(text, names) + "'");
+           "is no file, and no colour (a name, #rrggbb or r,g,b); the nearest name is '" +
+               nearest_name(text, names) + "'");
   }
   out.kind = Backdrop::Kind::image;
   try {
@@ -165,7 +175,8 @@ void set_light(Scene& scene, const std::string& name, const std::string& flag) {
 
 void turn_lights_to_camera(Scene& scene) {
   for (Light& light : scene.lights)
-    if (is_preset(light)) std::get<InfiniteLight>(light.model).world_from_light = around(scene.camera);
+    if (is_preset(light))
+      std::get<InfiniteLight>(light.model).world_from_light = around(scene.camera);
 }
 
 }  // namespace caplet

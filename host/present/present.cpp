@@ -26,7 +26,8 @@ namespace caplet {
 namespace {
 
 constexpr double kFieldOfView = glm::radians(35.0);  // of the shorter side
-/// A scene is flat if its least extent is below this part of its middle one (standard deviations along the principal axes).
+/// A scene is flat if its least extent is below this part of its middle one (standard deviations
+/// along the principal axes).
 constexpr double kFlat = 0.35;
 
 // --- What is to be framed ---
@@ -36,35 +37,45 @@ struct Ball {
   double radius;
 };
 
-/// Returns spheres whose hull contains every shape: a capsule's ends, a sphere itself, the corners of the bounds of anything
-/// else. Without shapes it is the unit ball, as in bounds_or_unit_of.
+/// Returns spheres whose hull contains every shape: a capsule's ends, a sphere itself, the corners
+/// of the bounds of anything else. Without shapes it is the unit ball, as in bounds_or_unit_of.
 std::vector<Ball> balls_of(const Scene& scene) {
   std::vector<Ball> balls;
   const auto add_corners = [&balls](const Bounds& bounds) {
     if (bounds.empty()) return;
     for (int corner = 0; corner < 8; ++corner)
-      balls.push_back({{corner & 1 ? bounds.max.x : bounds.min.x, corner & 2 ? bounds.max.y : bounds.min.y,
-                        corner & 4 ? bounds.max.z : bounds.min.z},
-                       0});
+      balls.push_back(
+          {{corner & 1 ? bounds.max.x : bounds.min.x, corner & 2 ? bounds.max.y : bounds.min.y,
+            corner & 4 ? bounds.max.z : bounds.min.z},
+           0});
   };
-  const bool is_empty = std::ranges::all_of(scene.shapes, &Shape::is_backdrop) && scene.instances.empty();
+  const bool is_empty =
+      std::ranges::all_of(scene.shapes, &Shape::is_backdrop) && scene.instances.empty();
   for (const Shape& shape : scene.shapes) {
     if (shape.is_backdrop && !is_empty) continue;
     const glm::dmat3 linear(shape.world_from_object);
-    const auto place = [&shape](const glm::dvec3& p) { return glm::dvec3(shape.world_from_object * glm::dvec4(p, 1)); };
-    // The Frobenius norm bounds the largest stretch; divided by sqrt(3) it is that of a uniform scale.
+    const auto place = [&shape](const glm::dvec3& p) {
+      return glm::dvec3(shape.world_from_object * glm::dvec4(p, 1));
+    };
+    // The Frobenius norm bounds the largest stretch; divided by sqrt(3) it is that of a uniform
+    // scale.
     const double stretch =
-        std::sqrt(glm::dot(linear[0], linear[0]) + glm::dot(linear[1], linear[1]) + glm::dot(linear[2], linear[2]));
-    const bool uniform = std::abs(glm::dot(linear[0], linear[1])) + std::abs(glm::dot(linear[1], linear[2])) +
+        std::sqrt(glm::dot(linear[0], linear[0]) + glm::dot(linear[1], linear[1]) +
+                  glm::dot(linear[2], linear[2]));
+    const bool uniform = std::abs(glm::dot(linear[0], linear[1])) +
+                             std::abs(glm::dot(linear[1], linear[2])) +
                              std::abs(glm::dot(linear[2], linear[0])) <=
                          1e-12 * stretch * stretch;
-    const double scale = uniform ? std::max({glm::length(linear[0]), glm::length(linear[1]), glm::length(linear[2])}) : stretch;
+    const double scale =
+        uniform ? std::max({glm::length(linear[0]), glm::length(linear[1]), glm::length(linear[2])})
+                : stretch;
     if (const auto* sphere = std::get_if<SphereShape>(&shape.geometry)) {
       balls.push_back({place({0, 0, 0}), scale * sphere->radius});
     } else if (const auto* capsules = std::get_if<CapsulesShape>(&shape.geometry)) {
       balls.reserve(balls.size() + 2 * capsules->p0.size());
       for (std::size_t i = 0; i < capsules->p0.size(); ++i) {
-        const float radius1 = capsules->radius1.empty() ? capsules->radius0[i] : capsules->radius1[i];
+        const float radius1 =
+            capsules->radius1.empty() ? capsules->radius0[i] : capsules->radius1[i];
         balls.push_back({place(capsules->p0[i]), scale * capsules->radius0[i]});
         balls.push_back({place(capsules->p1[i]), scale * radius1});
       }
@@ -126,8 +137,8 @@ View view_from(const glm::dvec3& toward_viewer) {
   return view;
 }
 
-/// Returns a requested view, with y up however steep it is. From above, the front is at the bottom of the image; from below, at
-/// the top.
+/// Returns a requested view, with y up however steep it is. From above, the front is at the bottom
+/// of the image; from below, at the top.
 View view_asked(const glm::dvec3& toward_viewer) {
   View view;
   view.forward = -glm::normalize(toward_viewer);
@@ -146,7 +157,8 @@ View turned(const View& view, double azimuth, double elevation) {
 
 bool is_flat(const Axes& axes) { return axes.extent[2] < kFlat * axes.extent[1]; }
 
-/// For scenes without an up axis: makes a quarter turn where the longer side then fits the image's longer side clearly better.
+/// For scenes without an up axis: makes a quarter turn where the longer side then fits the image's
+/// longer side clearly better.
 View along_image(const View& view, const std::vector<Ball>& balls, double aspect) {
   glm::dvec2 low(1e300), high(-1e300);
   for (const Ball& ball : balls) {
@@ -155,7 +167,8 @@ View along_image(const View& view, const std::vector<Ball>& balls, double aspect
     high = glm::max(high, p + ball.radius);
   }
   const glm::dvec2 size = high - low;
-  const double upright = std::max(size.x / aspect, size.y), turned = std::max(size.y / aspect, size.x);
+  const double upright = std::max(size.x / aspect, size.y),
+               turned = std::max(size.y / aspect, size.x);
   return turned < 0.8 * upright ? View{view.up, -view.right, view.forward} : view;
 }
 
@@ -167,11 +180,13 @@ View choose_view(const std::vector<Ball>& balls) {
     const double main = size.z >= size.x && size.z >= size.y ? n.z : (size.y >= size.x ? n.y : n.x);
     return main < 0 ? -n : n;
   };
-  if (is_flat(axes)) return turned(view_from(facing(axes.axis[2])), glm::radians(10.0), glm::radians(6.0));
+  if (is_flat(axes))
+    return turned(view_from(facing(axes.axis[2])), glm::radians(10.0), glm::radians(6.0));
   // A volume is seen three-quarter, across its widest horizontal direction.
   glm::dvec3 wide(axes.axis[0].x, 0, axes.axis[0].z);
   if (glm::length(wide) < 0.5) wide = {axes.axis[1].x, 0, axes.axis[1].z};
-  glm::dvec3 across = glm::length(wide) > 0 ? glm::cross(glm::normalize(wide), glm::dvec3(0, 1, 0)) : glm::dvec3(0, 0, 1);
+  glm::dvec3 across = glm::length(wide) > 0 ? glm::cross(glm::normalize(wide), glm::dvec3(0, 1, 0))
+                                            : glm::dvec3(0, 0, 1);
   return turned(view_from(facing(across)), glm::radians(30.0), glm::radians(18.0));
 }
 
@@ -193,22 +208,26 @@ View framed_view(const Scene& scene, const std::vector<Ball>& balls) {
     }
     view = {back * view.right, back * view.up, back * view.forward};
   }
-  return scene.has_no_up && !framing.up && !framing.toward_viewer ? along_image(view, balls, aspect) : view;
+  return scene.has_no_up && !framing.up && !framing.toward_viewer ? along_image(view, balls, aspect)
+                                                                  : view;
 }
 
-void set_camera(Scene& scene, const View& view, const glm::dvec3& eye, const Projection& projection) {
+void set_camera(Scene& scene, const View& view, const glm::dvec3& eye,
+                const Projection& projection) {
   scene.camera = Camera{};
-  scene.camera.world_from_camera =
-      glm::dmat4(glm::dvec4(view.right, 0), glm::dvec4(view.up, 0), glm::dvec4(view.forward, 0), glm::dvec4(eye, 1));
+  scene.camera.world_from_camera = glm::dmat4(glm::dvec4(view.right, 0), glm::dvec4(view.up, 0),
+                                              glm::dvec4(view.forward, 0), glm::dvec4(eye, 1));
   scene.camera.projection = projection;
   scene.automatic_camera = true;
 }
 
-/// The camera stands one extent before the nearest point, for the depth layer; the picture does not depend on it.
+/// The camera stands one extent before the nearest point, for the depth layer; the picture does not
+/// depend on it.
 void frame_orthographic(Scene& scene, const View& view, const std::vector<Ball>& balls) {
   glm::dvec3 low(1e300), high(-1e300);
   for (const Ball& ball : balls) {
-    const glm::dvec3 p(glm::dot(view.right, ball.center), glm::dot(view.up, ball.center), glm::dot(view.forward, ball.center));
+    const glm::dvec3 p(glm::dot(view.right, ball.center), glm::dot(view.up, ball.center),
+                       glm::dot(view.forward, ball.center));
     low = glm::min(low, p - ball.radius);
     high = glm::max(high, p + ball.radius);
   }
@@ -217,7 +236,9 @@ void frame_orthographic(Scene& scene, const View& view, const std::vector<Ball>&
   double per_pixel = std::max(2 * half.x / width, 2 * half.y / height);
   if (!(per_pixel > 0)) per_pixel = 1 / width;  // a single point
   const double away = 2 * std::max({half.x, half.y, half.z});
-  set_camera(scene, view, middle.x * view.right + middle.y * view.up + (low.z - away) * view.forward, OrthographicProjection{});
+  set_camera(scene, view,
+             middle.x * view.right + middle.y * view.up + (low.z - away) * view.forward,
+             OrthographicProjection{});
   const double x = 0.5 * per_pixel * width, y = 0.5 * per_pixel * height;
   scene.camera.screen_window = {-x, x, -y, y};
 }
@@ -228,10 +249,12 @@ void frame_camera(Scene& scene) {
   const std::vector<Ball> balls = balls_of(scene);
   const View view = framed_view(scene, balls);
   if (scene.framing.is_orthographic) return frame_orthographic(scene, view, balls);
-  const double width = scene.film.width, height = scene.film.height, shorter = std::min(width, height);
+  const double width = scene.film.width, height = scene.film.height,
+               shorter = std::min(width, height);
 
-  // A ball is inside a side of the view pyramid when its centre is one radius behind the plane. With the plane's angle a to the
-  // axis, the apex (x, z) must satisfy cos(a) x - sin(a) z >= R and -cos(a) x - sin(a) z >= L, R and L being the largest of
+  // A ball is inside a side of the view pyramid when its centre is one radius behind the plane.
+  // With the plane's angle a to the axis, the apex (x, z) must satisfy cos(a) x - sin(a) z >= R and
+  // -cos(a) x - sin(a) z >= L, R and L being the largest of
   // +-cos(a) cx - sin(a) cz + r; both are equal when x is centred, which gives the nearest apex.
   const double half = std::tan(kFieldOfView / 2) * (1 - frame_margin);
   struct Side {
@@ -248,7 +271,8 @@ void frame_camera(Scene& scene) {
     }
     return side;
   };
-  const Side horizontal = fit(view.right, half * width / shorter), vertical = fit(view.up, half * height / shorter);
+  const Side horizontal = fit(view.right, half * width / shorter),
+             vertical = fit(view.up, half * height / shorter);
   const auto nearest = [](const Side& side) { return -(side.right + side.left) / (2 * side.sine); };
   const double z = std::min(nearest(horizontal), nearest(vertical));
   const double x = (horizontal.right - horizontal.left) / (2 * horizontal.cosine);
@@ -271,7 +295,9 @@ bool can_be_framed(const Scene& scene) {
 bool is_lit(const Scene& scene) {
   const auto emits = [](const Shape& shape) { return shape.emission.has_value(); };
   return !scene.lights.empty() || std::ranges::any_of(scene.shapes, emits) ||
-         std::ranges::any_of(scene.objects, [&](const Object& object) { return std::ranges::any_of(object.shapes, emits); });
+         std::ranges::any_of(scene.objects, [&](const Object& object) {
+           return std::ranges::any_of(object.shapes, emits);
+         });
 }
 
 void add_presentation(Scene& scene) {
@@ -283,7 +309,8 @@ void add_presentation(Scene& scene) {
 }
 
 void move_camera(Scene& scene, const Camera& to) {
-  const glm::dmat3 turn = glm::dmat3(to.world_from_camera) * glm::inverse(glm::dmat3(scene.camera.world_from_camera));
+  const glm::dmat3 turn =
+      glm::dmat3(to.world_from_camera) * glm::inverse(glm::dmat3(scene.camera.world_from_camera));
   scene.camera = to;
   for (Light& light : scene.lights)
     if (is_preset(light)) {

@@ -14,9 +14,10 @@ Camera camera_of_eye(const Scene& scene, const Stereo& stereo, Eye eye) {
   const double side = eye == Eye::left ? -0.5 : 0.5;
   camera.world_from_camera[3] += glm::dvec4(side * stereo.separation * glm::normalize(right), 0);
   if (!stereo.convergence || fov_of(camera) == 0) return camera;  // the image plane has no distance
-  // By similar triangles, in the camera's own units, which transforms may stretch: the point in the centre at that distance moves
-  // as far to one side as the eye has moved to the other.
-  const double across = side * stereo.separation / glm::length(right), away = *stereo.convergence / glm::length(forward);
+  // By similar triangles, in the camera's own units, which transforms may stretch: the point in the
+  // centre at that distance moves as far to one side as the eye has moved to the other.
+  const double across = side * stereo.separation / glm::length(right),
+               away = *stereo.convergence / glm::length(forward);
   const double shift = across / (away * std::tan(fov_of(camera) / 2));
   std::array<double, 4> window = screen_window_of(camera, scene.film);
   window[0] -= shift;

@@ -38,7 +38,8 @@ struct Swept {
   }
   void add(const Shape& shape) {
     const glm::dmat4& world = shape.world_from_object;
-    const std::array<double, 3> scales{glm::length(glm::dvec3(world[0])), glm::length(glm::dvec3(world[1])),
+    const std::array<double, 3> scales{glm::length(glm::dvec3(world[0])),
+                                       glm::length(glm::dvec3(world[1])),
                                        glm::length(glm::dvec3(world[2]))};
     const double scale = std::ranges::max(scales);
     const auto* capsules = std::get_if<CapsulesShape>(&shape.geometry);
@@ -47,14 +48,16 @@ struct Swept {
     for (std::size_t i = 0; i < capsules->p0.size(); ++i) {
       add(place(capsules->p0[i]), scale * static_cast<double>(capsules->radius0[i]));
       add(place(capsules->p1[i]),
-          scale * static_cast<double>(capsules->radius1.empty() ? capsules->radius0[i] : capsules->radius1[i]));
+          scale * static_cast<double>(capsules->radius1.empty() ? capsules->radius0[i]
+                                                                : capsules->radius1[i]));
     }
   }
 };
 
 }  // namespace
 
-Turntable::Turntable(const Scene& scene) : camera_(scene.camera), is_automatic_(scene.automatic_camera) {
+Turntable::Turntable(const Scene& scene)
+    : camera_(scene.camera), is_automatic_(scene.automatic_camera) {
   const Bounds bounds = bounds_or_unit_of(scene);
   middle_ = 0.5 * (bounds.min + bounds.max);
   axis_ = glm::normalize(glm::dvec3(camera_.world_from_camera[1]));
@@ -80,19 +83,22 @@ void Turntable::step_back(const Scene& scene) {
     swept.add(bounds_of(placed));
   }
   const glm::dmat3 view(camera_.world_from_camera);
-  const glm::dvec3 right = glm::normalize(view[0]), up = glm::normalize(view[1]), forward = glm::normalize(view[2]);
+  const glm::dvec3 right = glm::normalize(view[0]), up = glm::normalize(view[1]),
+                   forward = glm::normalize(view[2]);
   const glm::dvec3 target = middle_ + 0.5 * (swept.low + swept.high) * axis_;
-  const glm::dvec3 across =
-      glm::normalize(glm::cross(axis_, std::abs(axis_.x) < 0.5 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0)));
+  const glm::dvec3 across = glm::normalize(
+      glm::cross(axis_, std::abs(axis_.x) < 0.5 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0)));
   const glm::dvec3 other = glm::cross(axis_, across);
-  const double width = scene.film.width, height = scene.film.height, shorter = std::min(width, height);
+  const double width = scene.film.width, height = scene.film.height,
+               shorter = std::min(width, height);
   const double half = std::tan(fov_of(camera_) / 2) * (1 - frame_margin);
   const double rim = swept.radius / std::cos(std::numbers::pi / kSides);
   double distance = 0;
   for (const double along : {swept.low, swept.high})
     for (int i = 0; i < kSides; ++i) {
       const double angle = 2 * std::numbers::pi * i / kSides;
-      const glm::dvec3 p = middle_ + along * axis_ + rim * (std::cos(angle) * across + std::sin(angle) * other) - target;
+      const glm::dvec3 p = middle_ + along * axis_ +
+                           rim * (std::cos(angle) * across + std::sin(angle) * other) - target;
       const double x = std::abs(glm::dot(p, right)) / (half * width / shorter);
       const double y = std::abs(glm::dot(p, up)) / (half * height / shorter);
       distance = std::max(distance, std::max(x, y) - glm::dot(p, forward));
@@ -117,7 +123,8 @@ bool Turntable::turns(const Light& light) const { return is_automatic_ && is_pre
 Light Turntable::turned(const Light& light, std::uint32_t number, std::uint32_t count) const {
   Light out = light;
   auto& infinite = std::get<InfiniteLight>(out.model);
-  if (number > 0) infinite.world_from_light = glm::dmat3(turn(number, count)) * infinite.world_from_light;
+  if (number > 0)
+    infinite.world_from_light = glm::dmat3(turn(number, count)) * infinite.world_from_light;
   return out;
 }
 

@@ -11,16 +11,17 @@
 
 namespace caplet {
 
-/// The axis goes through the centre of the scene's bounds along the up axis: the world axis nearest to the camera's up, or the
-/// camera's up for scenes without an up axis. An automatic camera moves back until it sees all of the turning scene in every
-/// frame (perspective only). Studio light belongs to it and turns with it; other lights stay.
+/// The axis goes through the centre of the scene's bounds along the up axis: the world axis nearest
+/// to the camera's up, or the camera's up for scenes without an up axis. An automatic camera moves
+/// back until it sees all of the turning scene in every frame (perspective only). Studio light
+/// belongs to it and turns with it; other lights stay.
 class Turntable {
  public:
   /// The scene must have shapes.
   explicit Turntable(const Scene& scene);
 
-  /// Returns the camera of frame `number`, from 0, of `count`: it has gone this part of a turn to its right. Frame 0 has the
-  /// scene's camera except for its distance.
+  /// Returns the camera of frame `number`, from 0, of `count`: it has gone this part of a turn to
+  /// its right. Frame 0 has the scene's camera except for its distance.
   Camera camera(std::uint32_t number, std::uint32_t count) const;
   /// Returns whether `light` turns with the camera.
   bool turns(const Light& light) const;

@@ -45,7 +45,8 @@ glm::dvec3 normal_at(const Primitive& primitive, const glm::dvec3& x, double ste
 /// Returns the outward unit normal of the whole sphere, tangent cone or plane that surface
 /// `surface` is part of, at its point nearest to x: beside an edge that of one side alone. For
 /// shapes with one surface, and for csg shapes, it is normal_at().
-glm::dvec3 normal_of_surface(const Primitive& primitive, const glm::dvec3& x, int surface, double step);
+glm::dvec3 normal_of_surface(const Primitive& primitive, const glm::dvec3& x, int surface,
+                             double step);
 
 /// Returns the solid whose boundary an open shape other than triangles, disks and patches is part
 /// of; solids are their own.

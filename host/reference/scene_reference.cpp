@@ -30,7 +30,8 @@ bool may_touch(const Ball& ball, const Ray& ray) {
   const dvec3 to_center = ball.center - ray.origin;
   const dvec3 moment = glm::cross(ray.direction, to_center);
   const double slack = 1e-9 * (glm::dot(to_center, to_center) + ball.radius * ball.radius);
-  return glm::dot(moment, moment) <= (ball.radius * ball.radius + slack) * glm::dot(ray.direction, ray.direction);
+  return glm::dot(moment, moment) <=
+         (ball.radius * ball.radius + slack) * glm::dot(ray.direction, ray.direction);
 }
 
 /// Returns the material of each surface; empty when all have the shape's own.
@@ -57,8 +58,10 @@ std::vector<std::array<glm::dvec2, 4>> corner_uvs(const Shape& shape) {
       for (std::size_t k = 0; k < face.size(); ++k) out.back()[k] = uvs[face[k]];
     }
   };
-  if (const auto* mesh = std::get_if<TriangleMeshShape>(&shape.geometry)) add(mesh->triangles, mesh->uvs);
-  if (const auto* mesh = std::get_if<BilinearMeshShape>(&shape.geometry)) add(mesh->patches, mesh->uvs);
+  if (const auto* mesh = std::get_if<TriangleMeshShape>(&shape.geometry))
+    add(mesh->triangles, mesh->uvs);
+  if (const auto* mesh = std::get_if<BilinearMeshShape>(&shape.geometry))
+    add(mesh->patches, mesh->uvs);
   return out;
 }
 
@@ -67,13 +70,15 @@ std::vector<std::array<glm::dvec2, 4>> corner_uvs(const Shape& shape) {
 /// for meshes without normals.
 std::vector<bool> turned_faces(const Shape& shape) {
   std::vector<bool> out;
-  const glm::dmat3 normal_matrix = glm::transpose(glm::inverse(glm::dmat3(shape.world_from_object)));
+  const glm::dmat3 normal_matrix =
+      glm::transpose(glm::inverse(glm::dmat3(shape.world_from_object)));
   const auto add = [&](const auto& mesh, const auto& faces, const auto& by_winding) {
     if (mesh.normals.empty()) return;
     for (const auto& face : faces) {
       dvec3 sum(0);
       for (const std::uint32_t v : face)
-        if (const dvec3 n = normal_matrix * dvec3(mesh.normals[v]); glm::length(n) > 0) sum += glm::normalize(n);
+        if (const dvec3 n = normal_matrix * dvec3(mesh.normals[v]); glm::length(n) > 0)
+          sum += glm::normalize(n);
       out.push_back(glm::dot(normal_matrix * by_winding(face), sum) < 0);
     }
   };
@@ -90,7 +95,8 @@ std::vector<bool> turned_faces(const Shape& shape) {
   return out;
 }
 
-SceneHit hit_of(SceneHit identity, const Crossing& crossing, bool leaving, const std::vector<std::uint32_t>& materials) {
+SceneHit hit_of(SceneHit identity, const Crossing& crossing, bool leaving,
+                const std::vector<std::uint32_t>& materials) {
   identity.t = crossing.t;
   identity.leaving = leaving;
   identity.surface = static_cast<std::uint32_t>(crossing.surface);
@@ -129,16 +135,20 @@ std::uint32_t SceneReference::material(std::size_t index, std::uint32_t surface)
   return surface < materials.size() ? materials[surface] : placed.identity.material;
 }
 
-std::optional<std::size_t> SceneReference::index_of(std::uint32_t instance, std::uint32_t shape, std::uint32_t primitive) const {
+std::optional<std::size_t> SceneReference::index_of(std::uint32_t instance, std::uint32_t shape,
+                                                    std::uint32_t primitive) const {
   if (instance != no_instance && instance >= instance_begin_.size()) return std::nullopt;
-  const std::vector<std::size_t>& begin = instance == no_instance ? shape_begin_ : instance_begin_[instance];
+  const std::vector<std::size_t>& begin =
+      instance == no_instance ? shape_begin_ : instance_begin_[instance];
   if (shape >= begin.size() || begin[shape] + primitive >= placed_.size()) return std::nullopt;
   const SceneHit& found = placed_[begin[shape] + primitive].identity;
-  if (found.instance != instance || found.shape != shape || found.primitive != primitive) return std::nullopt;
+  if (found.instance != instance || found.shape != shape || found.primitive != primitive)
+    return std::nullopt;
   return found.index;
 }
 
-void SceneReference::add(const Shape& shape, const glm::dmat4& world_from_shape, const SceneHit& identity) {
+void SceneReference::add(const Shape& shape, const glm::dmat4& world_from_shape,
+                         const SceneHit& identity) {
   object_from_world_.push_back(glm::inverse(world_from_shape));
   surface_materials_.push_back(materials_by_surface(shape));
   corner_uvs_.push_back(corner_uvs(shape));
@@ -147,25 +157,33 @@ void SceneReference::add(const Shape& shape, const glm::dmat4& world_from_shape,
   const std::size_t first = placed_.size();
   std::uint32_t index = 0;
   for (const Primitive& primitive : primitives_of(shape)) {
-    Placed placed{primitive, bounding_ball(primitive), identity, static_cast<std::uint32_t>(object_from_world_.size() - 1)};
+    Placed placed{primitive, bounding_ball(primitive), identity,
+                  static_cast<std::uint32_t>(object_from_world_.size() - 1)};
     placed.identity.primitive = index;
-    placed.identity.material = capsules && !capsules->materials.empty() ? capsules->materials[index] : shape.material;
+    placed.identity.material =
+        capsules && !capsules->materials.empty() ? capsules->materials[index] : shape.material;
     // A one-sided shape is not seen from behind an open shape's normal, as ReverseOrientation
     // leaves it, or from inside a solid.
-    if (shape.one_sided) (is_solid(primitive) || !shape.reverse_orientation ? placed.sees_leaving : placed.sees_entering) = false;
+    if (shape.one_sided)
+      (is_solid(primitive) || !shape.reverse_orientation ? placed.sees_leaving
+                                                         : placed.sees_entering) = false;
     placed.reversed = shape.reverse_orientation;
     placed.turned = !turned.empty() && turned[index];
     placed.identity.index = placed_.size();
     placed_.push_back(placed);
     ++index;
   }
-  for (std::size_t i = first; i < placed_.size(); ++i) grouped_.push_back(static_cast<std::uint32_t>(i));
+  for (std::size_t i = first; i < placed_.size(); ++i)
+    grouped_.push_back(static_cast<std::uint32_t>(i));
   if (first < placed_.size())
-    group(static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(placed_.size()), world_from_shape);
+    group(static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(placed_.size()),
+          world_from_shape);
 }
 
-/// Halves the primitives of one shape, along the axis on which their centres are furthest apart, until 32 or fewer are left.
-void SceneReference::group(std::uint32_t begin, std::uint32_t end, const glm::dmat4& world_from_shape) {
+/// Halves the primitives of one shape, along the axis on which their centres are furthest apart,
+/// until 32 or fewer are left.
+void SceneReference::group(std::uint32_t begin, std::uint32_t end,
+                           const glm::dmat4& world_from_shape) {
   dvec3 low(HUGE_VAL), high(-HUGE_VAL);
   for (std::uint32_t i = begin; i < end; ++i) {
     low = glm::min(low, placed_[grouped_[i]].ball.center);
@@ -176,7 +194,9 @@ void SceneReference::group(std::uint32_t begin, std::uint32_t end, const glm::dm
     const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
     const std::uint32_t middle = begin + (end - begin) / 2;
     std::nth_element(grouped_.begin() + begin, grouped_.begin() + middle, grouped_.begin() + end,
-                     [&](auto a, auto b) { return placed_[a].ball.center[axis] < placed_[b].ball.center[axis]; });
+                     [&](auto a, auto b) {
+                       return placed_[a].ball.center[axis] < placed_[b].ball.center[axis];
+                     });
     group(begin, middle, world_from_shape);
     group(middle, end, world_from_shape);
     return;
@@ -188,8 +208,12 @@ void SceneReference::group(std::uint32_t begin, std::uint32_t end, const glm::dm
   }
   // The square root of the sum of all entries' squares is at least the stretch of every direction.
   double squares = 0;
-  for (int c = 0; c < 3; ++c) squares += glm::dot(dvec3(world_from_shape[c]), dvec3(world_from_shape[c]));
-  groups_.push_back({{dvec3(world_from_shape * glm::dvec4(ball.center, 1)), std::sqrt(squares) * ball.radius}, begin, end});
+  for (int c = 0; c < 3; ++c)
+    squares += glm::dot(dvec3(world_from_shape[c]), dvec3(world_from_shape[c]));
+  groups_.push_back(
+      {{dvec3(world_from_shape * glm::dvec4(ball.center, 1)), std::sqrt(squares) * ball.radius},
+       begin,
+       end});
 }
 
 /// Calls visit(placed, ray in its space) for every primitive that the ray may touch.
@@ -217,8 +241,10 @@ std::optional<SceneHit> SceneReference::closest(const Ray& ray) const {
     for (const Crossing& crossing : crossings(placed.primitive, local)) {
       if (!(crossing.t > local.t_min && crossing.t < local.t_max)) continue;
       if (!placed.sees(crossing)) continue;
-      if (!best || crossing.t < best->t || (crossing.t == best->t && placed.identity.index < best->index))
-        best = hit_of(placed.identity, crossing, placed.leaves(crossing), surface_materials_[placed.space]);
+      if (!best || crossing.t < best->t ||
+          (crossing.t == best->t && placed.identity.index < best->index))
+        best = hit_of(placed.identity, crossing, placed.leaves(crossing),
+                      surface_materials_[placed.space]);
       return;
     }
   });
@@ -239,7 +265,8 @@ std::vector<SceneHit> SceneReference::all(const Ray& ray, std::vector<std::uint3
     near.push_back(static_cast<std::uint32_t>(placed.identity.index));
     for (const Crossing& crossing : crossings(placed.primitive, local))
       if (crossing.t > ray.t_min && crossing.t < ray.t_max && placed.sees(crossing))
-        out.push_back(hit_of(placed.identity, crossing, placed.leaves(crossing), surface_materials_[placed.space]));
+        out.push_back(hit_of(placed.identity, crossing, placed.leaves(crossing),
+                             surface_materials_[placed.space]));
   });
   std::ranges::stable_sort(out, [](const SceneHit& a, const SceneHit& b) {
     return a.t != b.t ? a.t < b.t : a.leaving != b.leaving ? a.leaving : a.index < b.index;
@@ -250,21 +277,24 @@ std::vector<SceneHit> SceneReference::all(const Ray& ray, std::vector<std::uint3
 dvec3 SceneReference::normal(const SceneHit& hit, const dvec3& point) const {
   const Placed& placed = placed_.at(hit.index);
   const glm::dmat4& m = object_from_world_[placed.space];
-  const dvec3 local = normal_at(placed.primitive, dvec3(m * glm::dvec4(point, 1)), 1e-6 * placed.ball.radius);
+  const dvec3 local =
+      normal_at(placed.primitive, dvec3(m * glm::dvec4(point, 1)), 1e-6 * placed.ball.radius);
   const dvec3 out = glm::normalize(glm::transpose(glm::dmat3(m)) * local);
   return placed.reversed != placed.turned ? -out : out;
 }
 
-glm::dvec2 SceneReference::uv(const SceneHit& hit, const dvec3& point, const dvec3& direction) const {
+glm::dvec2 SceneReference::uv(const SceneHit& hit, const dvec3& point,
+                              const dvec3& direction) const {
   const Placed& placed = placed_.at(hit.index);
   const dvec3 own(object_from_world_[placed.space] * glm::dvec4(point, 1));
-  const glm::dvec2 at =
-      uv_at(placed.primitive, own, static_cast<int>(hit.surface), glm::dmat3(object_from_world_[placed.space]) * direction);
+  const glm::dvec2 at = uv_at(placed.primitive, own, static_cast<int>(hit.surface),
+                              glm::dmat3(object_from_world_[placed.space]) * direction);
   if (corner_uvs_[placed.space].empty()) return at;
   const auto& corners = corner_uvs_[placed.space][placed.identity.primitive];
   if (std::holds_alternative<Triangle>(placed.primitive))
     return (1 - at.x) * corners[0] + (at.x - at.y) * corners[1] + at.y * corners[2];
-  return (1 - at.y) * ((1 - at.x) * corners[0] + at.x * corners[1]) + at.y * ((1 - at.x) * corners[2] + at.x * corners[3]);
+  return (1 - at.y) * ((1 - at.x) * corners[0] + at.x * corners[1]) +
+         at.y * ((1 - at.x) * corners[2] + at.x * corners[3]);
 }
 
 std::vector<std::optional<SceneHit>> SceneReference::closest(std::span<const Ray> rays) const {

@@ -41,7 +41,8 @@ class SceneReference {
   std::optional<SceneHit> closest(const Ray& ray) const;
   /// Returns every crossing with t_min < t < t_max in order; at the same t those that leave come
   /// first, then the first in scene order. There are no more than `limit`.
-  std::vector<SceneHit> all(const Ray& ray, std::size_t limit = std::numeric_limits<std::size_t>::max()) const;
+  std::vector<SceneHit> all(const Ray& ray,
+                            std::size_t limit = std::numeric_limits<std::size_t>::max()) const;
   /// Does the same, and returns the indices of all primitives whose balls the line goes through.
   std::vector<SceneHit> all(const Ray& ray, std::vector<std::uint32_t>& near) const;
   /// Returns the unit normal in the world at a point on (or within 1e-7 of its size from) the
@@ -68,10 +69,13 @@ class SceneReference {
   PlacedPrimitive placed(std::size_t index) const;
   /// Returns the material of a primitive's surface: an index into Scene::materials.
   std::uint32_t material(std::size_t index, std::uint32_t surface) const;
-  bool is_reversed(std::size_t index) const { return placed_.at(index).reversed; }  // by ReverseOrientation
+  bool is_reversed(std::size_t index) const {
+    return placed_.at(index).reversed;
+  }  // by ReverseOrientation
   /// Returns the primitive's index from the numbers of SceneHit; none when there is no such
   /// primitive.
-  std::optional<std::size_t> index_of(std::uint32_t instance, std::uint32_t shape, std::uint32_t primitive) const;
+  std::optional<std::size_t> index_of(std::uint32_t instance, std::uint32_t shape,
+                                      std::uint32_t primitive) const;
 
  private:
   struct Placed {
@@ -82,7 +86,9 @@ class SceneReference {
     bool sees_entering = true, sees_leaving = true, reversed = false;
     bool turned = false;  // a mesh's face whose normals are against its winding
     bool leaves(const Crossing& crossing) const { return crossing.leaving != turned; }
-    bool sees(const Crossing& crossing) const { return leaves(crossing) ? sees_leaving : sees_entering; }
+    bool sees(const Crossing& crossing) const {
+      return leaves(crossing) ? sees_leaving : sees_entering;
+    }
   };
   struct Group {
     Ball ball;                 // of its primitives' balls, world space
@@ -95,11 +101,12 @@ class SceneReference {
   std::vector<Placed> placed_;
   std::vector<std::uint32_t> grouped_;  // indices into placed_
   std::vector<Group> groups_;
-  std::vector<std::size_t> shape_begin_;                  // first primitive of each shape of the world
+  std::vector<std::size_t> shape_begin_;  // first primitive of each shape of the world
   std::vector<std::vector<std::size_t>> instance_begin_;  // and of each shape of each instance
   std::vector<glm::dmat4> object_from_world_;
-  std::vector<std::vector<std::uint32_t>> surface_materials_;       // empty: the same on all
-  std::vector<std::vector<std::array<glm::dvec2, 4>>> corner_uvs_;  // by space and primitive; empty: the mesh has none
+  std::vector<std::vector<std::uint32_t>> surface_materials_;  // empty: the same on all
+  std::vector<std::vector<std::array<glm::dvec2, 4>>>
+      corner_uvs_;  // by space and primitive; empty: the mesh has none
 };
 
 }  // namespace caplet::reference

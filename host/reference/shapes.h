@@ -61,7 +61,8 @@ struct Frustum {
   std::array<glm::dvec2, 2> side_normals;
   int side_count = 0;
 };
-Frustum make_frustum(const glm::dvec3& p0, const glm::dvec3& p1, const Frustum::End& end0, const Frustum::End& end1);
+Frustum make_frustum(const glm::dvec3& p0, const glm::dvec3& p1, const Frustum::End& end0,
+                     const Frustum::End& end1);
 
 /// Solid is a convex solid as the model's own surfaces bound it (caplet::FacedSolid), for kinds
 /// that have no shape of their own here.
@@ -83,7 +84,8 @@ struct Polyhedron {
 };
 /// Makes a polyhedron. The normals may be of any length (offsets along with them). Unbounded or
 /// empty sets have no corners and a ball of no meaning.
-Polyhedron make_polyhedron(const glm::dvec3& center, std::span<const glm::dvec3> normals, std::span<const double> offsets);
+Polyhedron make_polyhedron(const glm::dvec3& center, std::span<const glm::dvec3> normals,
+                           std::span<const double> offsets);
 
 // These are open shapes around the z axis, as pbrt's: the part of the sphere of `radius`, of the
 // tube or of the disk with z_min <= z <= z_max and an angle from +x towards +y of at most phi_max.
@@ -108,7 +110,11 @@ struct Bilinear {
 /// make_csg makes it.
 struct CsgBody;
 struct Csg {
-  enum class Operation { set_union, set_intersection, set_difference } operation = Operation::set_union;
+  enum class Operation {
+    set_union,
+    set_intersection,
+    set_difference
+  } operation = Operation::set_union;
   std::shared_ptr<const CsgBody> body;
 };
 
@@ -151,7 +157,8 @@ struct Ball {
 struct Curve {
   enum class Kind { segment, arc } kind = Kind::segment;
   glm::dvec3 p,
-      q;  // segment: the ends; arc: p + radius (cos a, sin a) in the plane of q and r (unit, orthogonal), a from `from` to `to`
+      q;  // segment: the ends; arc: p + radius (cos a, sin a) in the plane of q and r (unit,
+          // orthogonal), a from `from` to `to`
   glm::dvec3 r{0};
   double radius = 0, from = 0, to = 0;
   glm::dvec3 at(double s) const;

@@ -36,7 +36,8 @@ Line line_near(const Primitive& primitive, const Ray& ray) {
   const Ball ball = bounding_ball(primitive);
   Line line;
   // The direction is scaled first, so that no direction's square overflows or vanishes.
-  const double largest = std::max({std::abs(ray.direction.x), std::abs(ray.direction.y), std::abs(ray.direction.z)});
+  const double largest =
+      std::max({std::abs(ray.direction.x), std::abs(ray.direction.y), std::abs(ray.direction.z)});
   const dvec3 scaled = ray.direction / largest;
   line.unit = scaled / glm::length(scaled);
   line.speed = glm::length(scaled) * largest;
@@ -45,14 +46,16 @@ Line line_near(const Primitive& primitive, const Ray& ray) {
   along += glm::dot(ball.center - line.foot, line.unit);
   line.foot = ray.origin + along * line.unit;
   line.t_foot = along / line.speed;
-  line.reach = ball.radius * (1 + 1e-9) + 1e-12 * (std::abs(along) + glm::length(ball.center)) + 1e-300;
+  line.reach =
+      ball.radius * (1 + 1e-9) + 1e-12 * (std::abs(along) + glm::length(ball.center)) + 1e-300;
   line.miss_distance = glm::length(line.foot - ball.center) - line.reach;
   return line;
 }
 
 // Halves the bracket around the least value until that is <= `enough`, cannot be (the Lipschitz
 // bound), or the bracket cannot be narrowed. Returns the place and the value there.
-std::pair<double, double> descend(const Primitive& primitive, const Line& line, double enough, double low, double high) {
+std::pair<double, double> descend(const Primitive& primitive, const Line& line, double enough,
+                                  double low, double high) {
   const auto f = [&](double s) { return value(primitive, line.foot + s * line.unit); };
   double middle = 0.5 * (low + high), at_middle = f(middle);
   while (at_middle > enough) {
@@ -133,28 +136,34 @@ std::vector<Crossing> clipped_crossings(const Primitive& primitive, const Ray& r
   const Line line = line_near(primitive, ray);
   for (const Crossing& c : solid_crossings(carrier, ray))
     // The point is computed from the foot, since the ray's origin may be far.
-    if (keeps(primitive, line.foot + (c.t - line.t_foot) * line.speed * line.unit, c.surface)) out.push_back(c);
+    if (keeps(primitive, line.foot + (c.t - line.t_foot) * line.speed * line.unit, c.surface))
+      out.push_back(c);
   if (!std::holds_alternative<Frustum>(primitive))
     for (Crossing& c : out) c.surface = 0, c.surface_margin = HUGE_VAL;
   return out;
 }
 
 // Returns six times the signed volume of the tetrahedron a b c and the origin.
-double volume(const dvec3& a, const dvec3& b, const dvec3& c) { return glm::dot(a, glm::cross(b, c)); }
+double volume(const dvec3& a, const dvec3& b, const dvec3& c) {
+  return glm::dot(a, glm::cross(b, c));
+}
 
 std::vector<Crossing> triangle_crossings(const Triangle& triangle, const Ray& ray) {
   const Line line = line_near(triangle, ray);
   if (line.miss_distance > 0) return {};
   const dvec3 a = triangle.v0 - line.foot, b = triangle.v1 - line.foot, c = triangle.v2 - line.foot;
-  const double edge[3] = {volume(line.unit, a, b), volume(line.unit, b, c), volume(line.unit, c, a)};
+  const double edge[3] = {volume(line.unit, a, b), volume(line.unit, b, c),
+                          volume(line.unit, c, a)};
   const bool positive = edge[0] >= 0 && edge[1] >= 0 && edge[2] >= 0;
   const bool negative = edge[0] <= 0 && edge[1] <= 0 && edge[2] <= 0;
   const double sum = edge[0] + edge[1] + edge[2];
   // The triangle is seen edge-on as far as doubles can tell (each volume is a sum of six products
   // of three rounded factors): there is no crossing.
   const double la = glm::length(a), lb = glm::length(b), lc = glm::length(c);
-  if (!(positive || negative) || std::abs(sum) <= 0x1p-49 * (la * lb + lb * lc + lc * la)) return {};
-  return {{line.t_foot + volume(a, b, c) / sum / line.speed, glm::dot(glm::cross(b - a, c - a), line.unit) > 0, 0, HUGE_VAL}};
+  if (!(positive || negative) || std::abs(sum) <= 0x1p-49 * (la * lb + lb * lc + lc * la))
+    return {};
+  return {{line.t_foot + volume(a, b, c) / sum / line.speed,
+           glm::dot(glm::cross(b - a, c - a), line.unit) > 0, 0, HUGE_VAL}};
 }
 
 std::vector<Crossing> disk_crossings(const Disk& disk, const Ray& ray) {
@@ -178,10 +187,12 @@ std::vector<Crossing> partial_disk_crossings(const PartialDisk& disk, const Ray&
 
 // Collects where the line crosses the boundaries of the solids of a csg shape, in lengths from
 // line.foot; `inner` is the same line in the space of `csg`.
-void collect_events(const Csg& csg, const Ray& inner, const Line& line, std::vector<double>& events) {
+void collect_events(const Csg& csg, const Ray& inner, const Line& line,
+                    std::vector<double>& events) {
   for (const CsgOperand& operand : csg.body->operands) {
     const glm::dmat4& m = operand.operand_from_csg;
-    const Ray local{dvec3(m * glm::dvec4(inner.origin, 1)), dvec3(m * glm::dvec4(inner.direction, 0)), -HUGE_VAL, HUGE_VAL};
+    const Ray local{dvec3(m * glm::dvec4(inner.origin, 1)),
+                    dvec3(m * glm::dvec4(inner.direction, 0)), -HUGE_VAL, HUGE_VAL};
     if (const auto* nested = std::get_if<Csg>(&operand.primitive)) {
       collect_events(*nested, local, line, events);
       continue;
@@ -204,7 +215,8 @@ std::vector<Crossing> csg_crossings(const Csg& csg, const Ray& ray) {
   for (std::size_t i = 0; i < events.size();) {
     std::size_t next = i + 1;
     while (next < events.size() && events[next] - events[next - 1] <= together) ++next;
-    const bool after = next < events.size() && value(csg, at(0.5 * (events[next - 1] + events[next]))) <= 0;
+    const bool after =
+        next < events.size() && value(csg, at(0.5 * (events[next - 1] + events[next]))) <= 0;
     if (after != inside) {
       const SurfaceAt here = surface_at(csg, at(events[i]));
       out.push_back({line.t_foot + events[i] / line.speed, inside, here.surface, here.margin});
@@ -215,11 +227,14 @@ std::vector<Crossing> csg_crossings(const Csg& csg, const Ray& ray) {
   return out;
 }
 
-// --- Bilinear patches, seen along the line: a bilinear map of the unit square to the plane, with the line as origin ---
+// --- Bilinear patches, seen along the line: a bilinear map of the unit square to the plane, with
+// the line as origin ---
 
 struct Seen {
   dvec2 p00, p10, p01, p11;
-  dvec2 at(double u, double v) const { return (1 - u) * ((1 - v) * p00 + v * p01) + u * ((1 - v) * p10 + v * p11); }
+  dvec2 at(double u, double v) const {
+    return (1 - u) * ((1 - v) * p00 + v * p01) + u * ((1 - v) * p10 + v * p11);
+  }
   // This is the Jacobian determinant: an affine function of u and v.
   double turn(double u, double v) const {
     return cross((1 - v) * (p10 - p00) + v * (p11 - p01), (1 - u) * (p01 - p00) + u * (p11 - p10));
@@ -229,7 +244,9 @@ struct Seen {
 
 Seen seen_along(const Line& line, const Bilinear& b) {
   const dvec3 e = any_perpendicular(line.unit), f = glm::cross(line.unit, e);
-  const auto flat = [&](const dvec3& p) { return dvec2(glm::dot(e, p - line.foot), glm::dot(f, p - line.foot)); };
+  const auto flat = [&](const dvec3& p) {
+    return dvec2(glm::dot(e, p - line.foot), glm::dot(f, p - line.foot));
+  };
   return {flat(b.p00), flat(b.p10), flat(b.p01), flat(b.p11)};
 }
 
@@ -264,8 +281,10 @@ dvec2 locate(const Seen& seen, double u0, double u1, double v0, double v1) {
     }
   };
   const auto from_line = [](const dvec2& a, const dvec2& b) { return -Seen::cross(b - a, a); };
-  const double u = bisect_lines(u0, u1, [&](double at) { return from_line(seen.at(at, v0), seen.at(at, v1)); });
-  const double v = bisect_lines(v0, v1, [&](double at) { return from_line(seen.at(u0, at), seen.at(u1, at)); });
+  const double u =
+      bisect_lines(u0, u1, [&](double at) { return from_line(seen.at(at, v0), seen.at(at, v1)); });
+  const double v =
+      bisect_lines(v0, v1, [&](double at) { return from_line(seen.at(u0, at), seen.at(u1, at)); });
   // On the cell's edges, and where one of them is a point, rounding or a vanishing line may have
   // misled either search.
   dvec2 best{u, v};
@@ -288,17 +307,21 @@ std::vector<Crossing> bilinear_crossings(const Bilinear& patch, const Ray& ray) 
   for (int work = 0; !cells.empty() && work < 20000; ++work) {
     const Cell c = cells.back();
     cells.pop_back();
-    const dvec2 corners[4] = {seen.at(c.u0, c.v0), seen.at(c.u1, c.v0), seen.at(c.u1, c.v1), seen.at(c.u0, c.v1)};
+    const dvec2 corners[4] = {seen.at(c.u0, c.v0), seen.at(c.u1, c.v0), seen.at(c.u1, c.v1),
+                              seen.at(c.u0, c.v1)};
     if (!hull_has_origin(corners)) continue;
-    const double turns[4] = {seen.turn(c.u0, c.v0), seen.turn(c.u1, c.v0), seen.turn(c.u1, c.v1), seen.turn(c.u0, c.v1)};
-    const double least = *std::min_element(turns, turns + 4), greatest = *std::max_element(turns, turns + 4);
+    const double turns[4] = {seen.turn(c.u0, c.v0), seen.turn(c.u1, c.v0), seen.turn(c.u1, c.v1),
+                             seen.turn(c.u0, c.v1)};
+    const double least = *std::min_element(turns, turns + 4),
+                 greatest = *std::max_element(turns, turns + 4);
     if ((least >= 0 && greatest > 0) || (greatest <= 0 && least < 0)) {
       found.push_back(locate(seen, c.u0, c.u1, c.v0, c.v1));
       continue;
     }
     if (c.u1 - c.u0 < 0x1p-30) continue;
     const double u = 0.5 * (c.u0 + c.u1), v = 0.5 * (c.v0 + c.v1);
-    cells.insert(cells.end(), {{c.u0, u, c.v0, v}, {u, c.u1, c.v0, v}, {c.u0, u, v, c.v1}, {u, c.u1, v, c.v1}});
+    cells.insert(cells.end(),
+                 {{c.u0, u, c.v0, v}, {u, c.u1, c.v0, v}, {c.u0, u, v, c.v1}, {u, c.u1, v, c.v1}});
   }
   std::vector<Crossing> out;
   std::vector<dvec2> kept;
@@ -307,8 +330,10 @@ std::vector<Crossing> bilinear_crossings(const Bilinear& patch, const Ray& ray) 
     for (const dvec2& other : kept) again = again || glm::length(uv - other) < 1e-9;
     if (again) continue;
     kept.push_back(uv);
-    const dvec3 x = (1 - uv.x) * ((1 - uv.y) * patch.p00 + uv.y * patch.p01) + uv.x * ((1 - uv.y) * patch.p10 + uv.y * patch.p11);
-    out.push_back({line.t_foot + glm::dot(x - line.foot, line.unit) / line.speed, seen.turn(uv.x, uv.y) > 0, 0, HUGE_VAL});
+    const dvec3 x = (1 - uv.x) * ((1 - uv.y) * patch.p00 + uv.y * patch.p01) +
+                    uv.x * ((1 - uv.y) * patch.p10 + uv.y * patch.p11);
+    out.push_back({line.t_foot + glm::dot(x - line.foot, line.unit) / line.speed,
+                   seen.turn(uv.x, uv.y) > 0, 0, HUGE_VAL});
   }
   std::sort(out.begin(), out.end(), [](const Crossing& a, const Crossing& b) { return a.t < b.t; });
   return out;
@@ -321,20 +346,24 @@ constexpr double no_limit = -HUGE_VAL;
 // Returns the least of f over [0, 1], where f(x) - f(y) <= steepness |x - y|. Cells that this shows
 // to hold nothing less than the known least are skipped; the others are split twice, and then
 // searched by halving. With a limit, it is enough to know whether the least is above it.
-double least_over(int samples, double steepness, double limit, const std::function<double(double)>& f) {
+double least_over(int samples, double steepness, double limit,
+                  const std::function<double(double)>& f) {
   double least = HUGE_VAL;
   const auto search = [&](const auto& self, double low, double high, int count, int level) -> void {
     std::vector<double> at;
     const double step = (high - low) / count;
     for (int i = 0; i <= count; ++i) least = std::min(least, at.emplace_back(f(low + i * step)));
     for (std::size_t i = 0; i + 1 < at.size() && least > limit; ++i) {
-      if (0.5 * (at[i] + at[i + 1] - steepness * step) > std::min(least, limit >= 0 ? limit : HUGE_VAL)) continue;
+      if (0.5 * (at[i] + at[i + 1] - steepness * step) >
+          std::min(least, limit >= 0 ? limit : HUGE_VAL))
+        continue;
       const double begin = low + static_cast<double>(i) * step;
       if (level > 0) {
         self(self, begin, begin + step, 64, level - 1);
         continue;
       }
-      double best = at[i] < at[i + 1] ? begin : begin + step, value_there = std::min(at[i], at[i + 1]);
+      double best = at[i] < at[i + 1] ? begin : begin + step,
+             value_there = std::min(at[i], at[i + 1]);
       for (double width = 0.5 * step; width > 1e-16; width *= 0.5)
         for (const double x : {best - width, best + width}) {
           if (x < 0 || x > 1) continue;
@@ -357,7 +386,8 @@ double distance_line_to_curve(const Line& line, const Curve& curve, double limit
   if (curve.kind == Curve::Kind::segment) {
     // Seen along the line, the segment is one in the plane and the line is its origin.
     const dvec3 a = curve.p - line.foot, b = curve.q - line.foot;
-    return distance_to_segment(dvec3(0), a - glm::dot(a, line.unit) * line.unit, b - glm::dot(b, line.unit) * line.unit);
+    return distance_to_segment(dvec3(0), a - glm::dot(a, line.unit) * line.unit,
+                               b - glm::dot(b, line.unit) * line.unit);
   }
   return least_over(256, curve.radius * std::abs(curve.to - curve.from), limit,
                     [&](double s) { return distance_line_to_point(line, curve.at(s)); });
@@ -377,28 +407,33 @@ double distance_to_fold(const Line& line, const Bilinear& patch, double limit) {
     if ((fa < 0 && fb > 0) || (fa > 0 && fb < 0)) ends.push_back(a + fa / (fa - fb) * (b - a));
   }
   double least = HUGE_VAL;
-  const double sides = std::max(glm::length(seen.p10 - seen.p00), glm::length(seen.p11 - seen.p01)) +
-                       std::max(glm::length(seen.p01 - seen.p00), glm::length(seen.p11 - seen.p10));
+  const double sides =
+      std::max(glm::length(seen.p10 - seen.p00), glm::length(seen.p11 - seen.p01)) +
+      std::max(glm::length(seen.p01 - seen.p00), glm::length(seen.p11 - seen.p10));
   for (std::size_t i = 0; i + 1 < ends.size(); ++i)
-    least = std::min(least, least_over(256, sides * glm::length(ends[i + 1] - ends[i]), limit, [&](double s) {
-                       const dvec2 uv = ends[i] + s * (ends[i + 1] - ends[i]);
-                       return glm::length(seen.at(uv.x, uv.y));
-                     }));
+    least = std::min(
+        least, least_over(256, sides * glm::length(ends[i + 1] - ends[i]), limit, [&](double s) {
+          const dvec2 uv = ends[i] + s * (ends[i + 1] - ends[i]);
+          return glm::length(seen.at(uv.x, uv.y));
+        }));
   return least;
 }
 
 double least_along(const Primitive& primitive, const Line& line) {
-  return least_over(2048, 2 * line.reach, no_limit,
-                    [&](double s) { return value(primitive, line.foot + (2 * s - 1) * line.reach * line.unit); });
+  return least_over(2048, 2 * line.reach, no_limit, [&](double s) {
+    return value(primitive, line.foot + (2 * s - 1) * line.reach * line.unit);
+  });
 }
 
 }  // namespace
 
 std::vector<Crossing> crossings(const Primitive& primitive, const Ray& ray) {
   if (!usable(ray)) return {};
-  if (const auto* triangle = std::get_if<Triangle>(&primitive)) return triangle_crossings(*triangle, ray);
+  if (const auto* triangle = std::get_if<Triangle>(&primitive))
+    return triangle_crossings(*triangle, ray);
   if (const auto* disk = std::get_if<Disk>(&primitive)) return disk_crossings(*disk, ray);
-  if (const auto* disk = std::get_if<PartialDisk>(&primitive)) return partial_disk_crossings(*disk, ray);
+  if (const auto* disk = std::get_if<PartialDisk>(&primitive))
+    return partial_disk_crossings(*disk, ray);
   if (const auto* patch = std::get_if<Bilinear>(&primitive)) return bilinear_crossings(*patch, ray);
   if (const auto* csg = std::get_if<Csg>(&primitive)) return csg_crossings(*csg, ray);
   return is_solid(primitive) ? solid_crossings(primitive, ray) : clipped_crossings(primitive, ray);
@@ -417,7 +452,8 @@ namespace {
 double change_distance(const Primitive& primitive, const Ray& ray, double limit) {
   const Line line = line_near(primitive, ray);
   double distance = HUGE_VAL;
-  for (const Curve& curve : boundary(primitive)) distance = std::min(distance, distance_line_to_curve(line, curve, limit));
+  for (const Curve& curve : boundary(primitive))
+    distance = std::min(distance, distance_line_to_curve(line, curve, limit));
   if (const auto* patch = std::get_if<Bilinear>(&primitive)) {
     distance = std::min(distance, distance_to_fold(line, *patch, limit));
   } else if (const Primitive carrier = carrier_of(primitive);

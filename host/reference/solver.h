@@ -27,7 +27,8 @@ struct Crossing {
   double t = 0;
   bool leaving = false;  // from inside to outside; open surfaces: along the normal
   int surface = 0;
-  double surface_margin = 0;  // how far (at least) the crossing may be displaced before it lies on another surface
+  double surface_margin =
+      0;  // how far (at least) the crossing may be displaced before it lies on another surface
 };
 
 /// Returns every crossing of the whole line (all t) in order: two for a convex solid, entering and

@@ -6,9 +6,11 @@
 
 namespace caplet::reference {
 
-glm::dvec2 uv_at(const Primitive& primitive, const glm::dvec3& x, int surface, const glm::dvec3& direction) {
+glm::dvec2 uv_at(const Primitive& primitive, const glm::dvec3& x, int surface,
+                 const glm::dvec3& direction) {
   if (surface < 0 || surface >= surface_count(primitive)) return {0, 0};
-  if (const auto* capsule = std::get_if<Capsule>(&primitive); capsule && capsule->u) return chain_uv_of(*capsule, x, direction);
+  if (const auto* capsule = std::get_if<Capsule>(&primitive); capsule && capsule->u)
+    return chain_uv_of(*capsule, x, direction);
   if (const auto* csg = std::get_if<Csg>(&primitive)) return csg_uv_of(*csg, x, surface, direction);
   return std::visit([&](const auto& shape) { return uv_of(shape, x, surface); }, primitive);
 }

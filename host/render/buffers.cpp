@@ -27,7 +27,8 @@ struct PathPlaces {
         of_STATE_CONES(needs.cones ? 1 : 0),
         of_STATE_SIDES(needs.sides ? 1 : 0),
         of_STATE_MEDIA(needs.media ? 1 : 0) {}
-  std::size_t of_ONE = 0, of_STATE = 1, of_STATE_LAYERS, of_STATE_CONES, of_STATE_SIDES, of_STATE_MEDIA;
+  std::size_t of_ONE = 0, of_STATE = 1, of_STATE_LAYERS, of_STATE_CONES, of_STATE_SIDES,
+              of_STATE_MEDIA;
 };
 
 template <class T>
@@ -46,7 +47,8 @@ constexpr std::size_t most_spare_bytes = std::size_t{1} << 20;
 
 /// Sends what changed; returns the bytes sent.
 template <class T>
-std::uint64_t send(const Device& device, std::span<const T> now, const ChangedRanges& changed, bool all, Buffer<T>& to) {
+std::uint64_t send(const Device& device, std::span<const T> now, const ChangedRanges& changed,
+                   bool all, Buffer<T>& to) {
   if (now.size() > to.size()) {
     const std::size_t spare = std::min(now.size() / 4, most_spare_bytes / sizeof(T));
     to = {};  // the old one makes room first
@@ -61,22 +63,27 @@ std::uint64_t send(const Device& device, std::span<const T> now, const ChangedRa
   for (ChangedRange range : changed.joined(joined_bytes / sizeof(T))) {
     range.end = std::min(range.end, now.size());
     if (range.begin >= range.end) continue;
-    to.RawBuffer::write(&now[range.begin], range.begin * sizeof(T), (range.end - range.begin) * sizeof(T));
+    to.RawBuffer::write(&now[range.begin], range.begin * sizeof(T),
+                        (range.end - range.begin) * sizeof(T));
     bytes += (range.end - range.begin) * sizeof(T);
   }
   return bytes;
 }
 
 /// Does the same for nodes that are sent packed.
-std::uint64_t send_packed(const Device& device, std::span<const float> nodes, const ChangedRanges& changed, bool all,
-                          Buffer<float>& to) {
+std::uint64_t send_packed(const Device& device, std::span<const float> nodes,
+                          const ChangedRanges& changed, bool all, Buffer<float>& to) {
   constexpr std::size_t from_each = CAPLET_NODE_FLOATS, to_each = CAPLET_PACKED_NODE_FLOATS;
-  if (all || nodes.size() / from_each * to_each > to.size()) return send<float>(device, packed_nodes(nodes), {}, true, to);
+  if (all || nodes.size() / from_each * to_each > to.size())
+    return send<float>(device, packed_nodes(nodes), {}, true, to);
   std::uint64_t bytes = 0;
   for (const ChangedRange& range : changed.joined(joined_bytes / sizeof(float))) {
-    const std::size_t first = range.begin / from_each, end = (range.end + from_each - 1) / from_each;
-    const std::vector<float> packed = packed_nodes(nodes.subspan(first * from_each, (end - first) * from_each));
-    to.RawBuffer::write(packed.data(), first * to_each * sizeof(float), packed.size() * sizeof(float));
+    const std::size_t first = range.begin / from_each,
+                      end = (range.end + from_each - 1) / from_each;
+    const std::vector<float> packed =
+        packed_nodes(nodes.subspan(first * from_each, (end - first) * from_each));
+    to.RawBuffer::write(packed.data(), first * to_each * sizeof(float),
+                        packed.size() * sizeof(float));
     bytes += packed.size() * sizeof(float);
   }
   return bytes;
@@ -88,7 +95,8 @@ template <class T>
 const T& sent_of(const T& values, const FlatScene&, const std::vector<float>&) {
   return values;
 }
-const std::vector<float>& sent_of(const std::vector<float>& values, const FlatScene& flat, const std::vector<float>& packed) {
+const std::vector<float>& sent_of(const std::vector<float>& values, const FlatScene& flat,
+                                  const std::vector<float>& packed) {
   return &values == &flat.nodes && !packed.empty() ? packed : values;
 }
 
@@ -106,18 +114,22 @@ void require_fit(const Device& device, const FlatScene& flat, const std::vector<
   };
 #define GROUP_BEGIN(Type, group)
 #define GROUP_END(Type)
-#define BUFFER(name, type, access) add(#name, contents(sent_of(flat.name, flat, packed)).size_bytes());
+#define BUFFER(name, type, access) \
+  add(#name, contents(sent_of(flat.name, flat, packed)).size_bytes());
   SCENE_GROUPS
 #undef GROUP_BEGIN
 #undef GROUP_END
 #undef BUFFER
-  const std::uint64_t left = info.global_bytes - std::min(info.global_bytes, device.bytes_allocated());
+  const std::uint64_t left =
+      info.global_bytes - std::min(info.global_bytes, device.bytes_allocated());
   if (all_bytes <= left && largest_bytes <= info.max_allocation_bytes) return;
   throw RunError(fmt::format(
-      "the scene takes {:.0f} MB on a device, {:.0f} MB of them in one buffer ({}); device '{}' has {:.0f} MB left, and allows "
+      "the scene takes {:.0f} MB on a device, {:.0f} MB of them in one buffer ({}); device '{}' "
+      "has {:.0f} MB left, and allows "
       "{:.0f} MB in one buffer",
-      static_cast<double>(all_bytes) * megabytes, static_cast<double>(largest_bytes) * megabytes, largest, info.name,
-      static_cast<double>(left) * megabytes, static_cast<double>(info.max_allocation_bytes) * megabytes));
+      static_cast<double>(all_bytes) * megabytes, static_cast<double>(largest_bytes) * megabytes,
+      largest, info.name, static_cast<double>(left) * megabytes,
+      static_cast<double>(info.max_allocation_bytes) * megabytes));
 }
 
 /// Returns the bytes of one path in each buffer of the paths; ONE: nothing.
@@ -138,11 +150,13 @@ std::vector<std::uint64_t> bytes_of_path(const PathNeeds& needs) {
 #define GROUP_BEGIN(Type, group) \
   {                              \
     auto& buffers = this->group;
-#define BUFFER(name, type, access) buffers.name = Buffer<type>(device, contents(sent_of(flat.name, flat, packed)));
+#define BUFFER(name, type, access) \
+  buffers.name = Buffer<type>(device, contents(sent_of(flat.name, flat, packed)));
 #define GROUP_END(Type) }
 SceneBuffers::SceneBuffers(const Device& device, const FlatScene& flat, Encoding encoding)
     : encoding_(encoding == Encoding::automatic ? device.encoding() : encoding) {
-  const std::vector<float> packed = encoding_ == Encoding::single ? packed_nodes(flat.nodes) : std::vector<float>{};
+  const std::vector<float> packed =
+      encoding_ == Encoding::single ? packed_nodes(flat.nodes) : std::vector<float>{};
   require_fit(device, flat, packed);
   SCENE_GROUPS
 }
@@ -151,13 +165,15 @@ SceneBuffers::SceneBuffers(const Device& device, const FlatScene& flat, Encoding
 SensorBuffers::SensorBuffers(const Device& device, const FlatView& flat){VIEW_GROUPS}
 #undef BUFFER
 
-PathBuffers::PathBuffers(const Device& device, std::size_t paths, std::size_t sort_bins, const PathNeeds& needs) {
+PathBuffers::PathBuffers(const Device& device, std::size_t paths, std::size_t sort_bins,
+                         const PathNeeds& needs) {
   sort.sort_bins = Buffer<uint>(device, sort_bins);
   counters.counters = Buffer<uint>(device, std::size_t{counter_count});
   provide(device, paths, needs);
 }
 
-std::uint64_t SceneBuffers::update(const Device& device, const FlatScene& flat, const SceneChanges& changes) {
+std::uint64_t SceneBuffers::update(const Device& device, const FlatScene& flat,
+                                   const SceneChanges& changes) {
   std::uint64_t bytes = 0;
   const bool packs = encoding_ == Encoding::single;
   if (packs) bytes += send_packed(device, flat.nodes, changes.nodes, changes.all, tree.nodes);

@@ -49,7 +49,8 @@ struct SceneBuffers {
 
   /// Allocates and sends. `encoding`: what the nodes are for; automatic: the device's. Throws
   /// RunError, before anything is allocated, when it does not fit.
-  SceneBuffers(const Device& device, const FlatScene& scene, Encoding encoding = Encoding::automatic);
+  SceneBuffers(const Device& device, const FlatScene& scene,
+               Encoding encoding = Encoding::automatic);
   /// Sends what has changed, and returns its bytes. Buffers that have grown are allocated again,
   /// with some room to grow.
   std::uint64_t update(const Device& device, const FlatScene& scene, const SceneChanges& changes);
@@ -81,7 +82,8 @@ struct PathNeeds {
 struct PathBuffers {
   PATH_GROUPS
 
-  PathBuffers(const Device& device, std::size_t paths, std::size_t sort_bins, const PathNeeds& needs);
+  PathBuffers(const Device& device, std::size_t paths, std::size_t sort_bins,
+              const PathNeeds& needs);
   /// Allocates again the buffers that are too short for so many paths with such needs.
   void provide(const Device& device, std::size_t paths, const PathNeeds& needs);
   void bind(Bindings& bindings) const;

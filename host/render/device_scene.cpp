@@ -33,7 +33,8 @@ void DeviceScene::update(const FlatScene& scene, const SceneChanges& changes) {
   bvh_nodes_ = scene.bvh_nodes;
   // A kind that has disappeared may come back: kernels that have it are kept, so that no picture
   // waits for a compiler.
-  if (StageOptions options = options_.together_with(stage_options(scene, device_)); options != options_) {
+  if (StageOptions options = options_.together_with(stage_options(scene, device_));
+      options != options_) {
     kernels_ = Kernels(device_, options);
     options_ = std::move(options);
   }
@@ -43,7 +44,8 @@ void DeviceScene::prepare_for(const FlatView& view) {
   StageOptions options = options_;
   options.rows["samplers"] |= std::uint64_t{1} << view.view.sampler;
   // Viewers switch between these two cameras, which cost next to nothing.
-  options.rows["cameras"] |= std::uint64_t{1} << view.camera.kind | 1U << camera_perspective | 1U << camera_orthographic;
+  options.rows["cameras"] |=
+      std::uint64_t{1} << view.camera.kind | 1U << camera_perspective | 1U << camera_orthographic;
   if (options == options_) return;
   kernels_ = Kernels(device_, options);
   options_ = std::move(options);

@@ -16,7 +16,8 @@ namespace caplet {
 
 class DeviceScene {
  public:
-  /// Sends the scene to the device; nothing of `scene` is referred to afterwards. Throws RunError when it does not fit.
+  /// Sends the scene to the device; nothing of `scene` is referred to afterwards. Throws RunError
+  /// when it does not fit.
   DeviceScene(const Device& device, const FlatScene& scene);
 
   /// Sends what differs: `scene` is the one that was sent last, except for `changes`. Buffers that

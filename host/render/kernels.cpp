@@ -72,7 +72,8 @@ std::vector<Stage> render_stages(const StageNeeds& needs) {
 }
 
 Stage first_needed(std::initializer_list<Stage> stages, const StageNeeds& needs) {
-  const auto* const found = std::ranges::find_if(stages, [&](Stage stage) { return row_of(stage).is_used(needs); });
+  const auto* const found =
+      std::ranges::find_if(stages, [&](Stage stage) { return row_of(stage).is_used(needs); });
   CHECK_EQ_(found != stages.end(), true);
   return *found;
 }
@@ -96,16 +97,20 @@ std::size_t buffer_count(Stage stage) {
 std::string stage_source(Stage stage, const RowMasks& rows) {
   const std::string_view groups = row_of(stage).groups;
   return flatten_kernels(
-      fmt::format("#define STAGE_NAME {0}\n{2}#define STAGE_GROUPS {1}\n#include \"stages/arguments.cl\"\n#include "
+      fmt::format("#define STAGE_NAME {0}\n{2}#define STAGE_GROUPS {1}\n#include "
+                  "\"stages/arguments.cl\"\n#include "
                   "\"stages/{0}.cl\"\n#include \"stages/kernel.cl\"\n",
-                  row_of(stage).name, groups, groups.find("GROUP_COUNTERS") != groups.npos ? "#define STAGE_IS_COUNTED\n" : ""),
+                  row_of(stage).name, groups,
+                  groups.find("GROUP_COUNTERS") != groups.npos ? "#define STAGE_IS_COUNTED\n" : ""),
       rows);
 }
 
 StageOptions stage_options(const FlatScene& scene, const Device& device) {
-  return {fmt::format("-DCAPLET_REAL_WIDTH={} -DCAPLET_LEAF_KIND_BITS={}{}{}{}{}", device.encoding() == Encoding::wide ? 8 : 1,
-                      scene.leaf_kind_bits, !scene.light_nodes.empty() ? " -DCAPLET_LIGHT_TREE" : "",
-                      scene.sky_is_unseen ? " -DCAPLET_UNSEEN_SKY" : "", scene.has_chains ? " -DCAPLET_CHAINS" : "",
+  return {fmt::format("-DCAPLET_REAL_WIDTH={} -DCAPLET_LEAF_KIND_BITS={}{}{}{}{}",
+                      device.encoding() == Encoding::wide ? 8 : 1, scene.leaf_kind_bits,
+                      !scene.light_nodes.empty() ? " -DCAPLET_LIGHT_TREE" : "",
+                      scene.sky_is_unseen ? " -DCAPLET_UNSEEN_SKY" : "",
+                      scene.has_chains ? " -DCAPLET_CHAINS" : "",
                       scene.multiscatters() ? " -DCAPLET_MULTISCATTER" : ""),
           {{"shapes", shapes_on_trial(scene.shapes)},
            {"materials", scene.material_kinds()},
@@ -127,7 +132,9 @@ StageOptions StageOptions::together_with(const StageOptions& others) const {
 }
 
 Kernels::Kernels(const Device& device, StageOptions options)
-    : device_(device), options_(std::move(options)), local_size_(launch_policy_of(device.profile()).local_size) {}
+    : device_(device),
+      options_(std::move(options)),
+      local_size_(launch_policy_of(device.profile()).local_size) {}
 
 bool Kernels::takes_shares(Stage stage) const {
   return row_of(stage).launch == Launch::shares && device_.encoding() == Encoding::wide;
@@ -138,19 +145,26 @@ void Kernels::compile(std::span<const Stage> stages, std::size_t most) {
     auto& compiled = compiled_[static_cast<std::size_t>(stage)];
     if (compiled) continue;
     const std::string name = row_of(stage).name;
-    Program program = Program::from_source(device_, name, stage_source(stage, options_.rows), options_.compiler);
+    Program program =
+        Program::from_source(device_, name, stage_source(stage, options_.rows), options_.compiler);
     cl::Kernel kernel = program.kernel(name);
     const Launch launch = row_of(stage).launch;
-    const bool is_one = launch == Launch::one || (launch == Launch::one_on_cpus && device_.profile() == Profile::cpu);
-    const std::size_t local = is_one || takes_shares(stage) ? 1 : local_size_for(device_, kernel, local_size_);
-    program.prepare(name, local, is_one ? 1 : takes_shares(stage) ? share_count(device_, most) : most);
+    const bool is_one = launch == Launch::one ||
+                        (launch == Launch::one_on_cpus && device_.profile() == Profile::cpu);
+    const std::size_t local =
+        is_one || takes_shares(stage) ? 1 : local_size_for(device_, kernel, local_size_);
+    program.prepare(name, local,
+                    is_one                ? 1
+                    : takes_shares(stage) ? share_count(device_, most)
+                                          : most);
     compile_seconds_ += program.build_seconds();
     compile_seconds_by_stage_.emplace_back(name, program.build_seconds());
     compiled = Compiled{std::move(program), std::move(kernel), local};
   }
 }
 
-void Kernels::run(Stage stage, const Bindings& bindings, std::size_t count, std::size_t first, cl_uint counter) {
+void Kernels::run(Stage stage, const Bindings& bindings, std::size_t count, std::size_t first,
+                  cl_uint counter) {
   if (count == 0) return;
   auto& compiled = compiled_[static_cast<std::size_t>(stage)];
   CHECK_EQ_(compiled.has_value(), true);
@@ -161,11 +175,13 @@ void Kernels::run(Stage stage, const Bindings& bindings, std::size_t count, std:
   if (takes_shares(stage))
     launch_shares(device_, compiled->kernel, count);
   else
-    for (const std::size_t end = first + count, most = chunk_ > 0 ? chunk_ : count; first < end; first += most)
+    for (const std::size_t end = first + count, most = chunk_ > 0 ? chunk_ : count; first < end;
+         first += most)
       launch(device_, compiled->kernel, std::min(most, end - first), compiled->local_size, first);
   if (!timed_) return;
   device_.finish();
-  compiled->seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  compiled->seconds +=
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
 std::vector<std::pair<std::string, double>> Kernels::seconds_by_stage() const {

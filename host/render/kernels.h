@@ -67,7 +67,8 @@ class Kernels {
   /// Enqueues a stage, which is compiled, over items `first` to `first` + `count`; if `counter` is
   /// the number of a counter (limits.h), only over as many of these as it says. With timing on,
   /// waits for it and adds its seconds.
-  void run(Stage stage, const Bindings& bindings, std::size_t count, std::size_t first = 0, cl_uint counter = ~cl_uint{0});
+  void run(Stage stage, const Bindings& bindings, std::size_t count, std::size_t first = 0,
+           cl_uint counter = ~cl_uint{0});
   /// Limits the work-items of one launch, for stages that take one item each; 0: any number.
   void set_chunk(std::size_t chunk) { chunk_ = chunk; }
 
@@ -75,7 +76,9 @@ class Kernels {
   /// Returns the seconds that each stage took so far, when timing is on.
   std::vector<std::pair<std::string, double>> seconds_by_stage() const;
   double compile_seconds() const { return compile_seconds_; }
-  const std::vector<std::pair<std::string, double>>& compile_seconds_by_stage() const { return compile_seconds_by_stage_; }
+  const std::vector<std::pair<std::string, double>>& compile_seconds_by_stage() const {
+    return compile_seconds_by_stage_;
+  }
 
  private:
   bool takes_shares(Stage stage) const;  // its work-items do several items each

@@ -46,8 +46,9 @@ class Tally {
   std::vector<std::string> lines() const {
     std::vector<std::string> out;
     for (const auto& [of, wrong] : wrong_)
-      out.push_back(fmt::format("{}: {}: {} of {} rays are wrong; the first {}", shape_name(of.first), of.second, wrong.rays,
-                                asked_.at(of.first), wrong.first));
+      out.push_back(fmt::format("{}: {}: {} of {} rays are wrong; the first {}",
+                                shape_name(of.first), of.second, wrong.rays, asked_.at(of.first),
+                                wrong.first));
     return out;
   }
 
@@ -76,12 +77,16 @@ std::string text_of(const KnownRay& ray) {
 
 /// Returns the difference; it is empty when the kernel is right.
 std::string difference(const KnownRay& ray, const Seen& seen, std::size_t which) {
-  if (which >= ray.crossings.size()) return seen.hit ? fmt::format("finds t = {:.6g}, not nothing", seen.t) : "";
+  if (which >= ray.crossings.size())
+    return seen.hit ? fmt::format("finds t = {:.6g}, not nothing", seen.t) : "";
   const KnownCrossing& known = ray.crossings[which];
   if (!seen.hit) return fmt::format("finds nothing, not t = {:.6g}", known.t);
-  if (!(std::abs(seen.t - known.t) <= t_tolerance)) return fmt::format("finds t = {:.6g}, not {:.6g}", seen.t, known.t);
-  if (seen.object != ray.object) return fmt::format("finds object {}, not {}", seen.object, ray.object);
-  if (known.side != KnownCrossing::Side::either && seen.leaving != (known.side == KnownCrossing::Side::leaving))
+  if (!(std::abs(seen.t - known.t) <= t_tolerance))
+    return fmt::format("finds t = {:.6g}, not {:.6g}", seen.t, known.t);
+  if (seen.object != ray.object)
+    return fmt::format("finds object {}, not {}", seen.object, ray.object);
+  if (known.side != KnownCrossing::Side::either &&
+      seen.leaving != (known.side == KnownCrossing::Side::leaving))
     return seen.leaving ? "leaves where it enters" : "enters where it leaves";
   return "";
 }
@@ -104,15 +109,18 @@ std::string record_fault(const RayRecord& ray, const PickRecord& pick) {
   const std::array<double, 3> o{ray.ox, ray.oy, ray.oz}, d{ray.dx, ray.dy, ray.dz};
   double off = 0, dd = 0, nn = 0, dn = 0;
   for (std::size_t k = 0; k < 3; ++k) {
-    const double error = o[k] + static_cast<double>(pick.t) * d[k] - static_cast<double>(pick.point[k]);
+    const double error =
+        o[k] + static_cast<double>(pick.t) * d[k] - static_cast<double>(pick.point[k]);
     const double n = static_cast<double>(pick.normal[k]);
     off += error * error;
     dd += d[k] * d[k];
     nn += n * n;
     dn += d[k] * n;
   }
-  if (!(off <= t_tolerance * t_tolerance * dd)) return fmt::format("has its point {:.3g} away from the ray", std::sqrt(off));
-  if (!(std::abs(nn - 1) < 1e-3)) return fmt::format("has a normal of length {:.6g}", std::sqrt(nn));
+  if (!(off <= t_tolerance * t_tolerance * dd))
+    return fmt::format("has its point {:.3g} away from the ray", std::sqrt(off));
+  if (!(std::abs(nn - 1) < 1e-3))
+    return fmt::format("has a normal of length {:.6g}", std::sqrt(nn));
   if (!(dn < 0)) return "has a normal along the ray";
   return "";
 }
@@ -123,12 +131,14 @@ Seen seen_of(const PickRecord& pick) {
 
 /// TracedPaths is what the stages of a render find for rays.
 struct TracedPaths {
-  std::vector<HitRecord> hits;         // of each ray
-  std::vector<HitRecord> camera_hits;  // the same by extend_camera; none where there is no such stage
-  std::vector<bool> free;              // each shadow ray
+  std::vector<HitRecord> hits;  // of each ray
+  std::vector<HitRecord>
+      camera_hits;         // the same by extend_camera; none where there is no such stage
+  std::vector<bool> free;  // each shadow ray
 };
 
-TracedPaths trace(DeviceScene& scene, std::span<const RayRecord> rays, std::span<const RayRecord> shadows) {
+TracedPaths trace(DeviceScene& scene, std::span<const RayRecord> rays,
+                  std::span<const RayRecord> shadows) {
   const std::size_t paths = std::max(rays.size(), shadows.size());
   std::vector<Stage> stages{Stage::extend, Stage::connect};
   if (scene.has_camera_stage()) stages.push_back(Stage::extend_camera);
@@ -140,7 +150,8 @@ TracedPaths trace(DeviceScene& scene, std::span<const RayRecord> rays, std::span
   buffers.queues.queue.write(std::span(all).first(rays.size()));
   buffers.shadows.path_shadow.write(shadows);
   buffers.shadows.queue_shadow.write(std::span(all).first(shadows.size()));
-  buffers.shadows.path_shadow_target.write(std::vector<ShadowTarget>(shadows.size(), {CAPLET_NONE, CAPLET_NONE, INFINITY, 0}));
+  buffers.shadows.path_shadow_target.write(
+      std::vector<ShadowTarget>(shadows.size(), {CAPLET_NONE, CAPLET_NONE, INFINITY, 0}));
   buffers.shadows.path_shadow_radiance.write(std::vector<float4>(shadows.size(), {1, 1, 1, 1}));
   buffers.radiance.path_radiance.write(std::vector<float4>(shadows.size(), {0, 0, 0, 0}));
   Bindings bindings = scene.bindings();
@@ -164,7 +175,8 @@ TracedPaths trace(DeviceScene& scene, std::span<const RayRecord> rays, std::span
   return out;
 }
 
-void check_render(const KnownScene& known, const FlatScene& flat, const Device& device, Tally& tally) {
+void check_render(const KnownScene& known, const FlatScene& flat, const Device& device,
+                  Tally& tally) {
   const std::size_t count = known.rays.size();
   DeviceScene scene(device, flat);
   // Each shadow ray ends just before its ray's first crossing and just behind it; where there is
@@ -174,7 +186,8 @@ void check_render(const KnownScene& known, const FlatScene& flat, const Device& 
     rays.push_back(ray.ray);
     for (const double share : {0.98, 1.02}) {
       shadows.push_back(ray.ray);
-      if (!ray.crossings.empty()) shadows.back().t_max = static_cast<float>(share * ray.crossings.front().t);
+      if (!ray.crossings.empty())
+        shadows.back().t_max = static_cast<float>(share * ray.crossings.front().t);
     }
   }
   const TracedPaths traced = trace(scene, rays, shadows);
@@ -183,27 +196,33 @@ void check_render(const KnownScene& known, const FlatScene& flat, const Device& 
     if (const std::string wrong = difference(ray, seen_of(flat, traced.hits[i]), 0); !wrong.empty())
       tally.add("nearest crossing (extend)", ray, wrong);
     if (!traced.camera_hits.empty())
-      if (const std::string wrong = difference(ray, seen_of(flat, traced.camera_hits[i]), 0); !wrong.empty())
+      if (const std::string wrong = difference(ray, seen_of(flat, traced.camera_hits[i]), 0);
+          !wrong.empty())
         tally.add("nearest crossing (extend_camera)", ray, wrong);
-    if (!traced.free[2 * i]) tally.add("any crossing (connect)", ray, "is blocked where it is free");
+    if (!traced.free[2 * i])
+      tally.add("any crossing (connect)", ray, "is blocked where it is free");
     if (traced.free[2 * i + 1] != ray.crossings.empty())
-      tally.add("any crossing (connect)", ray,
-                traced.free[2 * i + 1] ? "is free where " + text_of(ray) + " blocks it" : "is blocked");
+      tally.add(
+          "any crossing (connect)", ray,
+          traced.free[2 * i + 1] ? "is free where " + text_of(ray) + " blocks it" : "is blocked");
   }
 }
 
-void check_queries(const KnownScene& known, const FlatScene& flat, const Device& device, const Trial& trial, Tally& tally) {
+void check_queries(const KnownScene& known, const FlatScene& flat, const Device& device,
+                   const Trial& trial, Tally& tally) {
   std::vector<RayRecord> rays;
   for (const KnownRay& ray : known.rays) rays.push_back(ray.ray);
   Query query(flat, device, {.batch_rays = rays.size()});
-  const auto check = [&](const char* name, const KnownRay& ray, const PickRecord& pick, std::size_t which) {
+  const auto check = [&](const char* name, const KnownRay& ray, const PickRecord& pick,
+                         std::size_t which) {
     std::string wrong = difference(ray, seen_of(pick), which);
     if (wrong.empty() && seen_of(pick).hit) wrong = record_fault(ray.ray, pick);
     if (!wrong.empty()) tally.add(name, ray, wrong);
   };
   if (trial.nearest) {
     const std::vector<PickRecord> picks = query.closest(rays);
-    for (std::size_t i = 0; i < rays.size(); ++i) check("nearest crossing (pick)", known.rays[i], picks[i], 0);
+    for (std::size_t i = 0; i < rays.size(); ++i)
+      check("nearest crossing (pick)", known.rays[i], picks[i], 0);
   }
   if (!trial.lists) return;
   constexpr const char* name = "all crossings (pick_all)";
@@ -214,22 +233,27 @@ void check_queries(const KnownScene& known, const FlatScene& flat, const Device&
     if (found != ray.crossings.size())
       tally.add(name, ray, fmt::format("finds {}, not {}", found, ray.crossings.size()));
     else
-      for (std::size_t k = 0; k < found; ++k) check(name, ray, lists.crossings[lists.begin[i] + k], k);
+      for (std::size_t k = 0; k < found; ++k)
+        check(name, ray, lists.crossings[lists.begin[i] + k], k);
   }
 }
 
 std::string key_of(const Trial& trial) {
-  return fmt::format("known answers {:x} {:d}{:d}{:d}", shapes_on_trial(trial.shapes), trial.render, trial.nearest, trial.lists);
+  return fmt::format("known answers {:x} {:d}{:d}{:d}", shapes_on_trial(trial.shapes), trial.render,
+                     trial.nearest, trial.lists);
 }
 
 /// Returns what a trial's result depends on beside the device: its kernels and how they are built.
 std::vector<std::string> trial_texts(const Device& device, const Trial& trial) {
-  std::vector<std::string> out{key_of(trial), name_of(device.encoding()), kernel_source("probe/self_test.cl"),
+  std::vector<std::string> out{key_of(trial), name_of(device.encoding()),
+                               kernel_source("probe/self_test.cl"),
                                kernel_source("probe/layout.cl")};
   if (trial.render)
-    out.insert(out.end(), {stage_source(Stage::extend), stage_source(Stage::extend_camera), stage_source(Stage::connect)});
+    out.insert(out.end(), {stage_source(Stage::extend), stage_source(Stage::extend_camera),
+                           stage_source(Stage::connect)});
   if (trial.nearest) out.push_back(stage_source(Stage::pick));
-  if (trial.lists) out.insert(out.end(), {stage_source(Stage::pick_all), stage_source(Stage::pick_list)});
+  if (trial.lists)
+    out.insert(out.end(), {stage_source(Stage::pick_all), stage_source(Stage::pick_list)});
   return out;
 }
 
@@ -244,16 +268,21 @@ std::vector<std::string> known_answer_failures(const Device& device, const Trial
   return tally.lines();
 }
 
-bool needs_trial(const Device& device, const Trial& trial) { return self_test_is_due(device, trial_texts(device, trial)); }
+bool needs_trial(const Device& device, const Trial& trial) {
+  return self_test_is_due(device, trial_texts(device, trial));
+}
 
 void try_device(const Device& device, const Trial& trial) {
   self_test(device);
   if (!needs_trial(device, trial)) return;
-  if (const std::vector<std::string> failures = known_answer_failures(device, trial); !failures.empty())
+  if (const std::vector<std::string> failures = known_answer_failures(device, trial);
+      !failures.empty())
     refuse_device(device, failures);
   remember_trial(device, trial);
 }
 
-void remember_trial(const Device& device, const Trial& trial) { remember_self_test(device, trial_texts(device, trial)); }
+void remember_trial(const Device& device, const Trial& trial) {
+  remember_self_test(device, trial_texts(device, trial));
+}
 
 }  // namespace caplet

@@ -17,8 +17,10 @@ namespace caplet {
 
 /// Trial is what a command is about to use on a device.
 struct Trial {
-  std::uint64_t shapes = ~std::uint64_t{0};             // kernels built for scenes of these (FlatScene::shapes)
-  bool render = false, nearest = false, lists = false;  // extend and connect; pick; pick_all and pick_list
+  std::uint64_t shapes =
+      ~std::uint64_t{0};  // kernels built for scenes of these (FlatScene::shapes)
+  bool render = false, nearest = false,
+       lists = false;  // extend and connect; pick; pick_all and pick_list
 };
 
 /// This trial has every kernel, for all shapes.

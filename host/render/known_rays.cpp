@@ -31,7 +31,9 @@ constexpr double cell_width = 24;
 
 class Random {
  public:
-  double uniform(double low, double high) { return low + (high - low) * (static_cast<double>(engine_() >> 8) * 0x1p-24); }
+  double uniform(double low, double high) {
+    return low + (high - low) * (static_cast<double>(engine_() >> 8) * 0x1p-24);
+  }
   bool coin() { return (engine_() & 256u) != 0; }
   dvec3 direction() {
     const double z = uniform(-1, 1), phi = uniform(0, full_turn), r = std::sqrt(1 - z * z);
@@ -40,7 +42,8 @@ class Random {
   /// Returns a unit vector across `axis`.
   dvec3 across(const dvec3& axis) {
     for (;;) {
-      const dvec3 tried = direction(), out = tried - axis * (glm::dot(tried, axis) / glm::dot(axis, axis));
+      const dvec3 tried = direction(),
+                  out = tried - axis * (glm::dot(tried, axis) / glm::dot(axis, axis));
       if (glm::length(out) > 0.1) return glm::normalize(out);
     }
   }
@@ -57,7 +60,9 @@ struct SurfacePoint {
 };
 using Sampler = std::function<SurfacePoint(Random&)>;
 
-double dot_of(const SurfacePoint& point, const dvec3& direction) { return glm::dot(point.n, direction) / glm::length(direction); }
+double dot_of(const SurfacePoint& point, const dvec3& direction) {
+  return glm::dot(point.n, direction) / glm::length(direction);
+}
 
 class Maker {
  public:
@@ -65,7 +70,8 @@ class Maker {
   explicit Maker(bool stretches) : stretches_(stretches) {}
 
   /// Adds a convex solid for which `sample` draws points of the surface, under `sized`.
-  void solid(int kind, const Geometry& geometry, const Sampler& sample, const dmat4& sized = dmat4(1)) {
+  void solid(int kind, const Geometry& geometry, const Sampler& sample,
+             const dmat4& sized = dmat4(1)) {
     keep_first(
         geometry, [=, this] { rays_of_solid(sample, false); }, sized);
     for (int copy = 0; copy < copies; ++copy) {
@@ -106,13 +112,15 @@ class Maker {
       const auto operation = static_cast<CsgShape::Operation>(copy % 3);
       begin(shape_csg, CsgShape{operation, {box, ball}}, copy, false);
       for (int i = 0; i < 8; ++i) {
-        const double rho = random_.uniform(0, 0.5), phi = random_.uniform(0, full_turn), half = std::sqrt(0.36 - rho * rho);
+        const double rho = random_.uniform(0, 0.5), phi = random_.uniform(0, full_turn),
+                     half = std::sqrt(0.36 - rho * rho);
         // Distances are from z = 3 downwards: the ball's ends, the box's.
         double enter = 2, leave = 4;
         if (operation == CsgShape::Operation::set_union) enter = 2 - half;
         if (operation == CsgShape::Operation::set_intersection) leave = 2 + half;
         if (operation == CsgShape::Operation::set_difference) enter = 2 + half;
-        add({rho * std::cos(phi), rho * std::sin(phi), 3}, {0, 0, -1}, {{enter, Side::entering}, {leave, Side::leaving}}, 5);
+        add({rho * std::cos(phi), rho * std::sin(phi), 3}, {0, 0, -1},
+            {{enter, Side::entering}, {leave, Side::leaving}}, 5);
         add({1.2 + rho, std::cos(phi), 3}, {0, 0, -1}, {}, 5);
       }
     }
@@ -130,8 +138,8 @@ class Maker {
     for (int copy = 0; copy < copies; ++copy) {
       matrix_ = placement(copy);
       kind_ = shape_instance;
-      object_ =
-          static_cast<std::uint32_t>(out_.scene.instances.size());  // counted behind the shapes, of which there may come more
+      object_ = static_cast<std::uint32_t>(
+          out_.scene.instances.size());  // counted behind the shapes, of which there may come more
       out_.scene.instances.push_back({0, matrix_, {}});
       rays_of_first_();
     }
@@ -146,7 +154,8 @@ class Maker {
   }
 
  private:
-  void keep_first(const Geometry& geometry, const std::function<void()>& rays, const dmat4& sized = dmat4(1)) {
+  void keep_first(const Geometry& geometry, const std::function<void()>& rays,
+                  const dmat4& sized = dmat4(1)) {
     if (first_) return;
     first_ = geometry;
     first_sized_ = sized;
@@ -157,16 +166,19 @@ class Maker {
   /// mirrored.
   dmat4 placement(int copy) {
     const int cell = cell_++;
-    const dvec3 place(cell % cells_a_side, cell / cells_a_side % cells_a_side, cell / (cells_a_side * cells_a_side));
+    const dvec3 place(cell % cells_a_side, cell / cells_a_side % cells_a_side,
+                      cell / (cells_a_side * cells_a_side));
     dmat4 m = glm::translate(dmat4(1), cell_width * (place - dvec3(middle_cell)));
     m = glm::rotate(m, random_.uniform(0, full_turn), random_.direction());
     const double size = random_.uniform(0.7, 1.5);
     if (!stretches_ || copy % 2 == 0) return glm::scale(m, dvec3(size));
     const double mirrored = copy % 4 == 1 ? -1 : 1;
-    return glm::scale(m, dvec3(random_.uniform(0.7, 1.5), random_.uniform(0.7, 1.5), mirrored * random_.uniform(0.7, 1.5)));
+    return glm::scale(m, dvec3(random_.uniform(0.7, 1.5), random_.uniform(0.7, 1.5),
+                               mirrored * random_.uniform(0.7, 1.5)));
   }
 
-  void begin(int kind, const Geometry& geometry, int copy, bool one_sided, const dmat4& sized = dmat4(1)) {
+  void begin(int kind, const Geometry& geometry, int copy, bool one_sided,
+             const dmat4& sized = dmat4(1)) {
     matrix_ = placement(copy);
     kind_ = kind;
     object_ = static_cast<std::uint32_t>(out_.scene.shapes.size());
@@ -191,7 +203,8 @@ class Maker {
     for (int i = 0; i < 5; ++i) {
       const auto [a, b] = chord(sample);
       const dvec3 d = b.p - a.p;
-      std::vector<KnownCrossing> outside{{1, Side::entering}, {2, Side::leaving}}, inside{{1, Side::leaving}};
+      std::vector<KnownCrossing> outside{{1, Side::entering}, {2, Side::leaving}},
+          inside{{1, Side::leaving}};
       if (one_sided) {
         outside.pop_back();
         inside.clear();
@@ -221,17 +234,22 @@ class Maker {
     for (int i = 0; i < 8; ++i) {
       const SurfacePoint to = sample(random_);
       const double slope = random_.uniform(0, 0.9), phi = random_.uniform(0, full_turn);
-      const dvec3 d = dvec3(slope * std::cos(phi), slope * std::sin(phi), 1) * (random_.coin() ? 1.0 : -1.0);
-      add(to.p - d, d, to.present ? std::vector<KnownCrossing>{{1, Side::either}} : std::vector<KnownCrossing>{}, 2);
+      const dvec3 d =
+          dvec3(slope * std::cos(phi), slope * std::sin(phi), 1) * (random_.coin() ? 1.0 : -1.0);
+      add(to.p - d, d,
+          to.present ? std::vector<KnownCrossing>{{1, Side::either}} : std::vector<KnownCrossing>{},
+          2);
     }
   }
 
   /// Adds a ray in the shape's own space; nothing is known of it beyond `t_end`.
-  void add(const dvec3& origin, const dvec3& direction, std::vector<KnownCrossing> crossings, double t_end) {
+  void add(const dvec3& origin, const dvec3& direction, std::vector<KnownCrossing> crossings,
+           double t_end) {
     const dvec3 o(matrix_ * glm::dvec4(origin, 1)), d(matrix_ * glm::dvec4(direction, 0));
     const auto f = [](double x) { return static_cast<float>(x); };
-    out_.rays.push_back(
-        {kind_, object_, RayRecord{f(o.x), f(o.y), f(o.z), 0, f(d.x), f(d.y), f(d.z), f(t_end)}, std::move(crossings)});
+    out_.rays.push_back({kind_, object_,
+                         RayRecord{f(o.x), f(o.y), f(o.z), 0, f(d.x), f(d.y), f(d.z), f(t_end)},
+                         std::move(crossings)});
   }
 
   bool stretches_;
@@ -257,7 +275,8 @@ Sampler hull_of_balls(const dvec3& p0, const dvec3& p1, double r0, double r1) {
     const dvec3 axis = p1 - p0;
     const double sine = (r0 - r1) / glm::length(axis);
     if (random.coin()) {
-      const dvec3 n = std::sqrt(1 - sine * sine) * random.across(axis) + sine * glm::normalize(axis);
+      const dvec3 n =
+          std::sqrt(1 - sine * sine) * random.across(axis) + sine * glm::normalize(axis);
       return SurfacePoint{lerp(p0 + r0 * n, p1 + r1 * n, random.uniform(0.05, 0.95)), n};
     }
     const dvec3 n = random.direction();
@@ -383,7 +402,8 @@ void known(Kind, Maker& make) {
 #include "scene/geometries.def"
 }
 
-const dvec3 end0(-0.5, 0.25, -0.5), end1(0.5, -0.25, 0.375);  // with radii that are sums of powers of two: exact as floats
+const dvec3 end0(-0.5, 0.25, -0.5),
+    end1(0.5, -0.25, 0.375);  // with radii that are sums of powers of two: exact as floats
 constexpr double phi_max = 4, z_min = -0.6, z_max = 0.7;
 
 void known(sphere_kind, Maker& make) {
@@ -394,38 +414,47 @@ void known(sphere_kind, Maker& make) {
 }
 
 void known(capsule_kind, Maker& make) {
-  make.solid(shape_capsule, capsule(end0, end1, 0.375, 0.375), hull_of_balls(end0, end1, 0.375, 0.375));
+  make.solid(shape_capsule, capsule(end0, end1, 0.375, 0.375),
+             hull_of_balls(end0, end1, 0.375, 0.375));
 }
 
 void known(tapered_capsule_kind, Maker& make) {
-  make.solid(shape_tapered_capsule, capsule(end0, end1, 0.5, 0.125), hull_of_balls(end0, end1, 0.5, 0.125));
+  make.solid(shape_tapered_capsule, capsule(end0, end1, 0.5, 0.125),
+             hull_of_balls(end0, end1, 0.5, 0.125));
 }
 
 void known(triangle_kind, Maker& make) {
   const glm::vec3 a(-1, -0.75f, 0), b(1, -0.5f, 0), c(0.25f, 1, 0);
-  make.sheet(shape_triangle, TriangleMeshShape{{a, b, c}, {{0, 1, 2}}, {}, {}}, [=](Random& random) {
-    // Barycentric coordinates are all positive on it, and the last one is negative beside it.
-    const bool on = random.uniform(0, 1) < 0.7;
-    const double w = on ? random.uniform(0.05, 0.9) : random.uniform(-0.5, -0.05), v = random.uniform(0.05, 0.95) * (1 - w);
-    const double u = 1 - w - v;
-    return SurfacePoint{u * dvec3(a) + v * dvec3(b) + w * dvec3(c), {0, 0, 1}, on};
-  });
+  make.sheet(shape_triangle, TriangleMeshShape{{a, b, c}, {{0, 1, 2}}, {}, {}},
+             [=](Random& random) {
+               // Barycentric coordinates are all positive on it, and the last one is negative
+               // beside it.
+               const bool on = random.uniform(0, 1) < 0.7;
+               const double w = on ? random.uniform(0.05, 0.9) : random.uniform(-0.5, -0.05),
+                            v = random.uniform(0.05, 0.95) * (1 - w);
+               const double u = 1 - w - v;
+               return SurfacePoint{u * dvec3(a) + v * dvec3(b) + w * dvec3(c), {0, 0, 1}, on};
+             });
 }
 
 void known(disk_kind, Maker& make) {
   make.sheet(shape_disk, DiskShape{0.25, 0.9, 0, full_turn}, [](Random& random) {
-    const double r = random.coin() ? random.uniform(0, 0.85) : random.uniform(0.95, 1.3), phi = random.uniform(0, full_turn);
+    const double r = random.coin() ? random.uniform(0, 0.85) : random.uniform(0.95, 1.3),
+                 phi = random.uniform(0, full_turn);
     return SurfacePoint{{r * std::cos(phi), r * std::sin(phi), 0.25}, {0, 0, 1}, r < 0.9};
   });
 }
 
 void known(cylinder_kind, Maker& make) {
-  make.solid(shape_cylinder, CylinderShape{end0, end1, 0.5, {Cap::flat, Cap::flat}}, frustum(end0, end1, 0.5, 0.5, false));
-  make.solid(shape_cylinder, CylinderShape{end0, end1, 0.5, {Cap::round, Cap::flat}}, frustum(end0, end1, 0.5, 0.5, true));
+  make.solid(shape_cylinder, CylinderShape{end0, end1, 0.5, {Cap::flat, Cap::flat}},
+             frustum(end0, end1, 0.5, 0.5, false));
+  make.solid(shape_cylinder, CylinderShape{end0, end1, 0.5, {Cap::round, Cap::flat}},
+             frustum(end0, end1, 0.5, 0.5, true));
 }
 
 void known(cone_kind, Maker& make) {
-  make.solid(shape_cone, ConeShape{end0, end1, {0.75, 0.25}, {Cap::flat, Cap::flat}}, frustum(end0, end1, 0.75, 0.25, false));
+  make.solid(shape_cone, ConeShape{end0, end1, {0.75, 0.25}, {Cap::flat, Cap::flat}},
+             frustum(end0, end1, 0.75, 0.25, false));
 }
 
 void known(polyhedron_kind, Maker& make) {
@@ -443,20 +472,24 @@ void known(polyhedron_kind, Maker& make) {
 }
 
 void known(partial_sphere_kind, Maker& make) {
-  make.open(shape_partial_sphere, PartialSphereShape{0.9, z_min, z_max, phi_max}, [](Random& random) {
-    for (;;) {
-      const dvec3 n = random.direction(), p = 0.9 * n;
-      const double phi = angle_of(p);
-      if (!clear_of(p.z, z_min, z_max, 0.03) || !clear_of(phi, 0, phi_max, 0.1) || phi > full_turn - 0.1) continue;
-      return SurfacePoint{p, n, p.z > z_min && p.z < z_max && phi < phi_max};
-    }
-  });
+  make.open(shape_partial_sphere, PartialSphereShape{0.9, z_min, z_max, phi_max},
+            [](Random& random) {
+              for (;;) {
+                const dvec3 n = random.direction(), p = 0.9 * n;
+                const double phi = angle_of(p);
+                if (!clear_of(p.z, z_min, z_max, 0.03) || !clear_of(phi, 0, phi_max, 0.1) ||
+                    phi > full_turn - 0.1)
+                  continue;
+                return SurfacePoint{p, n, p.z > z_min && p.z < z_max && phi < phi_max};
+              }
+            });
 }
 
 void known(open_cylinder_kind, Maker& make) {
   make.open(shape_open_cylinder, OpenCylinderShape{0.7, z_min, z_max, phi_max}, [](Random& random) {
     for (;;) {
-      const double phi = random.uniform(0.1, full_turn - 0.1), z = random.uniform(z_min - 0.3, z_max + 0.3);
+      const double phi = random.uniform(0.1, full_turn - 0.1),
+                   z = random.uniform(z_min - 0.3, z_max + 0.3);
       if (!clear_of(z, z_min, z_max, 0.03) || !clear_of(phi, 0, phi_max, 0.1)) continue;
       const dvec3 n(std::cos(phi), std::sin(phi), 0);
       return SurfacePoint{0.7 * n + dvec3(0, 0, z), n, z > z_min && z < z_max && phi < phi_max};
@@ -469,7 +502,9 @@ void known(partial_disk_kind, Maker& make) {
     for (;;) {
       const double r = random.uniform(0.1, 1.2), phi = random.uniform(0.1, full_turn - 0.1);
       if (!clear_of(r, 0.4, 1, 0.03) || !clear_of(phi, 0, phi_max, 0.1)) continue;
-      return SurfacePoint{{r * std::cos(phi), r * std::sin(phi), -0.25}, {0, 0, 1}, r > 0.4 && r < 1 && phi < phi_max};
+      return SurfacePoint{{r * std::cos(phi), r * std::sin(phi), -0.25},
+                          {0, 0, 1},
+                          r > 0.4 && r < 1 && phi < phi_max};
     }
   });
 }
@@ -477,15 +512,24 @@ void known(partial_disk_kind, Maker& make) {
 void known(bilinear_kind, Maker& make) {
   // The patch lies over the square [-1, 1]^2, with slopes of at most 0.25 along x and along y: 0.36
   // in all.
-  const std::vector<glm::vec3> corners{{-1, -1, 0.125f}, {1, -1, -0.125f}, {-1, 1, -0.25f}, {1, 1, 0.25f}};
-  make.sheet(shape_bilinear, BilinearMeshShape{corners, {{0, 1, 2, 3}}, {}, {}}, [=](Random& random) {
-    const auto at = [&](double u, double v) {
-      return lerp(lerp(dvec3(corners[0]), dvec3(corners[1]), u), lerp(dvec3(corners[2]), dvec3(corners[3]), u), v);
-    };
-    if (random.uniform(0, 1) < 0.7) return SurfacePoint{at(random.uniform(0.03, 0.97), random.uniform(0.03, 0.97)), {0, 0, 1}};
-    // Above the plane z = 0 a line moves sideways by 0.9 of the height at most, which is 0.25 on the patch.
-    return SurfacePoint{{random.uniform(1.3, 1.6) * (random.coin() ? 1 : -1), random.uniform(-1, 1), 0}, {0, 0, 1}, false};
-  });
+  const std::vector<glm::vec3> corners{
+      {-1, -1, 0.125f}, {1, -1, -0.125f}, {-1, 1, -0.25f}, {1, 1, 0.25f}};
+  make.sheet(shape_bilinear, BilinearMeshShape{corners, {{0, 1, 2, 3}}, {}, {}},
+             [=](Random& random) {
+               const auto at = [&](double u, double v) {
+                 return lerp(lerp(dvec3(corners[0]), dvec3(corners[1]), u),
+                             lerp(dvec3(corners[2]), dvec3(corners[3]), u), v);
+               };
+               if (random.uniform(0, 1) < 0.7)
+                 return SurfacePoint{at(random.uniform(0.03, 0.97), random.uniform(0.03, 0.97)),
+                                     {0, 0, 1}};
+               // Above the plane z = 0 a line moves sideways by 0.9 of the height at most, which is
+               // 0.25 on the patch.
+               return SurfacePoint{
+                   {random.uniform(1.3, 1.6) * (random.coin() ? 1 : -1), random.uniform(-1, 1), 0},
+                   {0, 0, 1},
+                   false};
+             });
 }
 
 void known(csg_kind, Maker& make) { make.csg(); }
@@ -498,7 +542,8 @@ std::uint64_t shapes_on_trial(std::uint64_t shapes) {
   std::uint64_t out = shapes & (~std::uint64_t{0} >> (64 - shape_count));
   if (out & shape_bit(shape_csg)) out |= shape_bit(shape_box) | shape_bit(shape_sphere);
   for (std::uint32_t shape = 0; shape < shape_count; ++shape)
-    if ((out & shape_bit(shape)) && shape_has(shape, trait_stands_straight)) out |= shape_bit(shape_instance);
+    if ((out & shape_bit(shape)) && shape_has(shape, trait_stands_straight))
+      out |= shape_bit(shape_instance);
   return out;
 }
 

@@ -31,19 +31,25 @@ constexpr std::size_t least_chunk = std::size_t{1} << 10, most_chunk = std::size
 
 }  // namespace
 
-const LaunchPolicy& launch_policy_of(Profile profile) { return profile == Profile::gpu ? of_gpus : of_cpus; }
+const LaunchPolicy& launch_policy_of(Profile profile) {
+  return profile == Profile::gpu ? of_gpus : of_cpus;
+}
 
-std::size_t fitting_batch(std::size_t wanted, std::uint64_t bytes, std::uint64_t largest_bytes, std::uint64_t left,
-                          std::uint64_t most) {
+std::size_t fitting_batch(std::size_t wanted, std::uint64_t bytes, std::uint64_t largest_bytes,
+                          std::uint64_t left, std::uint64_t most) {
   std::size_t paths = wanted;
-  while (paths > least_batch_paths && (paths * bytes > left || paths * largest_bytes > most)) paths = (paths + 1) / 2;
+  while (paths > least_batch_paths && (paths * bytes > left || paths * largest_bytes > most))
+    paths = (paths + 1) / 2;
   return std::max(paths, std::min(wanted, least_batch_paths));
 }
 
 std::size_t next_chunk(std::size_t chunk, std::size_t launched, double seconds) {
-  const double at_once = launched > chunk ? seconds * static_cast<double>(chunk) / static_cast<double>(launched) : seconds;
+  const double at_once = launched > chunk
+                             ? seconds * static_cast<double>(chunk) / static_cast<double>(launched)
+                             : seconds;
   if (at_once > most_chunk_seconds) return std::max(chunk / 2, least_chunk);
-  return 2 * at_once < least_chunk_seconds && launched > chunk / 2 ? std::min(2 * chunk, most_chunk) : chunk;
+  return 2 * at_once < least_chunk_seconds && launched > chunk / 2 ? std::min(2 * chunk, most_chunk)
+                                                                   : chunk;
 }
 
 std::vector<SortLevel> sort_levels(std::size_t bins, std::size_t fan) {

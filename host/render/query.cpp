@@ -17,13 +17,17 @@ constexpr std::size_t cpu_batch_rays = 65536 - 64;
 constexpr std::size_t gpu_batch_rays = std::size_t{1} << 20;
 constexpr std::size_t batch_hits = std::size_t{1} << 22;  // 64 MB
 
-std::size_t chosen(std::size_t wanted, std::size_t otherwise) { return wanted ? wanted : otherwise; }
+std::size_t chosen(std::size_t wanted, std::size_t otherwise) {
+  return wanted ? wanted : otherwise;
+}
 
 }  // namespace
 
 Query::Query(std::shared_ptr<DeviceScene> scene, const QueryOptions& options)
     : scene_(std::move(scene)),
-      batch_rays_(chosen(options.batch_rays, scene_->device().profile() == Profile::cpu ? cpu_batch_rays : gpu_batch_rays)),
+      batch_rays_(chosen(options.batch_rays, scene_->device().profile() == Profile::cpu
+                                                 ? cpu_batch_rays
+                                                 : gpu_batch_rays)),
       batch_hits_(chosen(options.batch_hits, batch_hits)) {
   query_.query = Buffer<QueryRecord>(scene_->device(), 1);
 }
@@ -70,7 +74,8 @@ std::vector<PickRecord> Query::closest(std::span<const RayRecord> rays) {
 HitLists Query::all(std::span<const RayRecord> rays, std::size_t capacity) {
   CHECK_LE_(std::size_t{1}, capacity);
   CHECK_LE_(capacity, max_query_capacity);
-  const std::size_t batch = std::min(std::clamp<std::size_t>(batch_hits_ / capacity, 1, batch_rays_), rays.size());
+  const std::size_t batch =
+      std::min(std::clamp<std::size_t>(batch_hits_ / capacity, 1, batch_rays_), rays.size());
   scene_->kernels().compile(std::array{Stage::pick_all, Stage::pick_list}, batch_rays_);
   QueryRecord record{};
   record.capacity = narrow<uint>(capacity);
@@ -96,7 +101,8 @@ HitLists Query::all(std::span<const RayRecord> rays, std::size_t capacity) {
     crossings_.query_begin.write(std::span(begin).first(count));
     scene_->kernels().run(Stage::pick_list, bindings(), count);
     out.crossings.resize(out.crossings.size() + kept);
-    picks_.picks.RawBuffer::read(&out.crossings[out.crossings.size() - kept], 0, kept * sizeof(PickRecord));
+    picks_.picks.RawBuffer::read(&out.crossings[out.crossings.size() - kept], 0,
+                                 kept * sizeof(PickRecord));
   }
   return out;
 }

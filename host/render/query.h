@@ -16,7 +16,8 @@ namespace caplet {
 
 struct QueryOptions {
   std::size_t batch_rays = 0;  // most rays of a launch; 0: chosen for the device
-  std::size_t batch_hits = 0;  // most crossings a launch of `all` has room for; 0: chosen for the device
+  std::size_t batch_hits =
+      0;  // most crossings a launch of `all` has room for; 0: chosen for the device
 };
 
 /// A ray can have at most this many crossings in a query.
@@ -27,7 +28,8 @@ inline constexpr std::size_t max_query_capacity = std::size_t{1} << 20;
 struct HitLists {
   std::vector<PickRecord> crossings;
   std::vector<std::size_t> begin;       // one more than rays
-  std::vector<std::size_t> overflowed;  // rays with more crossings than the capacity, whose lists are therefore not complete
+  std::vector<std::size_t> overflowed;  // rays with more crossings than the capacity, whose lists
+                                        // are therefore not complete
 };
 
 /// Rays have t in (t_min, t_max) of their record and directions of any length; rays that are not

@@ -18,7 +18,8 @@ SessionOptions session_options(const RenderOptions& options) {
           .patience = options.patience};
 }
 
-RenderResult render(const FlatScene& scene, const FlatView& view, std::span<const Device> devices, const RenderOptions& options,
+RenderResult render(const FlatScene& scene, const FlatView& view, std::span<const Device> devices,
+                    const RenderOptions& options,
                     const std::function<void(const Progress&)>& progress) {
   Session session(scene, view, {devices.begin(), devices.end()}, session_options(options));
   return render(session, devices, options, progress);
@@ -39,10 +40,12 @@ RenderResult render(Session& session, std::span<const Device> devices, const Ren
     const std::uint32_t more = session.render(
         samples,
         [&](const SessionProgress& now) {
-          if (now.samples_done > 0 && result.first_pass_seconds == 0) result.first_pass_seconds = seconds_since(start);
+          if (now.samples_done > 0 && result.first_pass_seconds == 0)
+            result.first_pass_seconds = seconds_since(start);
           if (options.cancelled && options.cancelled()) session.cancel();
           if (progress)
-            progress({(done + now.fraction * samples) / total, narrow<int>(done + now.samples_done), now.samples_per_second});
+            progress({(done + now.fraction * samples) / total, narrow<int>(done + now.samples_done),
+                      now.samples_per_second});
         },
         time_left);
     done += more;
@@ -52,7 +55,9 @@ RenderResult render(Session& session, std::span<const Device> devices, const Ren
     // A pass has as many samples as take about the time between two looks.
     for (std::uint32_t samples = 1; done < total;) {
       const Clock::time_point begin = Clock::now();
-      if (!pass(std::min(samples, total - done)) || (options.time_limit && seconds_since(start) >= *options.time_limit)) break;
+      if (!pass(std::min(samples, total - done)) ||
+          (options.time_limit && seconds_since(start) >= *options.time_limit))
+        break;
       const double seconds = seconds_since(begin);
       if (done < total) options.look(session.film());
       if (seconds < options.look_seconds / 2) samples *= 2;
@@ -76,7 +81,8 @@ RenderResult render(Session& session, std::span<const Device> devices, const Ren
   return result;
 }
 
-RenderResult render(const FlatScene& scene, const FlatView& view, const Device& device, const RenderOptions& options,
+RenderResult render(const FlatScene& scene, const FlatView& view, const Device& device,
+                    const RenderOptions& options,
                     const std::function<void(const Progress&)>& progress) {
   return render(scene, view, std::span(&device, 1), options, progress);
 }

@@ -23,10 +23,11 @@ struct RenderOptions {
   std::optional<double> time_limit;  // seconds; the pass under way is finished
   std::function<bool()> cancelled;   // asked after each batch: no more passes when true
   std::size_t batch_paths = 0;       // 0: chosen for the device
-  bool time_stages = false;          // wait for each stage and report its seconds (costs some on GPUs)
-  bool film_on_device = false;       // RenderResult::device_film in place of film, where it is on one device
-  double patience = 60;              // SessionOptions::patience
-  Layers layers = Layers::all();     // of the film
+  bool time_stages = false;  // wait for each stage and report its seconds (costs some on GPUs)
+  bool film_on_device =
+      false;             // RenderResult::device_film in place of film, where it is on one device
+  double patience = 60;  // SessionOptions::patience
+  Layers layers = Layers::all();  // of the film
   // This is called between passes, about once in so many seconds, with the current film; the final
   // film does not depend on it.
   std::function<void(const Film&)> look = {};
@@ -51,11 +52,14 @@ struct RenderResult {
   std::vector<DeviceWork> devices;
 };
 
-/// Renders on all of the devices together (Session); stops when it is cancelled or its time is over. `progress` is called on any
-/// thread, once at a time: before the first sample, and after each batch of paths. Throws RunError.
-RenderResult render(const FlatScene& scene, const FlatView& view, std::span<const Device> devices, const RenderOptions& options,
+/// Renders on all of the devices together (Session); stops when it is cancelled or its time is
+/// over. `progress` is called on any thread, once at a time: before the first sample, and after
+/// each batch of paths. Throws RunError.
+RenderResult render(const FlatScene& scene, const FlatView& view, std::span<const Device> devices,
+                    const RenderOptions& options,
                     const std::function<void(const Progress&)>& progress);
-RenderResult render(const FlatScene& scene, const FlatView& view, const Device& device, const RenderOptions& options,
+RenderResult render(const FlatScene& scene, const FlatView& view, const Device& device,
+                    const RenderOptions& options,
                     const std::function<void(const Progress&)>& progress);
 
 /// Returns the options of a session for renders with these options, for pictures that follow each

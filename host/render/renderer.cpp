@@ -31,24 +31,29 @@ uint sort_bits_of(const DeviceScene& scene, std::size_t batch_paths) {
   return scene.bvh_nodes() >= sorting_pays_from_nodes ? sort_bits_for(batch_paths) : CAPLET_NONE;
 }
 
-std::size_t bins_of(uint sort_bits) { return sort_bits == CAPLET_NONE ? 1 : std::size_t{8} << (3 * sort_bits); }
+std::size_t bins_of(uint sort_bits) {
+  return sort_bits == CAPLET_NONE ? 1 : std::size_t{8} << (3 * sort_bits);
+}
 
 Window window_of(const ViewRecord& view) {
-  return {narrow<int>(view.crop_x), narrow<int>(view.crop_y), narrow<int>(view.crop_width), narrow<int>(view.crop_height)};
+  return {narrow<int>(view.crop_x), narrow<int>(view.crop_y), narrow<int>(view.crop_width),
+          narrow<int>(view.crop_height)};
 }
 
 /// Returns the exponent of the power of two above |x|, within the range that sums have room for; 0
 /// if there is none.
 int exponent_of(double x) {
-  return x > 0 && std::isfinite(x) ? std::clamp(std::ilogb(x) + 1, -largest_film_exponent, largest_film_exponent) : 0;
+  return x > 0 && std::isfinite(x)
+             ? std::clamp(std::ilogb(x) + 1, -largest_film_exponent, largest_film_exponent)
+             : 0;
 }
 
 /// Returns the extent of the whole scene and the camera, as seen from the world's origin.
 double extent_of(const WorldRecord& world, const CameraRecord& camera) {
   double at = 0;
   for (const int k : {3, 7, 11}) at += std::abs(double{camera.world_from_camera[k]});
-  return at + std::abs(double{world.center_x}) + std::abs(double{world.center_y}) + std::abs(double{world.center_z}) +
-         double{world.radius};
+  return at + std::abs(double{world.center_x}) + std::abs(double{world.center_y}) +
+         std::abs(double{world.center_z}) + double{world.radius};
 }
 
 PathNeeds needs_of(const DeviceScene& scene, Layers layers) {
@@ -60,21 +65,26 @@ StageNeeds stage_needs(const DeviceScene& scene) {
           launch_policy_of(scene.device().profile()).counts_on_device};
 }
 
-std::size_t chosen_batch_paths(const DeviceScene& scene, const FlatView& view, const RendererOptions& options) {
+std::size_t chosen_batch_paths(const DeviceScene& scene, const FlatView& view,
+                               const RendererOptions& options) {
   const Device& device = scene.device();
   const LaunchPolicy& policy = launch_policy_of(device.profile());
-  const std::size_t wanted = std::clamp<std::size_t>(options.batch_paths ? options.batch_paths : policy.batch_paths, 1,
-                                                     std::max<std::size_t>(options.most_paths, 1));
+  const std::size_t wanted =
+      std::clamp<std::size_t>(options.batch_paths ? options.batch_paths : policy.batch_paths, 1,
+                              std::max<std::size_t>(options.most_paths, 1));
   FilmLayout layout;
   layout.layers = options.layers;
-  const std::uint64_t film =
-      std::uint64_t{view.view.crop_width} * view.view.crop_height * layout.words_per_pixel() * sizeof(ulong);
-  const std::uint64_t bins = sort_places(bins_of(sort_bits_of(scene, wanted)), policy.sort_fan) * sizeof(uint);
+  const std::uint64_t film = std::uint64_t{view.view.crop_width} * view.view.crop_height *
+                             layout.words_per_pixel() * sizeof(ulong);
+  const std::uint64_t bins =
+      sort_places(bins_of(sort_bits_of(scene, wanted)), policy.sort_fan) * sizeof(uint);
   // Drivers keep some memory for themselves, for example for private memory of kernels.
-  const std::uint64_t all = device.info().global_bytes / 8 * 7, taken = device.bytes_allocated() + film + bins;
+  const std::uint64_t all = device.info().global_bytes / 8 * 7,
+                      taken = device.bytes_allocated() + film + bins;
   const PathNeeds needs = needs_of(scene, options.layers);
-  return fitting_batch(wanted, PathBuffers::bytes_per_path(needs), PathBuffers::largest_bytes_per_path(needs),
-                       all - std::min(all, taken), device.info().max_allocation_bytes);
+  return fitting_batch(wanted, PathBuffers::bytes_per_path(needs),
+                       PathBuffers::largest_bytes_per_path(needs), all - std::min(all, taken),
+                       device.info().max_allocation_bytes);
 }
 
 /// Allocates buffers for `paths` paths, or for fewer where the device turns out to have less memory
@@ -82,7 +92,8 @@ std::size_t chosen_batch_paths(const DeviceScene& scene, const FlatView& view, c
 PathBuffers path_buffers(const DeviceScene& scene, std::size_t& paths, Layers layers) {
   const auto made = [&] {
     const std::size_t bins = bins_of(sort_bits_of(scene, paths));
-    return PathBuffers(scene.device(), paths, sort_places(bins, launch_policy_of(scene.device().profile()).sort_fan),
+    return PathBuffers(scene.device(), paths,
+                       sort_places(bins, launch_policy_of(scene.device().profile()).sort_fan),
                        needs_of(scene, layers));
   };
   while (paths > least_batch_paths) try {
@@ -99,7 +110,8 @@ Film DeviceFilm::read(int first, int rows) const {
   FilmLayout part = layout;
   part.window.y += first;
   part.window.height = rows;
-  const std::size_t row_words = static_cast<std::size_t>(part.window.width) * part.words_per_pixel();
+  const std::size_t row_words =
+      static_cast<std::size_t>(part.window.width) * part.words_per_pixel();
   std::vector<std::uint64_t> values(static_cast<std::size_t>(rows) * row_words);
   words.RawBuffer::read(values.data(), static_cast<std::size_t>(first) * row_words * sizeof(ulong),
                         values.size() * sizeof(ulong));
@@ -122,7 +134,8 @@ void Renderer::reset(const FlatView& view) {
   if (const uint sort_bits = sort_bits_of(scene_, batch_paths_); sort_bits != sort_bits_) {
     sort_bits_ = sort_bits;
     const LaunchPolicy& policy = launch_policy_of(scene_.device().profile());
-    paths_.sort.sort_bins = Buffer<uint>(scene_.device(), sort_places(bins_of(sort_bits_), policy.sort_fan));
+    paths_.sort.sort_bins =
+        Buffer<uint>(scene_.device(), sort_places(bins_of(sort_bits_), policy.sort_fan));
   }
   paths_.provide(scene_.device(), batch_paths_, needs_of(scene_, layers_));
   sensor_ = SensorBuffers(scene_.device(), view);
@@ -144,7 +157,8 @@ void Renderer::reset(const FlatView& view) {
   is_old_ = true;
   const StageNeeds needs = stage_needs(scene_);
   stages_ = {first_needed({Stage::extend_alpha, Stage::extend_camera, Stage::extend}, needs),
-             first_needed({Stage::extend_alpha, Stage::extend}, needs), first_needed({Stage::shade, Stage::shade_media}, needs),
+             first_needed({Stage::extend_alpha, Stage::extend}, needs),
+             first_needed({Stage::shade, Stage::shade_media}, needs),
              first_needed({Stage::connect, Stage::connect_alpha, Stage::connect_media}, needs)};
   scene_.kernels().compile(render_stages(needs), batch_paths_);
 }
@@ -212,9 +226,11 @@ void Renderer::batch(const BatchRecord& record) {
   paths_.counters.counters.write(counters);
   kernels.set_chunk(chunk_);
   kernels.run(Stage::generate, bindings, record.path_count);
-  if (scene_.has_media()) kernels.run(Stage::camera_media, bindings, origins_differ_ ? record.path_count : 1);
+  if (scene_.has_media())
+    kernels.run(Stage::camera_media, bindings, origins_differ_ ? record.path_count : 1);
   rays_.camera += record.path_count;
-  policy.counts_on_device ? rounds_on_device(bindings, record.path_count) : rounds_by_host(bindings, record.path_count);
+  policy.counts_on_device ? rounds_on_device(bindings, record.path_count)
+                          : rounds_by_host(bindings, record.path_count);
   const auto layers = static_cast<std::size_t>(std::popcount(layers_.bits()));
   kernels.run(Stage::resolve, bindings, record.pixel_count * (policy.layers_apart ? layers : 1));
   paths_.counters.counters.RawBuffer::read(counters.data(), 0, sizeof counters);
@@ -222,7 +238,8 @@ void Renderer::batch(const BatchRecord& record) {
   rays_.not_finite += counters[counter_not_finite];
 }
 
-void Renderer::trace_and_shade(Bindings& bindings, Stage extend, std::size_t paths, cl_uint counter) {
+void Renderer::trace_and_shade(Bindings& bindings, Stage extend, std::size_t paths,
+                               cl_uint counter) {
   Kernels& kernels = scene_.kernels();
   if (sort_bits_ != CAPLET_NONE) paths_.sort.sort_bins.clear();
   kernels.run(extend, bindings, paths, 0, counter);
@@ -282,12 +299,17 @@ void Renderer::rounds_on_device(Bindings& bindings, std::size_t paths) {
 /// Sorts queue_next into queue.
 void Renderer::sort(const Bindings& bindings, Launched paths) {
   Kernels& kernels = scene_.kernels();
-  const std::vector<SortLevel> levels = sort_levels(bins_of(sort_bits_), launch_policy_of(scene_.device().profile()).sort_fan);
-  for (std::size_t i = 0; i + 1 < levels.size(); ++i) kernels.run(Stage::sort_sums, bindings, levels[i].count, levels[i].first);
-  for (std::size_t i = levels.size(); i-- > 0;) kernels.run(Stage::sort_prefix, bindings, levels[i].count, levels[i].first);
+  const std::vector<SortLevel> levels =
+      sort_levels(bins_of(sort_bits_), launch_policy_of(scene_.device().profile()).sort_fan);
+  for (std::size_t i = 0; i + 1 < levels.size(); ++i)
+    kernels.run(Stage::sort_sums, bindings, levels[i].count, levels[i].first);
+  for (std::size_t i = levels.size(); i-- > 0;)
+    kernels.run(Stage::sort_prefix, bindings, levels[i].count, levels[i].first);
   kernels.run(Stage::sort_scatter, bindings, paths.count, 0, paths.counter);
 }
 
-std::uint64_t least_batch_bytes() { return PathBuffers::bytes_per_path({Layers::all(), true, true, true}) * least_batch_paths; }
+std::uint64_t least_batch_bytes() {
+  return PathBuffers::bytes_per_path({Layers::all(), true, true, true}) * least_batch_paths;
+}
 
 }  // namespace caplet

@@ -53,9 +53,10 @@ class Renderer {
   /// again. Compiles the stages that are not compiled yet.
   void reset(const FlatView& view);
 
-  /// Adds samples [sample_begin, sample_begin + sample_count) of every pixel of `window`, which lies within the film's.
-  /// `batch_done`, when there is one, is told the number of the window's pixels that are finished. Throws RunError, and
-  /// InputError when some of these samples are in the film already.
+  /// Adds samples [sample_begin, sample_begin + sample_count) of every pixel of `window`, which
+  /// lies within the film's. `batch_done`, when there is one, is told the number of the window's
+  /// pixels that are finished. Throws RunError, and InputError when some of these samples are in
+  /// the film already.
   void pass(const Window& window, std::uint32_t sample_begin, std::uint32_t sample_count,
             const std::function<void(std::size_t)>& batch_done = {});
 

@@ -31,12 +31,17 @@ DeviceWork work_of(const DeviceInfo& info) {
 }  // namespace
 
 struct Session::Worker {
-  Worker(const Device& on, const FlatScene& flat, const FlatView& of, const RendererOptions& options)
-      : device(on), scene(std::make_shared<DeviceScene>(on, flat)), view(of), renderer(*scene, view, options) {}
+  Worker(const Device& on, const FlatScene& flat, const FlatView& of,
+         const RendererOptions& options)
+      : device(on),
+        scene(std::make_shared<DeviceScene>(on, flat)),
+        view(of),
+        renderer(*scene, view, options) {}
   DeviceWork work() const {
     DeviceWork out = work_of(device.info());
     out.paths_a_second = speed.paths_a_second();
-    for (const FilmPart& part : had) out.paths += static_cast<double>(part.window.pixels()) * part.sample_count;
+    for (const FilmPart& part : had)
+      out.paths += static_cast<double>(part.window.pixels()) * part.sample_count;
     return out;
   }
   Device device;
@@ -44,7 +49,8 @@ struct Session::Worker {
   FlatView view;
   Renderer renderer;
   Speed speed;
-  std::vector<FilmPart> had;  // what is in its film; unlike the renderer's own list, never changed while it hangs
+  std::vector<FilmPart>
+      had;  // what is in its film; unlike the renderer's own list, never changed while it hangs
 };
 
 namespace {
@@ -59,8 +65,8 @@ std::string text_of(const std::exception_ptr& failure, double patience) {
 }
 
 void warn_of_lost(const Device& device, const std::exception_ptr& failure, double patience) {
-  log::warn("device {} '{}' {}: the others do its work again", device.info().index, device.info().name,
-            text_of(failure, patience));
+  log::warn("device {} '{}' {}: the others do its work again", device.info().index,
+            device.info().name, text_of(failure, patience));
 }
 
 StageSeconds& add(StageSeconds& to, const StageSeconds& more) {
@@ -85,7 +91,8 @@ struct PassGivenUp {};
 
 /// Run is one task of all workers; workers that hang keep it alive.
 struct Session::Run {
-  Run(Workers of, WorkQueue of_picture) : workers(std::move(of)), shares(std::move(of_picture)), under_way(workers.size()) {}
+  Run(Workers of, WorkQueue of_picture)
+      : workers(std::move(of)), shares(std::move(of_picture)), under_way(workers.size()) {}
 
   void tell(std::size_t member, double paths) {
     under_way[member] = paths;
@@ -94,7 +101,8 @@ struct Session::Run {
     for (const double each : under_way) done += each;
     const auto samples = std::min(shares.paths_done() / pixels, static_cast<double>(asked));
     try {
-      progress({static_cast<std::uint32_t>(std::max(0.0, samples)), asked, std::clamp(done / pixels / asked, 0.0, 1.0),
+      progress({static_cast<std::uint32_t>(std::max(0.0, samples)), asked,
+                std::clamp(done / pixels / asked, 0.0, 1.0),
                 done / std::max(1e-9, seconds_since(start))});
     } catch (...) {
       fatal = std::current_exception();
@@ -114,20 +122,23 @@ struct Session::Run {
   std::vector<std::optional<Film>> films;
 };
 
-Session::Session(const FlatScene& scene, const FlatView& view, const std::vector<Device>& devices, const SessionOptions& options)
+Session::Session(const FlatScene& scene, const FlatView& view, const std::vector<Device>& devices,
+                 const SessionOptions& options)
     : options_(options), first_(options.sample_begin), next_(options.sample_begin) {
   CHECK_LT_(std::size_t{0}, devices.size());
   RendererOptions each;
   each.layers = options.layers;
   each.batch_paths = options.batch_paths;
   if (options.most_samples > 0)
-    each.most_paths = std::size_t{view.view.crop_width} * view.view.crop_height * std::size_t{options.most_samples};
+    each.most_paths = std::size_t{view.view.crop_width} * view.view.crop_height *
+                      std::size_t{options.most_samples};
   std::exception_ptr failure;
   for (const Device& device : devices) try {
       workers_.push_back(std::make_shared<Worker>(device, scene, view, each));
       workers_.back()->scene->kernels().time_stages(options.time_stages);
     } catch (const RunError&) {
-      if (failure || devices.size() > 1) warn_of_lost(device, std::current_exception(), options.patience);
+      if (failure || devices.size() > 1)
+        warn_of_lost(device, std::current_exception(), options.patience);
       failure = std::current_exception();
       lost_.push_back(work_of(device.info()));
       lost_.back().lost = true;
@@ -138,7 +149,9 @@ Session::Session(const FlatScene& scene, const FlatView& view, const std::vector
 Session::~Session() = default;
 
 const Device& Session::device(std::size_t number) const { return workers_[number]->device; }
-std::shared_ptr<DeviceScene> Session::scene_on(std::size_t device) const { return workers_[device]->scene; }
+std::shared_ptr<DeviceScene> Session::scene_on(std::size_t device) const {
+  return workers_[device]->scene;
+}
 FilmLayout Session::layout() const { return workers_.front()->renderer.layout(); }
 
 std::vector<DeviceWork> Session::work() const {
@@ -191,7 +204,8 @@ void Session::clear() {
 /// Leaves these workers out, except for the last one there is: its failure is thrown, and it may be
 /// used again.
 void Session::part_with(const Workers& gone, const std::exception_ptr& last_failure) {
-  const std::shared_ptr<Worker> last = gone.size() == workers_.size() && !gone.empty() ? gone.back() : nullptr;
+  const std::shared_ptr<Worker> last =
+      gone.size() == workers_.size() && !gone.empty() ? gone.back() : nullptr;
   for (const auto& worker : gone) {
     if (worker == last) continue;
     DeviceWork work = worker->work();
@@ -228,40 +242,50 @@ void Session::update(const FlatScene& scene, const SceneChanges& changes, const 
 }
 
 void Session::resume(Film film) {
-  if (!(film.layout() == layout())) throw InputError("the film is one of another picture, other layers or another scene");
+  if (!(film.layout() == layout()))
+    throw InputError("the film is one of another picture, other layers or another scene");
   clear();
-  for (const FilmPart& part : film.parts()) next_ = std::max(next_, part.sample_begin + part.sample_count);
+  for (const FilmPart& part : film.parts())
+    next_ = std::max(next_, part.sample_begin + part.sample_count);
   first_ = next_;
   before_ = std::move(film);
 }
 
-std::uint32_t Session::render(std::uint32_t sample_count, const std::function<void(const SessionProgress&)>& progress,
+std::uint32_t Session::render(std::uint32_t sample_count,
+                              const std::function<void(const SessionProgress&)>& progress,
                               std::optional<double> time_limit) {
   sample_count = std::min(sample_count, std::numeric_limits<std::uint32_t>::max() - next_);
   const std::uint64_t not_finite = rays().not_finite;
   const std::uint32_t done = run(sample_count, progress, time_limit);
   *cancelled_ = false;
-  if (rays().not_finite > not_finite) log::warn("{} samples were not finite and count as black", rays().not_finite - not_finite);
+  if (rays().not_finite > not_finite)
+    log::warn("{} samples were not finite and count as black", rays().not_finite - not_finite);
   next_ += done;
   return done;
 }
 
-std::uint32_t Session::run(std::uint32_t sample_count, const std::function<void(const SessionProgress&)>& progress,
+std::uint32_t Session::run(std::uint32_t sample_count,
+                           const std::function<void(const SessionProgress&)>& progress,
                            std::optional<double> time_limit) {
   const Window window = layout().window;
   const std::size_t pixels = std::max<std::size_t>(1, window.pixels());
   std::vector<WorkQueue::Worker> members;
   for (const auto& worker : workers_) {
-    const std::size_t batch = worker->renderer.batch_paths(), fill = std::max<std::size_t>(1, batch / pixels);
-    const std::size_t most = options_.pass_samples > 0 ? options_.pass_samples : workers_.size() > 1 ? batch : fill;
+    const std::size_t batch = worker->renderer.batch_paths(),
+                      fill = std::max<std::size_t>(1, batch / pixels);
+    const std::size_t most = options_.pass_samples > 0 ? options_.pass_samples
+                             : workers_.size() > 1     ? batch
+                                                       : fill;
     members.push_back({worker->speed, batch, static_cast<std::uint32_t>(std::min(most, batch))});
   }
-  const auto run = std::make_shared<Run>(workers_, WorkQueue(window, next_, sample_count, std::exchange(again_, {}), members));
+  const auto run = std::make_shared<Run>(
+      workers_, WorkQueue(window, next_, sample_count, std::exchange(again_, {}), members));
   run->pixels = static_cast<double>(pixels);
   run->asked = sample_count;
   run->progress = progress;
   const auto beats = [run](std::size_t i) { return run->workers[i]->renderer.beats(); };
-  const auto lost = [run, patience = options_.patience](std::size_t i, const std::exception_ptr& failure) {
+  const auto lost = [run, patience = options_.patience](std::size_t i,
+                                                        const std::exception_ptr& failure) {
     run->shares.lose(i, run->workers[i]->had);
     run->under_way[i] = 0;
     run->gone.push_back(run->workers[i]);
@@ -270,11 +294,13 @@ std::uint32_t Session::run(std::uint32_t sample_count, const std::function<void(
   };
   const auto pool = std::make_shared<WorkerPool>(workers_.size(), WorkerPool::Calls{beats, lost});
   const std::weak_ptr<WorkerPool> weak = pool;
-  pool->run(options_.patience, [run, weak, cancelled = cancelled_, time_limit](std::size_t i, WorkerPool::Lock& lock) {
+  pool->run(options_.patience, [run, weak, cancelled = cancelled_, time_limit](
+                                   std::size_t i, WorkerPool::Lock& lock) {
     const std::shared_ptr<WorkerPool> pool_of = weak.lock();
     Worker& worker = *run->workers[i];
     while (!pool_of->gone(i) && !run->fatal) {
-      const bool late = time_limit && run->shares.begun() && seconds_since(run->start) >= *time_limit;
+      const bool late =
+          time_limit && run->shares.begun() && seconds_since(run->start) >= *time_limit;
       if (*cancelled || late) run->shares.close();
       const std::optional<FilmPart> part = run->shares.take(i);
       if (!part) {
@@ -285,11 +311,13 @@ std::uint32_t Session::run(std::uint32_t sample_count, const std::function<void(
       const Clock::time_point start = Clock::now();
       const bool there = pool_of->attempt(i, lock, [&] {
         try {
-          worker.renderer.pass(part->window, part->sample_begin, part->sample_count, [&](std::size_t pixels_done) {
-            const WorkerPool::Lock telling(pool_of->mutex());
-            if (!pool_of->gone(i)) run->tell(i, static_cast<double>(pixels_done) * part->sample_count);
-            if (run->fatal) throw PassGivenUp();
-          });
+          worker.renderer.pass(
+              part->window, part->sample_begin, part->sample_count, [&](std::size_t pixels_done) {
+                const WorkerPool::Lock telling(pool_of->mutex());
+                if (!pool_of->gone(i))
+                  run->tell(i, static_cast<double>(pixels_done) * part->sample_count);
+                if (run->fatal) throw PassGivenUp();
+              });
         } catch (const PassGivenUp&) {  // the film is cleared below
         }
       });
@@ -306,7 +334,9 @@ std::uint32_t Session::run(std::uint32_t sample_count, const std::function<void(
   run->progress = {};
   if (run->fatal) {
     const std::exception_ptr fatal = run->fatal;
-    std::erase_if(workers_, [&](const auto& worker) { return std::ranges::find(run->gone, worker) != run->gone.end(); });
+    std::erase_if(workers_, [&](const auto& worker) {
+      return std::ranges::find(run->gone, worker) != run->gone.end();
+    });
     clear();
     std::rethrow_exception(fatal);
   }
@@ -318,19 +348,24 @@ std::uint32_t Session::run(std::uint32_t sample_count, const std::function<void(
 std::optional<Film> Session::gather() {
   const auto run = std::make_shared<Run>(workers_, WorkQueue(layout().window, next_, 0, {}, {}));
   run->films.resize(workers_.size());
-  const auto lost = [run, patience = options_.patience](std::size_t i, const std::exception_ptr& failure) {
+  const auto lost = [run, patience = options_.patience](std::size_t i,
+                                                        const std::exception_ptr& failure) {
     run->gone.push_back(run->workers[i]);
     run->last_failure = failure;
-    if (run->gone.size() < run->workers.size()) warn_of_lost(run->workers[i]->device, failure, patience);
+    if (run->gone.size() < run->workers.size())
+      warn_of_lost(run->workers[i]->device, failure, patience);
   };
-  const auto pool = std::make_shared<WorkerPool>(workers_.size(), WorkerPool::Calls{[](std::size_t) { return 0; }, lost});
+  const auto pool = std::make_shared<WorkerPool>(
+      workers_.size(), WorkerPool::Calls{[](std::size_t) { return 0; }, lost});
   const std::weak_ptr<WorkerPool> weak = pool;
   pool->run(options_.patience, [run, weak](std::size_t i, WorkerPool::Lock& lock) {
     Film film;
-    if (weak.lock()->attempt(i, lock, [&] { film = run->workers[i]->renderer.film().read(); })) run->films[i] = std::move(film);
+    if (weak.lock()->attempt(i, lock, [&] { film = run->workers[i]->renderer.film().read(); }))
+      run->films[i] = std::move(film);
   });
   const WorkerPool::Lock lock(pool->mutex());
-  for (const auto& worker : run->gone) again_.insert(again_.end(), worker->had.begin(), worker->had.end());
+  for (const auto& worker : run->gone)
+    again_.insert(again_.end(), worker->had.begin(), worker->had.end());
   part_with(run->gone, run->last_failure);
   if (!run->gone.empty()) return {};
   Film out = std::move(*run->films.front());
@@ -338,7 +373,8 @@ std::optional<Film> Session::gather() {
   // Whatever worker rendered what, it is all samples of the window, though its parts may not be
   // such that join.
   if (out.parts().size() < 2) return out;
-  return Film(out.layout(), {out.words().begin(), out.words().end()}, {{out.layout().window, first_, next_ - first_}});
+  return Film(out.layout(), {out.words().begin(), out.words().end()},
+              {{out.layout().window, first_, next_ - first_}});
 }
 
 Film Session::film() {

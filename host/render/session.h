@@ -25,11 +25,13 @@ namespace caplet {
 struct SessionOptions {
   std::uint32_t sample_begin = 0;  // the first that is rendered of every pixel
   Layers layers = Layers::usual();
-  std::uint32_t pass_samples = 0;  // of every pixel, that a device takes at a time at most; 0: by its speed
-  std::size_t batch_paths = 0;     // 0: chosen for each device
-  std::uint32_t most_samples = 0;  // of every pixel that will be rendered, for small batches of small renders; 0: unknown
-  bool time_stages = false;        // wait for each stage and add up its seconds
-  double patience = 60;            // seconds that a device may take for an answer, where there are others
+  std::uint32_t pass_samples =
+      0;  // of every pixel, that a device takes at a time at most; 0: by its speed
+  std::size_t batch_paths = 0;  // 0: chosen for each device
+  std::uint32_t most_samples =
+      0;  // of every pixel that will be rendered, for small batches of small renders; 0: unknown
+  bool time_stages = false;  // wait for each stage and add up its seconds
+  double patience = 60;      // seconds that a device may take for an answer, where there are others
 };
 
 struct SessionProgress {
@@ -56,23 +58,26 @@ using StageSeconds = std::vector<std::pair<std::string, double>>;
 class Session {
  public:
   /// Sends the scene to every device and compiles. Throws RunError when no device can do it.
-  Session(const FlatScene& scene, const FlatView& view, const std::vector<Device>& devices, const SessionOptions& options);
+  Session(const FlatScene& scene, const FlatView& view, const std::vector<Device>& devices,
+          const SessionOptions& options);
   ~Session();
 
   /// Switches to the scene as it now is, which differs from the last one in `changes`, and to a
   /// view of it. The film is empty again, and begins at the first sample. Throws RunError.
   void update(const FlatScene& scene, const SceneChanges& changes, const FlatView& view);
 
-  /// Begins with the samples of `film`, and goes on after the last of them. Throws InputError when it is not of this scene's
-  /// layout.
+  /// Begins with the samples of `film`, and goes on after the last of them. Throws InputError when
+  /// it is not of this scene's layout.
   void resume(Film film);
 
-  /// Adds the next `sample_count` samples of every pixel, on a thread a device (a device alone: on this one), and returns how
-  /// many of them were finished: fewer when it is cancelled, or its time limit (seconds) is over, which some are always begun
-  /// before. Samples that are begun are finished for every pixel. `progress`, when there is one, is called from these threads,
-  /// one at a time, after each batch; what it throws ends the render after the batches under way, and is thrown. Throws RunError
-  /// when the last device fails. After either the film is empty.
-  std::uint32_t render(std::uint32_t sample_count, const std::function<void(const SessionProgress&)>& progress = {},
+  /// Adds the next `sample_count` samples of every pixel, on a thread a device (a device alone: on
+  /// this one), and returns how many of them were finished: fewer when it is cancelled, or its time
+  /// limit (seconds) is over, which some are always begun before. Samples that are begun are
+  /// finished for every pixel. `progress`, when there is one, is called from these threads, one at
+  /// a time, after each batch; what it throws ends the render after the batches under way, and is
+  /// thrown. Throws RunError when the last device fails. After either the film is empty.
+  std::uint32_t render(std::uint32_t sample_count,
+                       const std::function<void(const SessionProgress&)>& progress = {},
                        std::optional<double> time_limit = {});
 
   /// Returns the sum of all films. A device that fails now is left out as well, and its work is
@@ -106,7 +111,8 @@ class Session {
   using Workers = std::vector<std::shared_ptr<Worker>>;
   void clear();
   void part_with(const Workers& gone, const std::exception_ptr& last_failure);
-  std::uint32_t run(std::uint32_t sample_count, const std::function<void(const SessionProgress&)>& progress,
+  std::uint32_t run(std::uint32_t sample_count,
+                    const std::function<void(const SessionProgress&)>& progress,
                     std::optional<double> time_limit);
   std::optional<Film> gather();
 
@@ -115,7 +121,8 @@ class Session {
   std::vector<DeviceWork> lost_;
   std::vector<FilmPart> again_;  // what was lost with devices and is in no film now
   std::optional<Film> before_;   // what it was resumed with
-  std::uint32_t first_, next_;   // the samples that its devices have rendered: up to, and without, the latter
+  std::uint32_t first_,
+      next_;  // the samples that its devices have rendered: up to, and without, the latter
   std::shared_ptr<std::atomic<bool>> cancelled_ = std::make_shared<std::atomic<bool>>(false);
 };
 

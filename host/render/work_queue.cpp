@@ -13,7 +13,9 @@ namespace {
 // Camera rays are numbered in tiles of 8 x 8 pixels (kernels/stages/path.cl).
 constexpr int tile_rows = 8;
 
-double paths_of(const FilmPart& part) { return static_cast<double>(part.window.pixels()) * part.sample_count; }
+double paths_of(const FilmPart& part) {
+  return static_cast<double>(part.window.pixels()) * part.sample_count;
+}
 
 std::uint32_t end_of(const FilmPart& part) { return part.sample_begin + part.sample_count; }
 
@@ -25,13 +27,16 @@ void Speed::measured(double paths, double seconds) {
 }
 
 double part_paths(double open, double speed, double all_speed) {
-  return std::clamp(0.5 * open * speed / all_speed, least_part_seconds * speed, most_part_seconds * speed);
+  return std::clamp(0.5 * open * speed / all_speed, least_part_seconds * speed,
+                    most_part_seconds * speed);
 }
 
-FilmPart cut_part(const FilmPart& from, double paths, std::uint32_t most_samples, std::vector<FilmPart>& rest) {
+FilmPart cut_part(const FilmPart& from, double paths, std::uint32_t most_samples,
+                  std::vector<FilmPart>& rest) {
   FilmPart part = from;
   const auto pixels = static_cast<double>(from.window.pixels());
-  const double samples = std::min(paths / pixels, static_cast<double>(std::min(most_samples, from.sample_count)));
+  const double samples =
+      std::min(paths / pixels, static_cast<double>(std::min(most_samples, from.sample_count)));
   if (samples >= 1) {
     part.sample_count = static_cast<std::uint32_t>(samples);
   } else {
@@ -56,9 +61,13 @@ FilmPart cut_part(const FilmPart& from, double paths, std::uint32_t most_samples
   return part;
 }
 
-WorkQueue::WorkQueue(const Window& window, std::uint32_t begin, std::uint32_t count, std::vector<FilmPart> again,
-                     std::vector<Worker> workers)
-    : begin_(begin), end_(begin + count), begun_end_(begin), open_(again.begin(), again.end()), workers_(std::move(workers)) {
+WorkQueue::WorkQueue(const Window& window, std::uint32_t begin, std::uint32_t count,
+                     std::vector<FilmPart> again, std::vector<Worker> workers)
+    : begin_(begin),
+      end_(begin + count),
+      begun_end_(begin),
+      open_(again.begin(), again.end()),
+      workers_(std::move(workers)) {
   if (count > 0) open_.push_back({window, begin, count});
 }
 
@@ -83,9 +92,11 @@ std::optional<FilmPart> WorkQueue::take(std::size_t worker) {
       paths = part_paths(open_paths(), speed, all);
       // A worker gets nothing if it is so slow that the others would finish before it had one row.
       const double least = from.window.width;
-      if (speed < fastest && least / speed > open_paths() / (known - speed) + least_part_seconds) return {};
+      if (speed < fastest && least / speed > open_paths() / (known - speed) + least_part_seconds)
+        return {};
     } else {
-      paths = std::min(static_cast<double>(to.batch_paths), 0.5 * open_paths() / static_cast<double>(workers_there()));
+      paths = std::min(static_cast<double>(to.batch_paths),
+                       0.5 * open_paths() / static_cast<double>(workers_there()));
     }
   }
   std::vector<FilmPart> rest;
@@ -126,19 +137,24 @@ void WorkQueue::close() {
 }
 
 bool WorkQueue::complete() const {
-  return open_.empty() && std::ranges::none_of(workers_, [](const Worker& each) { return each.under_way.has_value(); });
+  return open_.empty() && std::ranges::none_of(workers_, [](const Worker& each) {
+           return each.under_way.has_value();
+         });
 }
 
 std::size_t WorkQueue::workers_there() const {
-  return static_cast<std::size_t>(std::ranges::count_if(workers_, [](const Worker& each) { return each.there; }));
+  return static_cast<std::size_t>(
+      std::ranges::count_if(workers_, [](const Worker& each) { return each.there; }));
 }
 
 double WorkQueue::open_paths() const {
-  return std::accumulate(open_.begin(), open_.end(), 0.0, [](double sum, const FilmPart& part) { return sum + paths_of(part); });
+  return std::accumulate(open_.begin(), open_.end(), 0.0,
+                         [](double sum, const FilmPart& part) { return sum + paths_of(part); });
 }
 
 double WorkQueue::new_paths(const FilmPart& part) const {
-  const std::uint32_t end = end_of(part), first = std::min(end, std::max(part.sample_begin, begin_));
+  const std::uint32_t end = end_of(part),
+                      first = std::min(end, std::max(part.sample_begin, begin_));
   return static_cast<double>(part.window.pixels()) * (end - first);
 }
 

@@ -24,7 +24,8 @@ std::atomic<int>& given_up() {
 bool WorkerPool::any_given_up() { return given_up() > 0; }
 
 std::size_t WorkerPool::members_there() const {
-  return static_cast<std::size_t>(std::ranges::count_if(members_, [](const Member& member) { return !member.gone; }));
+  return static_cast<std::size_t>(
+      std::ranges::count_if(members_, [](const Member& member) { return !member.gone; }));
 }
 
 void WorkerPool::lose(std::size_t member, std::exception_ptr failure) {
@@ -70,14 +71,16 @@ void WorkerPool::run(double patience, const std::function<void(std::size_t, Lock
   {
     Lock lock(mutex_);
     const auto finished = [&] {
-      return std::ranges::all_of(members_, [](const Member& member) { return member.ended || member.given_up; });
+      return std::ranges::all_of(
+          members_, [](const Member& member) { return member.ended || member.given_up; });
     };
     auto before = std::chrono::steady_clock::now();
     while (!finished()) {
       changed_.wait_for(lock, std::chrono::duration<double>(tick_seconds));
       const auto now = std::chrono::steady_clock::now();
       // Time in which this process was stopped does not count as silence of a device.
-      const double passed = std::min(std::chrono::duration<double>(now - before).count(), 2 * tick_seconds);
+      const double passed =
+          std::min(std::chrono::duration<double>(now - before).count(), 2 * tick_seconds);
       before = now;
       for (std::size_t i = 0; i < members_.size(); ++i) {
         Member& member = members_[i];
@@ -93,7 +96,8 @@ void WorkerPool::run(double patience, const std::function<void(std::size_t, Lock
     }
     for (const Member& member : members_) hangs.push_back(member.given_up);
   }
-  for (std::size_t i = 0; i < threads.size(); ++i) hangs[i] ? threads[i].detach() : threads[i].join();
+  for (std::size_t i = 0; i < threads.size(); ++i)
+    hangs[i] ? threads[i].detach() : threads[i].join();
 }
 
 }  // namespace caplet

@@ -10,7 +10,8 @@ namespace {
 
 /// Calls rows(first, count), which returns these rows of the film as a film.
 template <class Rows>
-BandedImage in_bands(const FilmLayout& layout, const Scene& scene, Layers layers, NotFinite& not_finite, Rows rows) {
+BandedImage in_bands(const FilmLayout& layout, const Scene& scene, Layers layers,
+                     NotFinite& not_finite, Rows rows) {
   BandedImage out;
   out.whole = image_of(layout);
   out.whole.space = scene.film.space;
@@ -23,12 +24,16 @@ BandedImage in_bands(const FilmLayout& layout, const Scene& scene, Layers layers
 
 }  // namespace
 
-BandedImage developed_in_bands(const DeviceFilm& film, const Scene& scene, Layers layers, NotFinite& not_finite) {
-  return in_bands(film.layout, scene, layers, not_finite, [&film](int first, int count) { return film.read(first, count); });
+BandedImage developed_in_bands(const DeviceFilm& film, const Scene& scene, Layers layers,
+                               NotFinite& not_finite) {
+  return in_bands(film.layout, scene, layers, not_finite,
+                  [&film](int first, int count) { return film.read(first, count); });
 }
 
-BandedImage developed_in_bands(const Film& film, const Scene& scene, Layers layers, NotFinite& not_finite) {
-  return in_bands(film.layout(), scene, layers, not_finite, [&film](int first, int count) { return film.rows(first, count); });
+BandedImage developed_in_bands(const Film& film, const Scene& scene, Layers layers,
+                               NotFinite& not_finite) {
+  return in_bands(film.layout(), scene, layers, not_finite,
+                  [&film](int first, int count) { return film.rows(first, count); });
 }
 
 }  // namespace caplet::report

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Develops a render's picture in bands of rows from the device's film, so that neither film nor picture is in memory as a whole.
+// Develops a render's picture in bands of rows from the device's film, so that neither film nor
+// picture is in memory as a whole.
 #pragma once
 
 #include "film/develop.h"
@@ -11,9 +12,12 @@
 
 namespace caplet::report {
 
-/// Develops the layers (film/develop.h) of the film's sums, without metadata. Keeps references to `film`, `scene`, `not_finite`.
-BandedImage developed_in_bands(const DeviceFilm& film, const Scene& scene, Layers layers, NotFinite& not_finite);
+/// Develops the layers (film/develop.h) of the film's sums, without metadata. Keeps references to
+/// `film`, `scene`, `not_finite`.
+BandedImage developed_in_bands(const DeviceFilm& film, const Scene& scene, Layers layers,
+                               NotFinite& not_finite);
 /// Does the same for a film in memory.
-BandedImage developed_in_bands(const Film& film, const Scene& scene, Layers layers, NotFinite& not_finite);
+BandedImage developed_in_bands(const Film& film, const Scene& scene, Layers layers,
+                               NotFinite& not_finite);
 
 }  // namespace caplet::report

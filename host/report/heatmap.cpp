@@ -16,7 +16,8 @@ namespace {
 using Color = std::array<float, 3>;
 
 constexpr Color nothing = {0.02f, 0.02f, 0.02f}, wrong = {1, 0, 0};
-constexpr std::array<Color, 5> ramp = {{{0, 0, 0}, {0, 0.05f, 0.4f}, {0.05f, 0.5f, 0.4f}, {0.9f, 0.7f, 0.1f}, {1, 1, 1}}};
+constexpr std::array<Color, 5> ramp = {
+    {{0, 0, 0}, {0, 0.05f, 0.4f}, {0.05f, 0.5f, 0.4f}, {0.9f, 0.7f, 0.1f}, {1, 1, 1}}};
 
 constexpr float decades = 3;
 
@@ -35,7 +36,8 @@ Color color_of(const verify::HeatPixel& pixel) {
 
 }  // namespace
 
-void write_heatmap(const std::filesystem::path& path, const Scene& scene, const std::vector<verify::HeatPixel>& pixels) {
+void write_heatmap(const std::filesystem::path& path, const Scene& scene,
+                   const std::vector<verify::HeatPixel>& pixels) {
   FlatView frame;
   lower_camera(scene, frame);
   const ViewRecord& p = frame.view;
@@ -53,9 +55,11 @@ void write_heatmap(const std::filesystem::path& path, const Scene& scene, const 
     image.channels.push_back(std::move(channel));
   };
   for (std::size_t k = 0; k < 3; ++k)
-    add(std::array{"R", "G", "B"}[k], [k](const verify::HeatPixel& pixel) { return color_of(pixel)[k]; });
+    add(std::array{"R", "G", "B"}[k],
+        [k](const verify::HeatPixel& pixel) { return color_of(pixel)[k]; });
   for (std::size_t q = 0; q < verify::quantity_names.size(); ++q)
-    add(verify::quantity_names[q], [q](const verify::HeatPixel& pixel) { return pixel.in_bounds[q]; });
+    add(verify::quantity_names[q],
+        [q](const verify::HeatPixel& pixel) { return pixel.in_bounds[q]; });
   add("grazing", [](const verify::HeatPixel& pixel) { return pixel.grazed ? 1.f : 0.f; });
   add("disagrees", [](const verify::HeatPixel& pixel) { return pixel.disagrees ? 1.f : 0.f; });
   image.metadata["caplet:picture"] = "caplet verify: errors in units of the stated bounds";

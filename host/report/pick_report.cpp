@@ -26,10 +26,14 @@ double as_printed(float value) {
   return out;
 }
 
-Json to_json(const float (&v)[3]) { return Json::array({as_printed(v[0]), as_printed(v[1]), as_printed(v[2])}); }
+Json to_json(const float (&v)[3]) {
+  return Json::array({as_printed(v[0]), as_printed(v[1]), as_printed(v[2])});
+}
 
 /// Returns a name as a string, or the number if there is no name.
-Json label(const std::string& name, std::uint32_t number) { return name.empty() ? Json(number) : Json(name); }
+Json label(const std::string& name, std::uint32_t number) {
+  return name.empty() ? Json(number) : Json(name);
+}
 
 Json to_json(const PickRecord& p, const Scene& scene) {
   const Identity identity = identity_of(scene, p);
@@ -76,7 +80,8 @@ std::string crossing_text(const PickRecord& p, const Scene& scene) {
   const Identity identity = identity_of(scene, p);
   std::string out = fmt::format("object     {}\n", object_label(scene, identity));
   if (identity.instance) out += fmt::format("instance   {}\n", *identity.instance);
-  out += fmt::format("primitive  {}\nsurface    {}\nmaterial   {}\n", p.primitive, p.surface, material_label(scene, p.material));
+  out += fmt::format("primitive  {}\nsurface    {}\nmaterial   {}\n", p.primitive, p.surface,
+                     material_label(scene, p.material));
   out += fmt::format("t          {}, {}\n", p.t, side(p.leaving == 0));
   out += fmt::format("point      {}, within {:.2g}\n", numbers(p.point), p.error);
   out += fmt::format("normal     {}\nuv         ({}, {})\n", numbers(p.normal), p.u, p.v);
@@ -84,22 +89,28 @@ std::string crossing_text(const PickRecord& p, const Scene& scene) {
 }
 
 std::string reference_text(const ReferenceCrossing& c, const Scene& scene) {
-  return fmt::format("reference    t {:.9g}, {}, object {}, primitive {}, surface {}, material {}, at ({:.9g}, {:.9g}, {:.9g})\n",
-                     c.t, side(c.entering), c.name.empty() ? std::to_string(c.object) : c.name, c.primitive, c.surface,
-                     material_label(scene, c.material), c.point.x, c.point.y, c.point.z);
+  return fmt::format(
+      "reference    t {:.9g}, {}, object {}, primitive {}, surface {}, material {}, at ({:.9g}, "
+      "{:.9g}, {:.9g})\n",
+      c.t, side(c.entering), c.name.empty() ? std::to_string(c.object) : c.name, c.primitive,
+      c.surface, material_label(scene, c.material), c.point.x, c.point.y, c.point.z);
 }
 
 bool is_sheet(const Shape& shape) {
-  return std::holds_alternative<TriangleMeshShape>(shape.geometry) || std::holds_alternative<DiskShape>(shape.geometry) ||
+  return std::holds_alternative<TriangleMeshShape>(shape.geometry) ||
+         std::holds_alternative<DiskShape>(shape.geometry) ||
          std::holds_alternative<PartialSphereShape>(shape.geometry) ||
-         std::holds_alternative<OpenCylinderShape>(shape.geometry) || std::holds_alternative<BilinearMeshShape>(shape.geometry);
+         std::holds_alternative<OpenCylinderShape>(shape.geometry) ||
+         std::holds_alternative<BilinearMeshShape>(shape.geometry);
 }
 
 }  // namespace
 
-std::vector<ReferenceCrossing> reference_crossings(const Scene& scene, const RayRecord& ray, bool all) {
+std::vector<ReferenceCrossing> reference_crossings(const Scene& scene, const RayRecord& ray,
+                                                   bool all) {
   const reference::SceneReference reference(scene);
-  const reference::Ray asked{dvec3(ray.ox, ray.oy, ray.oz), dvec3(ray.dx, ray.dy, ray.dz), ray.t_min, ray.t_max};
+  const reference::Ray asked{dvec3(ray.ox, ray.oy, ray.oz), dvec3(ray.dx, ray.dy, ray.dz),
+                             ray.t_min, ray.t_max};
   std::vector<reference::SceneHit> hits;
   if (all)
     hits = reference.all(asked);
@@ -108,7 +119,8 @@ std::vector<ReferenceCrossing> reference_crossings(const Scene& scene, const Ray
   std::vector<ReferenceCrossing> out;
   for (const reference::SceneHit& hit : hits) {
     const bool placed = hit.instance != reference::no_instance;
-    const Shape& shape = placed ? scene.objects[hit.object].shapes[hit.shape] : scene.shapes[hit.shape];
+    const Shape& shape =
+        placed ? scene.objects[hit.object].shapes[hit.shape] : scene.shapes[hit.shape];
     const Identity identity{&shape, placed ? std::optional(hit.instance) : std::nullopt};
     ReferenceCrossing crossing;
     crossing.t = hit.t;
@@ -127,8 +139,10 @@ std::vector<ReferenceCrossing> reference_crossings(const Scene& scene, const Ray
 std::string plain_text(const PickReport& report, const Scene& scene) {
   const RayRecord& r = report.ray;
   std::string out;
-  if (report.pixel) out += fmt::format("pixel      {}, {}\n", (*report.pixel)[0], (*report.pixel)[1]);
-  out += fmt::format("ray        from ({}, {}, {}) along ({}, {}, {})\n", r.ox, r.oy, r.oz, r.dx, r.dy, r.dz);
+  if (report.pixel)
+    out += fmt::format("pixel      {}, {}\n", (*report.pixel)[0], (*report.pixel)[1]);
+  out += fmt::format("ray        from ({}, {}, {}) along ({}, {}, {})\n", r.ox, r.oy, r.oz, r.dx,
+                     r.dy, r.dz);
   if (report.crossings.empty()) out += "hit        nothing\n";
   const std::size_t references = report.reference ? report.reference->size() : 0;
   for (std::size_t i = 0; i < std::max(report.crossings.size(), references); ++i) {
@@ -137,7 +151,8 @@ std::string plain_text(const PickReport& report, const Scene& scene) {
     if (i < references) out += reference_text((*report.reference)[i], scene);
     if (report.reference && i >= references) out += "reference    nothing\n";
   }
-  if (report.reference && report.crossings.empty() && references == 0) out += "reference    nothing\n";
+  if (report.reference && report.crossings.empty() && references == 0)
+    out += "reference    nothing\n";
   return out;
 }
 

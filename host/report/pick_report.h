@@ -33,9 +33,10 @@ struct PickReport {
   std::optional<std::vector<ReferenceCrossing>> reference;
 };
 
-/// Returns the reference's crossings of the same ray, in the device's floats. Time and memory grow with the primitives of the
-/// scene.
-std::vector<ReferenceCrossing> reference_crossings(const Scene& scene, const RayRecord& ray, bool all);
+/// Returns the reference's crossings of the same ray, in the device's floats. Time and memory grow
+/// with the primitives of the scene.
+std::vector<ReferenceCrossing> reference_crossings(const Scene& scene, const RayRecord& ray,
+                                                   bool all);
 
 std::string plain_text(const PickReport& report, const Scene& scene);
 std::string json_text(const PickReport& report, const Scene& scene);

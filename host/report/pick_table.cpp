@@ -28,7 +28,8 @@ std::vector<std::string> made_in_slices(std::span<const PickRow> rows, const Mak
   constexpr std::size_t slice = 4096;
   std::vector<std::string> out((rows.size() + slice - 1) / slice);
   tbb::parallel_for(std::size_t{0}, out.size(), [&](std::size_t i) {
-    for (const PickRow& row : rows.subspan(i * slice, std::min(slice, rows.size() - i * slice))) make_row(row, out[i]);
+    for (const PickRow& row : rows.subspan(i * slice, std::min(slice, rows.size() - i * slice)))
+      make_row(row, out[i]);
   });
   return out;
 }
@@ -50,7 +51,8 @@ class CsvTable : public PickTable {
   }
 
   void append(std::span<const PickRow> rows) override {
-    for (const std::string& text : made_in_slices(rows, [&](const PickRow&row, std::string&out) { add(row, out); }))
+    for (const std::string& text :
+         made_in_slices(rows, [&](const PickRow&row, std::string&out) { add(row, out); }))
       file_ << text;
     check();
   }
@@ -64,10 +66,11 @@ class CsvTable : public PickTable {
   void add(const PickRow& row, std::string& out) const {
     const PickRecord& p = row.pick;
     // {} is the shortest text that reads back as the same float.
-    fmt::format_to(std::back_inserter(out), "{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", row.ray, p.t,
-                   csv_text(object_label(scene_, identity_of(scene_, p))), p.primitive, p.surface,
-                   csv_text(material_label(scene_, p.material)), p.leaving ? 0 : 1, p.point[0], p.point[1], p.point[2],
-                   p.normal[0], p.normal[1], p.normal[2], p.u, p.v);
+    fmt::format_to(std::back_inserter(out), "{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n",
+                   row.ray, p.t, csv_text(object_label(scene_, identity_of(scene_, p))),
+                   p.primitive, p.surface, csv_text(material_label(scene_, p.material)),
+                   p.leaving ? 0 : 1, p.point[0], p.point[1], p.point[2], p.normal[0], p.normal[1],
+                   p.normal[2], p.u, p.v);
   }
   void check() const {
     if (!file_) throw RunError(fmt::format("{}: cannot be written", path_.string()));
@@ -89,7 +92,8 @@ std::size_t longest_object_label(const Scene& scene) {
 
 std::size_t longest_material_label(const Scene& scene) {
   std::size_t out = std::to_string(scene.materials.size()).size();
-  for (const Material& material : scene.materials) out = std::max(out, unicode_length(material.name));
+  for (const Material& material : scene.materials)
+    out = std::max(out, unicode_length(material.name));
   return out;
 }
 
@@ -118,7 +122,8 @@ class NpyTable : public PickTable {
                 name) {}
 
   void append(std::span<const PickRow> rows) override {
-    for (const std::string& bytes : made_in_slices(rows, [&](const PickRow&row, std::string&out) { add(row, out); }))
+    for (const std::string& bytes :
+         made_in_slices(rows, [&](const PickRow&row, std::string&out) { add(row, out); }))
       writer_.append(bytes);
   }
 
@@ -127,7 +132,9 @@ class NpyTable : public PickTable {
  private:
   void add(const PickRow& row, std::string& out) const {
     const PickRecord& p = row.pick;
-    const auto put = [&](const auto& value) { out.append(reinterpret_cast<const char*>(&value), sizeof value); };
+    const auto put = [&](const auto& value) {
+      out.append(reinterpret_cast<const char*>(&value), sizeof value);
+    };
     put(static_cast<std::int64_t>(row.ray));
     put(p.t);
     append_unicode(out, object_label(scene_, identity_of(scene_, p)), object_length_);
@@ -150,15 +157,18 @@ class NpyTable : public PickTable {
 
 std::optional<TableFormat> table_format(const fs::path& path) {
   if (path.extension() == ".npy") return TableFormat::npy;
-  return path.extension() == ".csv" || is_stream(path) ? std::optional(TableFormat::csv) : std::nullopt;
+  return path.extension() == ".csv" || is_stream(path) ? std::optional(TableFormat::csv)
+                                                       : std::nullopt;
 }
 
 void check_table_format(const fs::path& path, const std::string& flag) {
   if (!table_format(path))
-    throw InputError(SourceLocation{flag}, fmt::format("'{}': tables are written as .csv or .npy", path.string()));
+    throw InputError(SourceLocation{flag},
+                     fmt::format("'{}': tables are written as .csv or .npy", path.string()));
 }
 
-std::unique_ptr<PickTable> create_pick_table(const fs::path& path, TableFormat format, const Scene& scene, const fs::path& name) {
+std::unique_ptr<PickTable> create_pick_table(const fs::path& path, TableFormat format,
+                                             const Scene& scene, const fs::path& name) {
   if (format == TableFormat::npy) return std::make_unique<NpyTable>(path, scene, name);
   return std::make_unique<CsvTable>(path, scene, name);
 }

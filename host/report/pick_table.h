@@ -29,13 +29,15 @@ class PickTable {
 
 enum class TableFormat { csv, npy };
 
-/// Returns the format by the extension; CSV for a stream (is_stream) without one; no value when unknown.
+/// Returns the format by the extension; CSV for a stream (is_stream) without one; no value when
+/// unknown.
 std::optional<TableFormat> table_format(const std::filesystem::path& path);
 /// Throws InputError that names `flag` when there is no format for it.
 void check_table_format(const std::filesystem::path& path, const std::string& flag);
 
-/// Creates the file; messages call it `name`. Throws RunError, as the table's members do, when it cannot be written.
-std::unique_ptr<PickTable> create_pick_table(const std::filesystem::path& path, TableFormat format, const Scene& scene,
-                                             const std::filesystem::path& name);
+/// Creates the file; messages call it `name`. Throws RunError, as the table's members do, when it
+/// cannot be written.
+std::unique_ptr<PickTable> create_pick_table(const std::filesystem::path& path, TableFormat format,
+                                             const Scene& scene, const std::filesystem::path& name);
 
 }  // namespace caplet::report

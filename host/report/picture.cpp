@@ -20,7 +20,9 @@ std::string of_devices(const RenderResult& result, std::string DeviceWork::*what
   return out;
 }
 
-std::map<std::string, std::string> picture_metadata(const Scene& scene, const std::string& scene_file, const std::string& command,
+std::map<std::string, std::string> picture_metadata(const Scene& scene,
+                                                    const std::string& scene_file,
+                                                    const std::string& command,
                                                     const RenderResult& result) {
   return {{"software", "Caplet " CAPLET_VERSION},
           {"caplet.version", CAPLET_VERSION},
@@ -97,8 +99,9 @@ class Preview {
 
 }  // namespace
 
-void write_pictures(const std::filesystem::path& picture, const std::filesystem::path& preview, const BandedImage& image,
-                    std::size_t channels, double render_seconds, const Finish& finish) {
+void write_pictures(const std::filesystem::path& picture, const std::filesystem::path& preview,
+                    const BandedImage& image, std::size_t channels, double render_seconds,
+                    const Finish& finish) {
   Preview small(finish);
   const std::vector<std::string> written = names_of(finish.written);
   BandedImage shown = image;
@@ -106,14 +109,18 @@ void write_pictures(const std::filesystem::path& picture, const std::filesystem:
     shown.band = [&](int first, int rows) {
       LayeredImage band = image.band(first, rows);
       small.add(band);
-      std::erase_if(band.channels, [&](const Channel& c) { return std::ranges::find(written, c.name) == written.end(); });
+      std::erase_if(band.channels, [&](const Channel& c) {
+        return std::ranges::find(written, c.name) == written.end();
+      });
       return band;
     };
   const LayeredImage& whole = image.whole;
   if (!picture.empty()) {
-    const std::uint64_t size =
-        static_cast<std::uint64_t>(whole.data_width) * static_cast<std::uint64_t>(whole.data_height) * channels * sizeof(float);
-    write_exr(picture, shown, compression_for(size, render_seconds, std::thread::hardware_concurrency()));
+    const std::uint64_t size = static_cast<std::uint64_t>(whole.data_width) *
+                               static_cast<std::uint64_t>(whole.data_height) * channels *
+                               sizeof(float);
+    write_exr(picture, shown,
+              compression_for(size, render_seconds, std::thread::hardware_concurrency()));
   } else if (!preview.empty()) {
     for (int first = 0; first < whole.data_height; first += shown.rows)
       shown.band(first, std::min(shown.rows, whole.data_height - first));

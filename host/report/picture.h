@@ -17,9 +17,11 @@
 
 namespace caplet::report {
 
-/// Returns the attributes of a picture (docs/output.md). `scene_file` and `command`: the name of the scene, and what made the
-/// picture (a command line or a program's name).
-std::map<std::string, std::string> picture_metadata(const Scene& scene, const std::string& scene_file, const std::string& command,
+/// Returns the attributes of a picture (docs/output.md). `scene_file` and `command`: the name of
+/// the scene, and what made the picture (a command line or a program's name).
+std::map<std::string, std::string> picture_metadata(const Scene& scene,
+                                                    const std::string& scene_file,
+                                                    const std::string& command,
                                                     const RenderResult& result);
 
 /// Returns a property of the devices that rendered the picture, separated by commas.
@@ -32,9 +34,11 @@ struct Finish {
   std::function<void(Shown& picture, const LayeredImage& layers)> draw;
 };
 
-/// Writes the picture and its preview, developed once, in bands. An empty path is not written. `channels`: the number of 32-bit
-/// channels; `render_seconds` limits the time of compression. Throws RunError.
-void write_pictures(const std::filesystem::path& picture, const std::filesystem::path& preview, const BandedImage& image,
-                    std::size_t channels, double render_seconds, const Finish& finish = {});
+/// Writes the picture and its preview, developed once, in bands. An empty path is not written.
+/// `channels`: the number of 32-bit channels; `render_seconds` limits the time of compression.
+/// Throws RunError.
+void write_pictures(const std::filesystem::path& picture, const std::filesystem::path& preview,
+                    const BandedImage& image, std::size_t channels, double render_seconds,
+                    const Finish& finish = {});
 
 }  // namespace caplet::report

@@ -11,7 +11,8 @@
 namespace caplet::report {
 
 std::vector<std::uint8_t> stereo_preview(StereoLayout layout, const std::vector<std::uint8_t>& left,
-                                         const std::vector<std::uint8_t>& right, int& width, int& height) {
+                                         const std::vector<std::uint8_t>& right, int& width,
+                                         int& height) {
   std::vector<std::uint8_t> out;
   if (layout == StereoLayout::anaglyph) {
     out = right;
@@ -27,13 +28,16 @@ std::vector<std::uint8_t> stereo_preview(StereoLayout layout, const std::vector<
   }
   const auto row = static_cast<std::ptrdiff_t>(3) * width;
   for (std::ptrdiff_t y = 0; y < height; ++y)
-    for (const auto* view : {&left, &right}) out.insert(out.end(), view->begin() + y * row, view->begin() + (y + 1) * row);
+    for (const auto* view : {&left, &right})
+      out.insert(out.end(), view->begin() + y * row, view->begin() + (y + 1) * row);
   width *= 2;
   return out;
 }
 
-void write_stereo_pictures(const std::filesystem::path& picture, const std::filesystem::path& preview, const BandedImage& left,
-                           const BandedImage& right, StereoLayout layout, std::size_t channels, double render_seconds) {
+void write_stereo_pictures(const std::filesystem::path& picture,
+                           const std::filesystem::path& preview, const BandedImage& left,
+                           const BandedImage& right, StereoLayout layout, std::size_t channels,
+                           double render_seconds) {
   std::array<std::vector<std::uint8_t>, 2> bytes;
   BandedImage both;
   both.whole = left.whole;
@@ -47,7 +51,8 @@ void write_stereo_pictures(const std::filesystem::path& picture, const std::file
         const std::vector<std::uint8_t> rgb = preview_rgb8(band);
         bytes[view].insert(bytes[view].end(), rgb.begin(), rgb.end());
       }
-      for (Channel& channel : band.channels) channel.name = name_in_view(channel.name, both.whole.views, view);
+      for (Channel& channel : band.channels)
+        channel.name = name_in_view(channel.name, both.whole.views, view);
       if (view == 0)
         out = std::move(band);
       else
@@ -58,11 +63,13 @@ void write_stereo_pictures(const std::filesystem::path& picture, const std::file
   };
   int width = both.whole.data_width, height = both.whole.data_height;
   if (!picture.empty()) {
-    const std::uint64_t size =
-        2 * static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height) * channels * sizeof(float);
-    write_exr(picture, both, compression_for(size, render_seconds, std::thread::hardware_concurrency()));
+    const std::uint64_t size = 2 * static_cast<std::uint64_t>(width) *
+                               static_cast<std::uint64_t>(height) * channels * sizeof(float);
+    write_exr(picture, both,
+              compression_for(size, render_seconds, std::thread::hardware_concurrency()));
   } else {
-    for (int first = 0; first < height; first += both.rows) both.band(first, std::min(both.rows, height - first));
+    for (int first = 0; first < height; first += both.rows)
+      both.band(first, std::min(both.rows, height - first));
   }
   if (preview.empty()) return;
   const std::vector<std::uint8_t> shown = stereo_preview(layout, bytes[0], bytes[1], width, height);

@@ -24,12 +24,14 @@ using Counted = std::set<const void*>;
 std::uint64_t bytes_of(const Shape& shape, Counted& counted) {
   std::uint64_t out = sizeof(Shape);
   if (const auto* capsules = std::get_if<CapsulesShape>(&shape.geometry))
-    out += bytes_of(capsules->p0) + bytes_of(capsules->p1) + bytes_of(capsules->radius0) + bytes_of(capsules->radius1) +
-           bytes_of(capsules->materials);
+    out += bytes_of(capsules->p0) + bytes_of(capsules->p1) + bytes_of(capsules->radius0) +
+           bytes_of(capsules->radius1) + bytes_of(capsules->materials);
   if (const auto* mesh = std::get_if<TriangleMeshShape>(&shape.geometry))
-    out += bytes_of(mesh->positions) + bytes_of(mesh->triangles) + bytes_of(mesh->normals) + bytes_of(mesh->uvs);
+    out += bytes_of(mesh->positions) + bytes_of(mesh->triangles) + bytes_of(mesh->normals) +
+           bytes_of(mesh->uvs);
   if (const auto* mesh = std::get_if<BilinearMeshShape>(&shape.geometry))
-    out += bytes_of(mesh->positions) + bytes_of(mesh->patches) + bytes_of(mesh->normals) + bytes_of(mesh->uvs);
+    out += bytes_of(mesh->positions) + bytes_of(mesh->patches) + bytes_of(mesh->normals) +
+           bytes_of(mesh->uvs);
   if (const auto* polyhedron = std::get_if<PolyhedronShape>(&shape.geometry))
     out += bytes_of(polyhedron->points) + bytes_of(polyhedron->normals);
   if (const auto* csg = std::get_if<CsgShape>(&shape.geometry))
@@ -38,12 +40,15 @@ std::uint64_t bytes_of(const Shape& shape, Counted& counted) {
   return out + bytes_of(shape.materials);
 }
 
-nlohmann::ordered_json to_json(const glm::dvec3& v) { return nlohmann::ordered_json::array({v.x, v.y, v.z}); }
+nlohmann::ordered_json to_json(const glm::dvec3& v) {
+  return nlohmann::ordered_json::array({v.x, v.y, v.z});
+}
 
 }  // namespace
 
 std::uint64_t model_bytes(const Scene& scene) {
-  std::uint64_t out = bytes_of(scene.materials) + bytes_of(scene.instances) + bytes_of(scene.lights);
+  std::uint64_t out =
+      bytes_of(scene.materials) + bytes_of(scene.instances) + bytes_of(scene.lights);
   Counted counted;
   for (const Shape& shape : scene.shapes) out += bytes_of(shape, counted);
   for (const Object& object : scene.objects)
@@ -95,16 +100,21 @@ nlohmann::ordered_json scene_summary(const Scene& scene, const FlatScene& flat) 
 
 nlohmann::ordered_json run_summary(const RunSeconds& seconds, const RenderResult& result) {
   nlohmann::ordered_json out;
-  out["seconds"] = {{"load", seconds.load},     {"build", seconds.build}, {"compile", seconds.compile},
-                    {"render", seconds.render}, {"write", seconds.write}, {"total", seconds.total}};
+  out["seconds"] = {{"load", seconds.load},       {"build", seconds.build},
+                    {"compile", seconds.compile}, {"render", seconds.render},
+                    {"write", seconds.write},     {"total", seconds.total}};
   out["first_pass_seconds"] = result.first_pass_seconds;
   out["compile_seconds"] = nlohmann::ordered_json::object();
-  for (const auto& [stage, stage_seconds] : result.stage_compile_seconds) out["compile_seconds"][stage] = stage_seconds;
+  for (const auto& [stage, stage_seconds] : result.stage_compile_seconds)
+    out["compile_seconds"][stage] = stage_seconds;
   out["stage_seconds"] = nlohmann::ordered_json::object();
-  for (const auto& [stage, stage_seconds] : result.stage_seconds) out["stage_seconds"][stage] = stage_seconds;
+  for (const auto& [stage, stage_seconds] : result.stage_seconds)
+    out["stage_seconds"][stage] = stage_seconds;
   out["samples_per_pixel"] = result.samples_per_pixel;
   out["interrupted"] = result.interrupted;
-  out["rays"] = {{"camera", result.camera_rays}, {"bounce", result.bounce_rays}, {"shadow", result.shadow_rays}};
+  out["rays"] = {{"camera", result.camera_rays},
+                 {"bounce", result.bounce_rays},
+                 {"shadow", result.shadow_rays}};
   out["device"] = of_devices(result, &DeviceWork::name);
   out["driver"] = of_devices(result, &DeviceWork::driver);
   out["devices"] = nlohmann::ordered_json::array();

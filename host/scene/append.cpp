@@ -37,7 +37,8 @@ class Appending {
     for (Texture& texture : part_.textures) {
       MoveOperands move;
       move.by = out_.textures;
-      std::visit([&](auto& model) { std::remove_cvref_t<decltype(model)>::fields(model, move); }, texture.model);
+      std::visit([&](auto& model) { std::remove_cvref_t<decltype(model)>::fields(model, move); },
+                 texture.model);
       to_.textures.push_back(std::move(texture));
     }
     add_materials();
@@ -63,7 +64,9 @@ class Appending {
   static std::optional<Key> key_of(const Material& material) {
     const auto* diffuse = std::get_if<DiffuseMaterial>(&material.model);
     const auto* rgb = diffuse ? std::get_if<RgbSpectrum>(&diffuse->reflectance) : nullptr;
-    if (!rgb || material.name.empty() || !material.textures.empty() || material.displacement || material.normalmap) return {};
+    if (!rgb || material.name.empty() || !material.textures.empty() || material.displacement ||
+        material.normalmap)
+      return {};
     if (rgb->space != RgbSpectrum{}.space) return {};
     return Key{material.name, {rgb->rgb.x, rgb->rgb.y, rgb->rgb.z}};
   }
@@ -92,7 +95,8 @@ class Appending {
   }
 
   void move(Shape& shape) {
-    shape.material = shape.material < out_.materials.size() ? out_.materials[shape.material] : shape.material;
+    shape.material =
+        shape.material < out_.materials.size() ? out_.materials[shape.material] : shape.material;
     for (std::uint32_t& one : shape.materials) one = out_.materials.at(one);
     if (auto* capsules = std::get_if<CapsulesShape>(&shape.geometry))
       for (std::uint32_t& one : capsules->materials) one = out_.materials.at(one);
@@ -115,7 +119,9 @@ class Appending {
 }  // namespace
 
 void prefix_names(Scene& scene, const std::string& name, const std::string& itself) {
-  const auto rename = [&](std::string& one) { one = one.empty() || one == itself ? name : name + ": " + one; };
+  const auto rename = [&](std::string& one) {
+    one = one.empty() || one == itself ? name : name + ": " + one;
+  };
   for (Shape& shape : scene.shapes) rename(shape.name);
   for (Object& object : scene.objects) {
     rename(object.name);

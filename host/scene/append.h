@@ -17,11 +17,13 @@ struct Appended {
   std::vector<std::uint32_t> materials;  // the new index of each material
 };
 
-/// Adds everything in `part`, including its lights; `to` keeps its camera, film and settings. A diffuse material without textures
-/// is not added again where `to` has one of the same name and colour.
+/// Adds everything in `part`, including its lights; `to` keeps its camera, film and settings. A
+/// diffuse material without textures is not added again where `to` has one of the same name and
+/// colour.
 Appended append(Scene& to, Scene part);
 
-/// Puts `name` and a colon before the names of shapes and objects. Those without a name, or called `itself`, are renamed `name`.
+/// Puts `name` and a colon before the names of shapes and objects. Those without a name, or called
+/// `itself`, are renamed `name`.
 void prefix_names(Scene& scene, const std::string& name, const std::string& itself = "");
 
 }  // namespace caplet

@@ -9,13 +9,14 @@
 
 namespace caplet {
 
-/// The background of the picture. Camera rays see it in place of the lights at infinity; all other rays see the lights. It is
-/// composited under the render by coverage, and a preview shows it at the brightness that is given here.
+/// The background of the picture. Camera rays see it in place of the lights at infinity; all other
+/// rays see the lights. It is composited under the render by coverage, and a preview shows it at
+/// the brightness that is given here.
 struct Backdrop {
   enum class Kind { transparent, color, image } kind = Kind::transparent;
-  glm::dvec3 color{0};  // as displayed, linear sRGB: 1 is white
-  std::shared_ptr<const EnvironmentImage>
-      image;  // as displayed, linear; it covers the whole picture, and the longer side is cropped evenly
+  glm::dvec3 color{0};                            // as displayed, linear sRGB: 1 is white
+  std::shared_ptr<const EnvironmentImage> image;  // as displayed, linear; it covers the whole
+                                                  // picture, and the longer side is cropped evenly
 };
 
 }  // namespace caplet

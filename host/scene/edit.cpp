@@ -10,8 +10,8 @@ namespace caplet {
 namespace {
 
 [[noreturn]] void no_such(const char* what, std::size_t number, std::size_t count) {
-  throw InputError("there is no " + std::string(what) + " " + std::to_string(number) + ", of " + std::to_string(count) +
-                   " counted from 0");
+  throw InputError("there is no " + std::string(what) + " " + std::to_string(number) + ", of " +
+                   std::to_string(count) + " counted from 0");
 }
 
 template <class T>
@@ -42,7 +42,8 @@ void add_parts(Scene& to, const Scene& from) {
   to.media = from.media;
 }
 
-/// Returns a scene of this shape alone, where it lies; a shape of an object appears in all instances of the object.
+/// Returns a scene of this shape alone, where it lies; a shape of an object appears in all
+/// instances of the object.
 Scene alone(const Scene& scene, const ShapeAt& place, Shape shape) {
   Scene out;
   if (!place.object) {
@@ -51,7 +52,8 @@ Scene alone(const Scene& scene, const ShapeAt& place, Shape shape) {
   }
   out.objects.emplace_back().shapes.push_back(std::move(shape));
   for (const Instance& instance : scene.instances)
-    if (instance.object == *place.object) out.instances.push_back({0, instance.world_from_object, instance.where});
+    if (instance.object == *place.object)
+      out.instances.push_back({0, instance.world_from_object, instance.where});
   if (out.instances.empty()) out.instances.emplace_back();
   return out;
 }
@@ -61,7 +63,8 @@ void check(const Scene& scene, const CapsuleEdit& edit) {
   const CapsulesShape& capsules = capsules_of(shape);
   if (edit.capsule >= capsules.p0.size()) no_such("capsule", edit.capsule, capsules.p0.size());
   Shape one;
-  one.geometry = CapsulesShape{{edit.to.p0}, {edit.to.p1}, {edit.to.radius0}, {edit.to.radius1}, {}};
+  one.geometry =
+      CapsulesShape{{edit.to.p0}, {edit.to.p1}, {edit.to.radius0}, {edit.to.radius1}, {}};
   one.world_from_object = shape.world_from_object;
   one.where = shape.where;
   check_alone(alone(scene, edit.at, std::move(one)), scene);
@@ -142,19 +145,26 @@ void check(const Scene& scene, const ViewEdit& edit) {
   check_alone(std::move(one), scene);
 }
 
-Shape& shape_at(Scene& scene, const ShapeAt& at) { return const_cast<Shape&>(shape_at(std::as_const(scene), at)); }
+Shape& shape_at(Scene& scene, const ShapeAt& at) {
+  return const_cast<Shape&>(shape_at(std::as_const(scene), at));
+}
 
 void put(Scene& scene, const CapsuleEdit& edit) {
   auto& capsules = std::get<CapsulesShape>(shape_at(scene, edit.at).geometry);
-  if (capsules.radius1.empty() && edit.to.radius0 != edit.to.radius1) capsules.radius1 = capsules.radius0;
+  if (capsules.radius1.empty() && edit.to.radius0 != edit.to.radius1)
+    capsules.radius1 = capsules.radius0;
   capsules.p0[edit.capsule] = edit.to.p0;
   capsules.p1[edit.capsule] = edit.to.p1;
   capsules.radius0[edit.capsule] = edit.to.radius0;
   if (!capsules.radius1.empty()) capsules.radius1[edit.capsule] = edit.to.radius1;
 }
-void put(Scene& scene, const TransformEdit& edit) { shape_at(scene, edit.at).world_from_object = edit.world_from_object; }
+void put(Scene& scene, const TransformEdit& edit) {
+  shape_at(scene, edit.at).world_from_object = edit.world_from_object;
+}
 void put(Scene& scene, const EmissionEdit& edit) { shape_at(scene, edit.at).emission = edit.to; }
-void put(Scene& scene, const InstanceEdit& edit) { scene.instances[edit.instance].world_from_object = edit.world_from_object; }
+void put(Scene& scene, const InstanceEdit& edit) {
+  scene.instances[edit.instance].world_from_object = edit.world_from_object;
+}
 void put(Scene& scene, const MaterialEdit& edit) {
   scene.materials[edit.material].model = edit.to;
   scene.materials[edit.material].textures = edit.textures;
@@ -167,7 +177,9 @@ CapsuleEdit inverse_of(const Scene& scene, const CapsuleEdit& edit) {
 TransformEdit inverse_of(const Scene& scene, const TransformEdit& edit) {
   return {edit.at, shape_at(scene, edit.at).world_from_object};
 }
-EmissionEdit inverse_of(const Scene& scene, const EmissionEdit& edit) { return {edit.at, *light_at(scene, edit.at).emission}; }
+EmissionEdit inverse_of(const Scene& scene, const EmissionEdit& edit) {
+  return {edit.at, *light_at(scene, edit.at).emission};
+}
 InstanceEdit inverse_of(const Scene& scene, const InstanceEdit& edit) {
   return {edit.instance, at(scene.instances, edit.instance, "instance").world_from_object};
 }
@@ -175,7 +187,9 @@ MaterialEdit inverse_of(const Scene& scene, const MaterialEdit& edit) {
   const Material& material = at(scene.materials, edit.material, "material");
   return {edit.material, material.model, material.textures};
 }
-LightEdit inverse_of(const Scene& scene, const LightEdit& edit) { return {edit.light, at(scene.lights, edit.light, "light")}; }
+LightEdit inverse_of(const Scene& scene, const LightEdit& edit) {
+  return {edit.light, at(scene.lights, edit.light, "light")};
+}
 ViewEdit inverse_of(const Scene& scene, const ViewEdit&) { return view_of(scene); }
 
 }  // namespace
@@ -209,15 +223,19 @@ Capsule capsule_at(const Scene& scene, const ShapeAt& at, std::size_t capsule) {
           capsules.radius1.empty() ? capsules.radius0[capsule] : capsules.radius1[capsule]};
 }
 
-ViewEdit view_of(const Scene& scene) { return {scene.camera, scene.filter, scene.film, scene.sampler, scene.integrator}; }
+ViewEdit view_of(const Scene& scene) {
+  return {scene.camera, scene.filter, scene.film, scene.sampler, scene.integrator};
+}
 
-std::optional<glm::dmat4> camera_looking(const glm::dvec3& eye, const glm::dvec3& target, const glm::dvec3& up) {
+std::optional<glm::dmat4> camera_looking(const glm::dvec3& eye, const glm::dvec3& target,
+                                         const glm::dvec3& up) {
   const glm::dvec3 forward = glm::normalize(target - eye);
   const glm::dvec3 sideways = glm::cross(glm::normalize(up), forward);
   // Six digits of text leave an angle of 1e-6 between up and the view undetermined.
   if (!(glm::length(sideways) > 1e-6)) return std::nullopt;
   const glm::dvec3 right = glm::normalize(sideways);
-  return glm::dmat4(glm::dvec4(right, 0), glm::dvec4(glm::cross(forward, right), 0), glm::dvec4(forward, 0), glm::dvec4(eye, 1));
+  return glm::dmat4(glm::dvec4(right, 0), glm::dvec4(glm::cross(forward, right), 0),
+                    glm::dvec4(forward, 0), glm::dvec4(eye, 1));
 }
 
 }  // namespace caplet

@@ -66,7 +66,8 @@ struct ViewEdit {
   IntegratorSettings integrator;
 };
 
-using SceneEdit = std::variant<CapsuleEdit, TransformEdit, EmissionEdit, InstanceEdit, MaterialEdit, LightEdit, ViewEdit>;
+using SceneEdit = std::variant<CapsuleEdit, TransformEdit, EmissionEdit, InstanceEdit, MaterialEdit,
+                               LightEdit, ViewEdit>;
 
 /// Throws InputError when the place does not exist, or when validate() would refuse the result.
 void check_edit(const Scene& scene, const SceneEdit& edit);
@@ -77,18 +78,21 @@ void apply_edit(Scene& scene, const SceneEdit& edit);
 /// Applies an edit that check_edit has already passed.
 void put_edit(Scene& scene, const SceneEdit& edit);
 
-/// Returns the edit that restores what `edit` would replace. Throws InputError when the place does not exist.
+/// Returns the edit that restores what `edit` would replace. Throws InputError when the place does
+/// not exist.
 SceneEdit inverse(const Scene& scene, const SceneEdit& edit);
 
 /// Returns the shape that an edit names. Throws InputError when there is none.
 const Shape& shape_at(const Scene& scene, const ShapeAt& at);
-/// Returns a capsule in its present state. Throws InputError when there is none, or when the shape has no capsules.
+/// Returns a capsule in its present state. Throws InputError when there is none, or when the shape
+/// has no capsules.
 Capsule capsule_at(const Scene& scene, const ShapeAt& at, std::size_t capsule);
 /// Returns the present view.
 ViewEdit view_of(const Scene& scene);
 
-/// Returns Camera::world_from_camera of a camera at `eye` that looks at `target`, with `up` upward. There is no value where the
-/// points coincide or `up` is parallel to the view.
-std::optional<glm::dmat4> camera_looking(const glm::dvec3& eye, const glm::dvec3& target, const glm::dvec3& up);
+/// Returns Camera::world_from_camera of a camera at `eye` that looks at `target`, with `up` upward.
+/// There is no value where the points coincide or `up` is parallel to the view.
+std::optional<glm::dmat4> camera_looking(const glm::dvec3& eye, const glm::dvec3& target,
+                                         const glm::dvec3& up);
 
 }  // namespace caplet

@@ -14,7 +14,8 @@
 
 namespace caplet {
 
-/// Records the steps that lead from one state of a scene to the next. A state is a number: no two states of a log share one.
+/// Records the steps that lead from one state of a scene to the next. A state is a number: no two
+/// states of a log share one.
 template <class Step>
 class EditLog {
  public:
@@ -51,7 +52,8 @@ class EditLog {
 
   bool can_undo() const { return !done_.empty(); }
   bool can_redo() const { return !undone_.empty(); }
-  // `take` makes a step and returns the one that reverts it. Return false when there is nothing to undo, or to redo.
+  // `take` makes a step and returns the one that reverts it. Return false when there is nothing to
+  // undo, or to redo.
   template <class Take>
   bool undo(Take&& take) {
     return go(done_, undone_, take);
@@ -64,13 +66,15 @@ class EditLog {
   /// Notes that the present state is saved.
   void mark_saved() { saved_ = state(); }
   bool has_unsaved() const { return state() != saved_; }
-  /// Returns how to reach the saved state: by undo (false), by redo (true), or no value if it is lost.
+  /// Returns how to reach the saved state: by undo (false), by redo (true), or no value if it is
+  /// lost.
   std::optional<bool> way_to_saved() const {
     if (saved_ == origin_ || after(done_, saved_) != done_.end()) return false;
     return after(undone_, saved_) != undone_.end() ? std::optional(true) : std::nullopt;
   }
 
-  /// Returns the steps that have led from that state to the present one; no value if they are not known.
+  /// Returns the steps that have led from that state to the present one; no value if they are not
+  /// known.
   std::optional<std::span<const Entry>> since(std::uint64_t state) const {
     if (state == origin_) return std::span(done_);
     const auto found = after(done_, state);

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Parameters of models. The `fields` function of each model passes its members to a visitor, each with a Field (materials.def,
-// textures.def, lights.def, media.def). Readers, writers, checks, forms and lists of parameters all use these calls.
+// Parameters of models. The `fields` function of each model passes its members to a visitor, each
+// with a Field (materials.def, textures.def, lights.def, media.def). Readers, writers, checks,
+// forms and lists of parameters all use these calls.
 #pragma once
 
 #include <limits>
@@ -12,8 +13,9 @@ namespace caplet {
 inline constexpr double no_limit = std::numeric_limits<double>::infinity();
 inline constexpr double most_integer = 2147483647;
 
-/// A parameter. name: its name in scene files. doc: its description, a phrase without a full stop. low, high: the range of a
-/// number, both ends included (above_low: `low` is excluded). unit: the unit of a number, as people write it.
+/// A parameter. name: its name in scene files. doc: its description, a phrase without a full stop.
+/// low, high: the range of a number, both ends included (above_low: `low` is excluded). unit: the
+/// unit of a number, as people write it.
 struct Field {
   const char* name;
   const char* doc;

@@ -39,12 +39,14 @@ struct PixelFilter {
   static void fields(Self& self, Visit&& visit) {
     visit.number({"xradius", "half the width", 0, no_limit, "pixels", true}, self.radius_x);
     visit.number({"yradius", "half the height", 0, no_limit, "pixels", true}, self.radius_y);
-    if (self.kind == Kind::gaussian) visit.number({"sigma", "standard deviation", 0, no_limit, "pixels", true}, self.sigma);
+    if (self.kind == Kind::gaussian)
+      visit.number({"sigma", "standard deviation", 0, no_limit, "pixels", true}, self.sigma);
     if (self.kind == Kind::mitchell) {
       visit.number({"B", "share of the B-spline"}, self.b);
       visit.number({"C", "share of the cardinal spline"}, self.c);
     }
-    if (self.kind == Kind::sinc) visit.number({"tau", "cycles until the window's zero", 0, no_limit, "", true}, self.tau);
+    if (self.kind == Kind::sinc)
+      visit.number({"tau", "cycles until the window's zero", 0, no_limit, "", true}, self.tau);
   }
 };
 
@@ -52,22 +54,29 @@ struct FilmSettings {
   int width = 1280, height = 720;
   std::optional<std::array<int, 4>> crop;  // x0, x1, y0, y1 in pixels, half open
   std::string filename;                    // as the scene file states it
-  double iso = 100, exposure_time = 1;     // film scale = exposure_time * iso / 100 (sensor-free rgb: 1 by default)
-  double max_component_value = 0;          // largest exposed XYZ value of a sample; 0: unlimited
-  double white_balance = 0;                // kelvin: this daylight maps to the colour space's white; 0: no balancing
+  double iso = 100,
+         exposure_time =
+             1;  // film scale = exposure_time * iso / 100 (sensor-free rgb: 1 by default)
+  double max_component_value = 0;  // largest exposed XYZ value of a sample; 0: unlimited
+  double white_balance =
+      0;  // kelvin: this daylight maps to the colour space's white; 0: no balancing
   ColorSpace space = ColorSpace::srgb;
   std::optional<Backdrop> backdrop = {};
-  double least_width = 0;  // pixels: capsules and spheres are drawn at least this thick (present/least_width.h); 0: no minimum
+  double least_width = 0;  // pixels: capsules and spheres are drawn at least this thick
+                           // (present/least_width.h); 0: no minimum
 
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {
     visit.integer({"xresolution", "width", 1, most_image_pixels, "pixels"}, self.width);
     visit.integer({"yresolution", "height", 1, most_image_pixels, "pixels"}, self.height);
     visit.number({"iso", "sensitivity; 100 changes nothing", 0, no_limit, "", true}, self.iso);
-    visit.number({"maxcomponentvalue", "the most that a sample adds; 0: any", 0}, self.max_component_value);
-    visit.number({"whitebalance", "this daylight becomes white: 1000 to 25000, or 0 for none", 0, 25000, "kelvin"},
+    visit.number({"maxcomponentvalue", "the most that a sample adds; 0: any", 0},
+                 self.max_component_value);
+    visit.number({"whitebalance", "this daylight becomes white: 1000 to 25000, or 0 for none", 0,
+                  25000, "kelvin"},
                  self.white_balance);
-    visit.number({"leastwidth", "capsules and spheres are drawn no thinner", 0, 64, "pixels"}, self.least_width);
+    visit.number({"leastwidth", "capsules and spheres are drawn no thinner", 0, 64, "pixels"},
+                 self.least_width);
   }
 };
 

@@ -4,7 +4,8 @@
 
 namespace caplet {
 
-TextureImage ImageReader::read_texture(const std::filesystem::path& path, const ImageEncoding&) const {
+TextureImage ImageReader::read_texture(const std::filesystem::path& path,
+                                       const ImageEncoding&) const {
   throw InputError(path.string() + ": images of textures cannot be read here");
 }
 

@@ -10,12 +10,14 @@
 
 namespace caplet {
 
-/// An image that a light uses. Pixels are linear RGB in `space`, row-major from the top, 3 floats each.
+/// An image that a light uses. Pixels are linear RGB in `space`, row-major from the top, 3 floats
+/// each.
 struct EnvironmentImage {
   int width = 0, height = 0;
   std::vector<float> rgb;
   ColorSpace space = ColorSpace::srgb;
-  // True: the map is square and equal-area octahedral (pbrt-v4). False: it is latitude-longitude, 2:1, with z up.
+  // True: the map is square and equal-area octahedral (pbrt-v4). False: it is latitude-longitude,
+  // 2:1, with z up.
   bool equal_area = false;
   std::string file = {};    // the file that it was read from
   std::string preset = {};  // or the name, in scene files, of an image that Caplet makes

@@ -29,7 +29,8 @@ std::string must_lie_within(double low, double high) {
 
 std::string must_lie_within(const Field& field) {
   if (!field.above_low) return must_lie_within(field.low, field.high);
-  if (std::isinf(field.high)) return field.low == 0 ? "must be positive" : "must be above " + text_of(field.low);
+  if (std::isinf(field.high))
+    return field.low == 0 ? "must be positive" : "must be above " + text_of(field.low);
   return "must be above " + text_of(field.low) + " and at most " + text_of(field.high);
 }
 

@@ -30,11 +30,13 @@ struct Material {
   std::string name;
   SourceLocation where;
   std::vector<TexturedField> textures = {};  // fields that textures replace
-  // Indices into Scene::textures; at most one is set: heights along the normal (floats), or a NormalmapTexture.
+  // Indices into Scene::textures; at most one is set: heights along the normal (floats), or a
+  // NormalmapTexture.
   std::optional<std::uint32_t> displacement = {}, normalmap = {};
 };
 
-/// Describes a range in an error message: "must lie between", or "must be from ... up" where `high` is infinite.
+/// Describes a range in an error message: "must lie between", or "must be from ... up" where `high`
+/// is infinite.
 std::string must_lie_within(double low, double high);
 /// Describes the range of a field, which may exclude `low`.
 std::string must_lie_within(const Field& field);

@@ -25,11 +25,13 @@ struct Medium {
       model;
   std::string name;
   SourceLocation where;
-  /// Scattering within, together with the boundary that the light entered through, counts as one event for maxdepth.
+  /// Scattering within, together with the boundary that the light entered through, counts as one
+  /// event for maxdepth.
   bool subsurface = false;
 };
 
-/// The media on both sides of a surface, as indices into Scene::media. The normal points away from the inside.
+/// The media on both sides of a surface, as indices into Scene::media. The normal points away from
+/// the inside.
 struct MediumSides {
   std::optional<std::uint32_t> inside, outside;
   bool operator==(const MediumSides&) const = default;

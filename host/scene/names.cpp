@@ -13,7 +13,8 @@ namespace caplet {
 namespace {
 
 void make_valid(std::string& name) {
-  if (std::ranges::any_of(name, [](char c) { return static_cast<unsigned char>(c) >= 0x80; })) name = valid_utf8(name);
+  if (std::ranges::any_of(name, [](char c) { return static_cast<unsigned char>(c) >= 0x80; }))
+    name = valid_utf8(name);
 }
 
 void make_valid(Shape& shape) {
@@ -22,7 +23,8 @@ void make_valid(Shape& shape) {
     for (std::shared_ptr<const Shape>& operand : csg->operands) {
       auto own = std::make_shared<Shape>(*operand);  // the operand may be shared with another csg
       make_valid(*own);
-      if (own->name != operand->name || std::holds_alternative<CsgShape>(own->geometry)) operand = std::move(own);
+      if (own->name != operand->name || std::holds_alternative<CsgShape>(own->geometry))
+        operand = std::move(own);
     }
 }
 

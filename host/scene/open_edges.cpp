@@ -14,7 +14,8 @@ namespace {
 
 using Corner = std::array<float, 3>;
 
-/// Counts all edges and those that belong to an odd number of faces. Corners are given in order around each face.
+/// Counts all edges and those that belong to an odd number of faces. Corners are given in order
+/// around each face.
 class Edges {
  public:
   void add(std::span<const glm::vec3> around) {
@@ -36,7 +37,8 @@ class Edges {
   std::map<std::pair<Corner, Corner>, int> faces_;
 };
 
-/// Keeps the exclusive or of a hash of each edge of each face. An edge of an even number of faces cancels itself.
+/// Keeps the exclusive or of a hash of each edge of each face. An edge of an even number of faces
+/// cancels itself.
 class EdgeParity {
  public:
   void add(std::span<const glm::vec3> around) {
@@ -58,7 +60,8 @@ class EdgeParity {
   }
   static std::uint64_t hash(const glm::vec3& p) {
     std::uint64_t out = 0x9e3779b97f4a7c15u;
-    for (int k = 0; k < 3; ++k) out = mixed(out + std::bit_cast<std::uint32_t>(p[k] + 0.f));  // no -0
+    for (int k = 0; k < 3; ++k)
+      out = mixed(out + std::bit_cast<std::uint32_t>(p[k] + 0.f));  // no -0
     return out;
   }
   std::uint64_t sum_ = 0;
@@ -70,11 +73,12 @@ template <class To>
 void add_faces(const Shape& shape, To& edges) {
   if (const auto* mesh = std::get_if<TriangleMeshShape>(&shape.geometry))
     for (const auto& face : mesh->triangles)
-      edges.add(std::array{mesh->positions[face[0]], mesh->positions[face[1]], mesh->positions[face[2]]});
+      edges.add(
+          std::array{mesh->positions[face[0]], mesh->positions[face[1]], mesh->positions[face[2]]});
   if (const auto* mesh = std::get_if<BilinearMeshShape>(&shape.geometry))
     for (const auto& face : mesh->patches)
-      edges.add(
-          std::array{mesh->positions[face[0]], mesh->positions[face[1]], mesh->positions[face[3]], mesh->positions[face[2]]});
+      edges.add(std::array{mesh->positions[face[0]], mesh->positions[face[1]],
+                           mesh->positions[face[3]], mesh->positions[face[2]]});
 }
 
 }  // namespace

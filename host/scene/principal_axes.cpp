@@ -10,7 +10,8 @@ namespace caplet {
 
 PrincipalAxes principal_axes(glm::dmat3 a) {
   glm::dmat3 v(1);
-  constexpr int kSweeps = 60;  // quadratic convergence: 3x3 needs about 6, after which entries off the diagonal are 0
+  constexpr int kSweeps =
+      60;  // quadratic convergence: 3x3 needs about 6, after which entries off the diagonal are 0
   for (int sweep = 0; sweep < kSweeps; ++sweep)
     for (const auto& [p, q] : {std::pair{0, 1}, {0, 2}, {1, 2}}) {
       if (a[q][p] == 0) continue;

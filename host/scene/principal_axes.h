@@ -7,7 +7,8 @@
 
 namespace caplet {
 
-/// The eigenvalues of a symmetric matrix, in no order, and their unit eigenvectors as the columns of a rotation.
+/// The eigenvalues of a symmetric matrix, in no order, and their unit eigenvectors as the columns
+/// of a rotation.
 struct PrincipalAxes {
   glm::dvec3 values{0};
   glm::dmat3 world_from_axes{1};

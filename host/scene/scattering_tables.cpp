@@ -9,7 +9,8 @@ namespace caplet {
 
 namespace {
 
-/// Coefficients for red, green and blue, 1 / mm. sigma_s is reduced: (1 - g) times the scattering coefficient.
+/// Coefficients for red, green and blue, 1 / mm. sigma_s is reduced: (1 - g) times the scattering
+/// coefficient.
 struct Measured {
   std::string_view name;
   std::array<double, 3> sigma_s, sigma_a;
@@ -62,7 +63,9 @@ constexpr Measured measured[] = {
     {"Salt Powder", {0.027333, 0.032451, 0.031979}, {0.28415, 0.3257, 0.34148}},
     {"Sugar Powder", {0.00022272, 0.00025513, 0.000271}, {0.012638, 0.031051, 0.050124}},
     {"Suisse Mocha Powder", {2.7979, 3.5452, 4.3365}, {17.502, 27.004, 35.433}},
-    {"Pacific Ocean Surface Water", {0.0001764, 0.00032095, 0.00019617}, {0.031845, 0.031324, 0.030147}},
+    {"Pacific Ocean Surface Water",
+     {0.0001764, 0.00032095, 0.00019617},
+     {0.031845, 0.031324, 0.030147}},
 };
 
 RgbSpectrum rgb(const std::array<double, 3>& v) { return {{v[0], v[1], v[2]}, ColorSpace::srgb}; }

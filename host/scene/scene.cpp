@@ -11,7 +11,8 @@ namespace caplet {
 
 std::array<int, 2> strata_of(const SamplerSettings& sampler) {
   const int samples = sampler.samples_per_pixel;
-  if (std::int64_t{sampler.x_strata} * sampler.y_strata == samples) return {sampler.x_strata, sampler.y_strata};
+  if (std::int64_t{sampler.x_strata} * sampler.y_strata == samples)
+    return {sampler.x_strata, sampler.y_strata};
   int across = static_cast<int>(std::sqrt(static_cast<double>(samples)));
   while (samples % across != 0) --across;
   return {across, samples / across};
@@ -22,7 +23,8 @@ Bounds bounds_of(const Scene& scene) {
   for (const Shape& shape : scene.shapes) bounds.extend(bounds_of(shape));
   for (const Instance& instance : scene.instances)
     for (const Shape& shape : scene.objects[instance.object].shapes)
-      bounds.extend(bounds_of(shape.geometry, instance.world_from_object * shape.world_from_object));
+      bounds.extend(
+          bounds_of(shape.geometry, instance.world_from_object * shape.world_from_object));
   return bounds;
 }
 

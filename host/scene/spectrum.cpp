@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// The named spectra: pbrt-v4's, and additions under names of their own (docs/materials.md lists them with their sources).
+// The named spectra: pbrt-v4's, and additions under names of their own (docs/materials.md lists
+// them with their sources).
 #include "scene/spectrum.h"
 
 #include <array>
@@ -18,8 +19,10 @@ namespace {
 
 constexpr int first_nm = 360, last_nm = 830;
 
-/// Samples an index of refraction `n_squared(micrometres^2)` at 1 nm; constant outside the fitted range [low, high] nm.
-SampledSpectrum dispersion(const std::function<double(double)>& n_squared, double low = first_nm, double high = last_nm) {
+/// Samples an index of refraction `n_squared(micrometres^2)` at 1 nm; constant outside the fitted
+/// range [low, high] nm.
+SampledSpectrum dispersion(const std::function<double(double)>& n_squared, double low = first_nm,
+                           double high = last_nm) {
   SampledSpectrum out;
   for (int nm = first_nm; nm <= last_nm; ++nm) {
     const double micrometres = std::fmin(std::fmax(nm, low), high) * 1e-3;
@@ -29,7 +32,8 @@ SampledSpectrum dispersion(const std::function<double(double)>& n_squared, doubl
   return out;
 }
 
-/// Sellmeier's equation n^2 - 1 = sum B l^2 / (l^2 - C), l in micrometres; `terms` alternates B and C.
+/// Sellmeier's equation n^2 - 1 = sum B l^2 / (l^2 - C), l in micrometres; `terms` alternates B and
+/// C.
 SampledSpectrum sellmeier(const std::vector<double>& terms) {
   return dispersion([&terms](double l2) {
     double n2 = 1;
@@ -65,17 +69,20 @@ std::map<std::string, Spectrum> make_all() {
     all[table.name] = spectrum;
   }
   for (const MetalTable& table : metal_tables())
-    // Each metal also has its short name; pbrt's tables, added below, replace those that pbrt defines.
-    for (const std::string& name :
-         {std::string("metal-") + table.name, "metal-" + (table.name + ("-" + source_of(table.name)))}) {
+    // Each metal also has its short name; pbrt's tables, added below, replace those that pbrt
+    // defines.
+    for (const std::string& name : {std::string("metal-") + table.name,
+                                    "metal-" + (table.name + ("-" + source_of(table.name)))}) {
       all[name + "-eta"] = column(table.rows, 3, 1);
       all[name + "-k"] = column(table.rows, 3, 2);
     }
-  // pbrt counts these two oxides as metals. Stephens and Malitson 1952; DeVore 1951 (rutile, ordinary ray). Both are clear: k =
-  // 0.
+  // pbrt counts these two oxides as metals. Stephens and Malitson 1952; DeVore 1951 (rutile,
+  // ordinary ray). Both are clear: k = 0.
   all["metal-MgO-Stephens-eta"] =
-      dispersion([](double l2) { return 2.957019 + 0.0216485 / (l2 - 0.0158650) - 0.0101373 * l2; }, 404.7, 767.9);
-  all["metal-TiO2-DeVore-eta"] = dispersion([](double l2) { return 5.913 + 0.2441 / (l2 - 0.0803); }, 430, 1530);
+      dispersion([](double l2) { return 2.957019 + 0.0216485 / (l2 - 0.0158650) - 0.0101373 * l2; },
+                 404.7, 767.9);
+  all["metal-TiO2-DeVore-eta"] =
+      dispersion([](double l2) { return 5.913 + 0.2441 / (l2 - 0.0803); }, 430, 1530);
   all["metal-MgO-Stephens-k"] = all["metal-TiO2-DeVore-k"] = ConstantSpectrum{0};
 
   // Schott's catalogue. pbrt names the three SF glasses F5, F10, F11.
@@ -88,16 +95,18 @@ std::map<std::string, Spectrum> make_all() {
       {"SF10", {1.61625977, 0.0127534559, 0.259229334, 0.0581983954, 1.07762317, 116.60768}},
       {"SF11", {1.73848403, 0.0136068604, 0.311168974, 0.0615960463, 1.17490871, 121.922711}}};
   for (const auto& [glass, terms] : schott)
-    for (const char* source : {"", "-Schott"}) all[std::string("glass-") + glass + source] = sellmeier(terms);
+    for (const char* source : {"", "-Schott"})
+      all[std::string("glass-") + glass + source] = sellmeier(terms);
 
-  // Malitson 1965; Malitson and Dodge 1972 (ordinary ray); Peter 1923; Daimon and Masumura 2007 (20 degrees Celsius).
-  all["fused-silica"] =
-      sellmeier({0.6961663, 0.0684043 * 0.0684043, 0.4079426, 0.1162414 * 0.1162414, 0.8974794, 9.896161 * 9.896161});
-  all["sapphire"] =
-      sellmeier({1.4313493, 0.0726631 * 0.0726631, 0.65054713, 0.1193242 * 0.1193242, 5.3414021, 18.028251 * 18.028251});
+  // Malitson 1965; Malitson and Dodge 1972 (ordinary ray); Peter 1923; Daimon and Masumura 2007 (20
+  // degrees Celsius).
+  all["fused-silica"] = sellmeier({0.6961663, 0.0684043 * 0.0684043, 0.4079426,
+                                   0.1162414 * 0.1162414, 0.8974794, 9.896161 * 9.896161});
+  all["sapphire"] = sellmeier({1.4313493, 0.0726631 * 0.0726631, 0.65054713, 0.1193242 * 0.1193242,
+                               5.3414021, 18.028251 * 18.028251});
   all["glass-diamond"] = sellmeier({0.3306, 0.1750 * 0.1750, 4.3356, 0.1060 * 0.1060});
-  all["water"] = sellmeier({5.684027565e-1, 5.101829712e-3, 1.726177391e-1, 1.821153936e-2, 2.086189578e-2, 2.620722293e-2,
-                            1.130748688e-1, 1.069792721e1});
+  all["water"] = sellmeier({5.684027565e-1, 5.101829712e-3, 1.726177391e-1, 1.821153936e-2,
+                            2.086189578e-2, 2.620722293e-2, 1.130748688e-1, 1.069792721e1});
 
   // pbrt's tables take precedence over all others of the same name.
   for (const NamedTable& table : pbrt_tables()) all[table.name] = column(table.rows, 2, 1);

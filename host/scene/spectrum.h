@@ -21,8 +21,8 @@ inline constexpr std::array color_space_names = {"srgb", "dci-p3", "rec2020", "a
 struct ConstantSpectrum {
   double value = 0;
 };
-/// RGB in a colour space. The place where it is used decides whether it is a reflectance (0..1), an unbounded positive quantity
-/// (eta, k) or an illuminant.
+/// RGB in a colour space. The place where it is used decides whether it is a reflectance (0..1), an
+/// unbounded positive quantity (eta, k) or an illuminant.
 struct RgbSpectrum {
   glm::dvec3 rgb{0};
   ColorSpace space = ColorSpace::srgb;
@@ -39,7 +39,8 @@ struct SampledSpectrum {
 
 using Spectrum = std::variant<ConstantSpectrum, RgbSpectrum, BlackbodySpectrum, SampledSpectrum>;
 
-/// Returns pbrt-v4's table for one of its names ("metal-Ag-eta", "glass-BK7", "stdillum-D65"...), or one of our additions
+/// Returns pbrt-v4's table for one of its names ("metal-Ag-eta", "glass-BK7", "stdillum-D65"...),
+/// or one of our additions
 /// ("metal-Ag-Johnson-eta", "glass-BK7-Schott", "water"...). Unknown names have no value.
 std::optional<Spectrum> named_spectrum(const std::string& name);
 /// Lists all names that named_spectrum knows, sorted.

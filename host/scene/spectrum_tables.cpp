@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Made by tools/spectral_tables.py: CIE standard illuminants (CIE 15:2018) at 5 nm, and optical constants of metals
-// (refractiveindex.info database, CC0), wavelength in nm, n, k.
+// Made by tools/spectral_tables.py: CIE standard illuminants (CIE 15:2018) at 5 nm, and optical
+// constants of metals (refractiveindex.info database, CC0), wavelength in nm, n, k.
 #include "scene/detail/spectrum_tables.h"
 
 namespace caplet {
@@ -207,19 +207,22 @@ constexpr double metal_w[] = {
 
 const std::vector<IlluminantTable>& illuminant_tables() {
   static const std::vector<IlluminantTable> all = {
-      {"stdillum-A", 360, stdillum_a},       {"stdillum-D50", 360, stdillum_d50}, {"stdillum-D65", 360, stdillum_d65},
-      {"illum-acesD60", 360, illum_acesd60}, {"stdillum-F1", 380, stdillum_f1},   {"stdillum-F2", 380, stdillum_f2},
-      {"stdillum-F3", 380, stdillum_f3},     {"stdillum-F4", 380, stdillum_f4},   {"stdillum-F5", 380, stdillum_f5},
-      {"stdillum-F6", 380, stdillum_f6},     {"stdillum-F7", 380, stdillum_f7},   {"stdillum-F8", 380, stdillum_f8},
-      {"stdillum-F9", 380, stdillum_f9},     {"stdillum-F10", 380, stdillum_f10}, {"stdillum-F11", 380, stdillum_f11},
-      {"stdillum-F12", 380, stdillum_f12}};
+      {"stdillum-A", 360, stdillum_a},     {"stdillum-D50", 360, stdillum_d50},
+      {"stdillum-D65", 360, stdillum_d65}, {"illum-acesD60", 360, illum_acesd60},
+      {"stdillum-F1", 380, stdillum_f1},   {"stdillum-F2", 380, stdillum_f2},
+      {"stdillum-F3", 380, stdillum_f3},   {"stdillum-F4", 380, stdillum_f4},
+      {"stdillum-F5", 380, stdillum_f5},   {"stdillum-F6", 380, stdillum_f6},
+      {"stdillum-F7", 380, stdillum_f7},   {"stdillum-F8", 380, stdillum_f8},
+      {"stdillum-F9", 380, stdillum_f9},   {"stdillum-F10", 380, stdillum_f10},
+      {"stdillum-F11", 380, stdillum_f11}, {"stdillum-F12", 380, stdillum_f12}};
   return all;
 }
 
 const std::vector<MetalTable>& metal_tables() {
-  static const std::vector<MetalTable> all = {{"Ag", metal_ag}, {"Al", metal_al},     {"Au", metal_au}, {"Cr", metal_cr},
-                                              {"Cu", metal_cu}, {"CuZn", metal_cuzn}, {"Fe", metal_fe}, {"Ni", metal_ni},
-                                              {"Pt", metal_pt}, {"Ti", metal_ti},     {"W", metal_w}};
+  static const std::vector<MetalTable> all = {
+      {"Ag", metal_ag}, {"Al", metal_al},     {"Au", metal_au}, {"Cr", metal_cr},
+      {"Cu", metal_cu}, {"CuZn", metal_cuzn}, {"Fe", metal_fe}, {"Ni", metal_ni},
+      {"Pt", metal_pt}, {"Ti", metal_ti},     {"W", metal_w}};
   return all;
 }
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright pbrt authors
 //
-// Made by tools/pbrt_spectra.py: the metals and glasses behind pbrt-v4's names, from its src/pbrt/util/spectrum.cpp (5f7a606);
-// wavelength in nm, value.
+// Made by tools/pbrt_spectra.py: the metals and glasses behind pbrt-v4's names, from its
+// src/pbrt/util/spectrum.cpp (5f7a606); wavelength in nm, value.
 #include "scene/detail/spectrum_tables.h"
 
 namespace caplet {
@@ -176,17 +176,18 @@ constexpr double metal_tio2_k[] = {
 }  // namespace
 
 const std::vector<NamedTable>& pbrt_tables() {
-  static const std::vector<NamedTable> all = {{"glass-BAF10", glass_baf10},   {"glass-BK7", glass_bk7},
-                                              {"glass-F10", glass_f10},       {"glass-F11", glass_f11},
-                                              {"glass-F5", glass_f5},         {"glass-FK51A", glass_fk51a},
-                                              {"glass-LASF9", glass_lasf9},   {"metal-Ag-eta", metal_ag_eta},
-                                              {"metal-Ag-k", metal_ag_k},     {"metal-Al-eta", metal_al_eta},
-                                              {"metal-Al-k", metal_al_k},     {"metal-Au-eta", metal_au_eta},
-                                              {"metal-Au-k", metal_au_k},     {"metal-Cu-eta", metal_cu_eta},
-                                              {"metal-Cu-k", metal_cu_k},     {"metal-CuZn-eta", metal_cuzn_eta},
-                                              {"metal-CuZn-k", metal_cuzn_k}, {"metal-MgO-eta", metal_mgo_eta},
-                                              {"metal-MgO-k", metal_mgo_k},   {"metal-TiO2-eta", metal_tio2_eta},
-                                              {"metal-TiO2-k", metal_tio2_k}};
+  static const std::vector<NamedTable> all = {
+      {"glass-BAF10", glass_baf10},   {"glass-BK7", glass_bk7},
+      {"glass-F10", glass_f10},       {"glass-F11", glass_f11},
+      {"glass-F5", glass_f5},         {"glass-FK51A", glass_fk51a},
+      {"glass-LASF9", glass_lasf9},   {"metal-Ag-eta", metal_ag_eta},
+      {"metal-Ag-k", metal_ag_k},     {"metal-Al-eta", metal_al_eta},
+      {"metal-Al-k", metal_al_k},     {"metal-Au-eta", metal_au_eta},
+      {"metal-Au-k", metal_au_k},     {"metal-Cu-eta", metal_cu_eta},
+      {"metal-Cu-k", metal_cu_k},     {"metal-CuZn-eta", metal_cuzn_eta},
+      {"metal-CuZn-k", metal_cuzn_k}, {"metal-MgO-eta", metal_mgo_eta},
+      {"metal-MgO-k", metal_mgo_k},   {"metal-TiO2-eta", metal_tio2_eta},
+      {"metal-TiO2-k", metal_tio2_k}};
   return all;
 }
 

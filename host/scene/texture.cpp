@@ -38,14 +38,17 @@ struct Images : IgnoresFields {
   void image(const Field&, const std::shared_ptr<const TextureImage>& of) {
     if (of && std::ranges::find(found, of.get()) == found.end()) found.push_back(of.get());
   }
-  void vectors(const Field& field, const std::shared_ptr<const TextureImage>& of) { image(field, of); }
+  void vectors(const Field& field, const std::shared_ptr<const TextureImage>& of) {
+    image(field, of);
+  }
 };
 
 }  // namespace
 
 std::vector<const TextureImage*> images_of(const std::vector<Texture>& textures) {
   Images images;
-  for (const Texture& texture : textures) std::visit([&](const auto& model) { model.fields(model, images); }, texture.model);
+  for (const Texture& texture : textures)
+    std::visit([&](const auto& model) { model.fields(model, images); }, texture.model);
   return images.found;
 }
 

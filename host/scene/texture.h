@@ -30,8 +30,9 @@ struct Texture {
   SourceLocation where;
 };
 
-/// A parameter that a texture replaces: the field's name in kernels/shared/materials.def (also "reflectance" of a metal), with
-/// the dots of scene files ("interface.alpha_u"), and the index into Scene::textures.
+/// A parameter that a texture replaces: the field's name in kernels/shared/materials.def (also
+/// "reflectance" of a metal), with the dots of scene files ("interface.alpha_u"), and the index
+/// into Scene::textures.
 struct TexturedField {
   std::string field;
   std::uint32_t texture = 0;
@@ -43,8 +44,9 @@ std::vector<const TextureImage*> images_of(const std::vector<Texture>& textures)
 /// The most textures and constants that a texture may consist of, including itself.
 inline constexpr std::size_t most_texture_steps = 31;
 
-/// Counts the textures and constants that a texture consists of; one that occurs several times counts once. A result above
-/// most_texture_steps only means that there are more. Operands must precede the textures that use them.
+/// Counts the textures and constants that a texture consists of; one that occurs several times
+/// counts once. A result above most_texture_steps only means that there are more. Operands must
+/// precede the textures that use them.
 std::size_t texture_steps(const std::vector<Texture>& textures, std::uint32_t texture);
 
 }  // namespace caplet

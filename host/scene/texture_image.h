@@ -20,7 +20,8 @@ struct ImageEncoding {
   auto operator<=>(const ImageEncoding&) const = default;
 };
 
-/// An image that textures look up: rows from the top, `channels` values per texel, stored as bytes or as linear floats.
+/// An image that textures look up: rows from the top, `channels` values per texel, stored as bytes
+/// or as linear floats.
 struct TextureImage {
   int width = 0, height = 0;
   int channels = 1;  // 1: grey; 3: red, green, blue; 4: with alpha, which is not premultiplied
@@ -32,7 +33,8 @@ struct TextureImage {
   ImageEncoding encoding = {};
 
   std::size_t values() const {
-    return static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * static_cast<std::size_t>(channels);
+    return static_cast<std::size_t>(width) * static_cast<std::size_t>(height) *
+           static_cast<std::size_t>(channels);
   }
 };
 

@@ -10,8 +10,8 @@
 
 namespace caplet {
 
-/// The coordinates (s, t) of a texture at a point, as in pbrt-v4 (10.2): from the surface's (u, v), or from the point in the
-/// texture's space.
+/// The coordinates (s, t) of a texture at a point, as in pbrt-v4 (10.2): from the surface's (u, v),
+/// or from the point in the texture's space.
 struct TextureMapping {
   enum class Kind { uv, spherical, cylindrical, planar, solid } kind = Kind::uv;
   double uscale = 1, vscale = 1;  // uv: (uscale u + udelta, vscale v + vdelta)
@@ -20,7 +20,8 @@ struct TextureMapping {
   glm::dmat4 texture_from_world{1};  // used by all kinds but uv
 
   static constexpr Field kind_field = {"mapping", "where the texture coordinates (s, t) come from"};
-  static constexpr Field dimension_field = {"dimension", "2, or 3 for cubes in texture space", 2, 3};
+  static constexpr Field dimension_field = {"dimension", "2, or 3 for cubes in texture space", 2,
+                                            3};
   /// Visits the parameters of its kind; calls number and vector.
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {
@@ -39,6 +40,7 @@ struct TextureMapping {
   }
 };
 /// These are the names in scene files; "solid" is for three-dimensional textures.
-inline constexpr std::array<const char*, 4> texture_mapping_names = {"uv", "spherical", "cylindrical", "planar"};
+inline constexpr std::array<const char*, 4> texture_mapping_names = {"uv", "spherical",
+                                                                     "cylindrical", "planar"};
 
 }  // namespace caplet

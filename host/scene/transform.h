@@ -14,8 +14,8 @@
 
 namespace caplet {
 
-/// Returns whether an affine matrix is invertible. The determinant is relative to the lengths of the columns, so that small and
-/// uneven scales pass: 1e-12 leaves four digits of a double.
+/// Returns whether an affine matrix is invertible. The determinant is relative to the lengths of
+/// the columns, so that small and uneven scales pass: 1e-12 leaves four digits of a double.
 inline bool has_inverse(const glm::dmat4& matrix) {
   const glm::dmat3 a(matrix);
   const double product = glm::length(a[0]) * glm::length(a[1]) * glm::length(a[2]);
@@ -26,7 +26,10 @@ inline bool is_affine(const glm::dmat4& matrix) {
   return matrix[0][3] == 0 && matrix[1][3] == 0 && matrix[2][3] == 0 && matrix[3][3] == 1;
 }
 
-/// Returns whether a length is 1 up to rounding. Such a vector is used as it is, without normalisation.
-inline bool is_unit(double length) { return std::abs(length - 1) <= 4 * std::numeric_limits<double>::epsilon(); }
+/// Returns whether a length is 1 up to rounding. Such a vector is used as it is, without
+/// normalisation.
+inline bool is_unit(double length) {
+  return std::abs(length - 1) <= 4 * std::numeric_limits<double>::epsilon();
+}
 
 }  // namespace caplet

@@ -12,7 +12,8 @@ namespace caplet::schema {
 template <class Kind, class Names>
 std::optional<Kind> kind_of(const std::string& type, const Names& names) {
   const auto found = std::ranges::find(names, type);
-  return found == names.end() ? std::nullopt : std::optional(static_cast<Kind>(found - names.begin()));
+  return found == names.end() ? std::nullopt
+                              : std::optional(static_cast<Kind>(found - names.begin()));
 }
 
 }  // namespace caplet::schema

@@ -20,15 +20,18 @@ bool is_one_of(const std::string& type, std::initializer_list<const char*> names
   return std::ranges::find(names, type) != names.end();
 }
 
-constexpr std::array fov_rows = {Row{fov_field, "float", "90"},
-                                 Row{{"halffov", "half of it; above 0 it counts", -no_limit, 90, "degrees"}, "float", "-1"}};
-constexpr std::array window_rows = {
-    Row{frame_aspect_ratio_field, "float"},
-    Row{{"screenwindow", "x min, x max, y min, y max of the picture on the plane z = 1; else the shorter side is -1 to 1"},
-        "float"}};
+constexpr std::array fov_rows = {
+    Row{fov_field, "float", "90"},
+    Row{{"halffov", "half of it; above 0 it counts", -no_limit, 90, "degrees"}, "float", "-1"}};
+constexpr std::array window_rows = {Row{frame_aspect_ratio_field, "float"},
+                                    Row{{"screenwindow",
+                                         "x min, x max, y min, y max of the picture on the plane z "
+                                         "= 1; else the shorter side is -1 to 1"},
+                                        "float"}};
 constexpr std::array camera_rows = {
     Row{{"shutteropen", "start of the exposure", -no_limit, no_limit, "seconds"}, "float", "0"},
-    Row{{"shutterclose", "end of the exposure, whose length is a factor of the picture", -no_limit, no_limit, "seconds"},
+    Row{{"shutterclose", "end of the exposure, whose length is a factor of the picture", -no_limit,
+         no_limit, "seconds"},
         "float",
         "1"},
     Row{{"automatic", "framed to the scene"}, "bool", "false"},
@@ -40,20 +43,27 @@ constexpr std::array camera_rows = {
 constexpr std::array film_rows = {
     Row{{"filename", "where the picture is written"}, "string", "pbrt.exr"},
     Row{{"pixelbounds", "x0, x1, y0, y1 of the part that is rendered"}, "integer"},
-    Row{{"cropwindow", "the same as shares of the picture; not together with pixelbounds", 0, 1}, "float"},
-    Row{{"sensor", "a camera's sensor: its white balance counts, its curves do not"}, "string", "cie1931"},
+    Row{{"cropwindow", "the same as shares of the picture; not together with pixelbounds", 0, 1},
+        "float"},
+    Row{{"sensor", "a camera's sensor: its white balance counts, its curves do not"},
+        "string",
+        "cie1931"},
     Row{{"background", "\"transparent\", \"color\" or \"image\""}, "string"},
     Row{{"backgroundcolor", "linear sRGB, as displayed", 0, 1}, "float"},
     Row{{"backgroundfile", "an image"}, "string"}};
-constexpr std::array film_ignored = {Row{{"diagonal", "of the sensor", 0, no_limit, "mm", true}, "float", "35"},
-                                     Row{{"savefp16", "16-bit floats"}, "bool", "true"}};
-constexpr std::array gbuffer_ignored = {Row{{"coordinatesystem", "of the layers"}, "string", "camera"}};
+constexpr std::array film_ignored = {
+    Row{{"diagonal", "of the sensor", 0, no_limit, "mm", true}, "float", "35"},
+    Row{{"savefp16", "16-bit floats"}, "bool", "true"}};
+constexpr std::array gbuffer_ignored = {
+    Row{{"coordinatesystem", "of the layers"}, "string", "camera"}};
 constexpr std::array spectral_ignored = {Row{{"nbuckets", "of the spectrum"}, "integer"},
                                          Row{{"lambdamin", "of the spectrum"}, "float"},
                                          Row{{"lambdamax", "of the spectrum"}, "float"}};
-constexpr std::array randomization_ignored = {Row{{"randomization", "of the points: Owen's always"}, "string"}};
+constexpr std::array randomization_ignored = {
+    Row{{"randomization", "of the points: Owen's always"}, "string"}};
 
-void add_ignored_names(std::initializer_list<const char*> names, const char* types, std::vector<Parameter>& out) {
+void add_ignored_names(std::initializer_list<const char*> names, const char* types,
+                       std::vector<Parameter>& out) {
   for (const char* name : names) {
     const Row row{{name, "of pbrt-v4's integrator"}, types};
     add_ignored({&row, 1}, out);
@@ -62,7 +72,8 @@ void add_ignored_names(std::initializer_list<const char*> names, const char* typ
 
 void add_camera(const std::string& type, std::vector<Parameter>& out) {
   if (type == "perspective") add_rows(fov_rows, out);
-  if (type == "spherical") Describe(out).choice(SphericalProjection::mapping_field, 0, SphericalProjection::mapping_names);
+  if (type == "spherical")
+    Describe(out).choice(SphericalProjection::mapping_field, 0, SphericalProjection::mapping_names);
   add_rows(window_rows, out);
   const Camera camera;
   Describe all(out);
@@ -83,17 +94,24 @@ void add_film(const std::string& type, std::vector<Parameter>& out) {
 
 void add_integrator(const std::string& type, std::vector<Parameter>& out) {
   IntegratorSettings integrator;
-  integrator.kind = kind_of<IntegratorSettings::Kind>(type, integrator_names).value_or(IntegratorSettings::Kind{});
+  integrator.kind = kind_of<IntegratorSettings::Kind>(type, integrator_names)
+                        .value_or(IntegratorSettings::Kind{});
   Describe all(out);
   IntegratorSettings::fields(integrator, all);
-  if (integrator.kind == IntegratorSettings::Kind::ambient_occlusion) add_ignored_names({"maxdepth"}, "integer", out);
+  if (integrator.kind == IntegratorSettings::Kind::ambient_occlusion)
+    add_ignored_names({"maxdepth"}, "integer", out);
   if (is_one_of(type, {"path", "volpath"})) add_ignored_names({"lightsampler"}, "string", out);
-  if (is_one_of(type, {"path", "volpath", "bdpt", "mlt"})) add_ignored_names({"regularize"}, "bool", out);
-  if (is_one_of(type, {"path", "volpath", "simplevolpath"})) add_ignored_names({"rrthreshold"}, "float", out);
+  if (is_one_of(type, {"path", "volpath", "bdpt", "mlt"}))
+    add_ignored_names({"regularize"}, "bool", out);
+  if (is_one_of(type, {"path", "volpath", "simplevolpath"}))
+    add_ignored_names({"rrthreshold"}, "float", out);
   if (type == "bdpt") add_ignored_names({"visualizestrategies", "visualizeweights"}, "bool", out);
   if (type == "mlt")
-    add_ignored_names({"bootstrapsamples", "chains", "mutationsperpixel", "largestepprobability", "sigma"}, "integer float", out);
-  if (type == "sppm") add_ignored_names({"photonsperiteration", "radius", "seed"}, "integer float", out);
+    add_ignored_names(
+        {"bootstrapsamples", "chains", "mutationsperpixel", "largestepprobability", "sigma"},
+        "integer float", out);
+  if (type == "sppm")
+    add_ignored_names({"photonsperiteration", "radius", "seed"}, "integer float", out);
 }
 
 }  // namespace
@@ -110,9 +128,11 @@ void add_option(std::string_view directive, const std::string& type, std::vector
   }
   if (directive == "Sampler") {
     SamplerSettings sampler;
-    sampler.kind = kind_of<SamplerSettings::Kind>(type, sampler_names).value_or(SamplerSettings::Kind{});
+    sampler.kind =
+        kind_of<SamplerSettings::Kind>(type, sampler_names).value_or(SamplerSettings::Kind{});
     SamplerSettings::fields(sampler, all);
-    if (is_one_of(type, {"halton", "paddedsobol", "sobol", "zsobol"})) add_ignored(randomization_ignored, out);
+    if (is_one_of(type, {"halton", "paddedsobol", "sobol", "zsobol"}))
+      add_ignored(randomization_ignored, out);
   }
 }
 

@@ -14,44 +14,53 @@ namespace {
 struct Family {
   const char *name, *directive;
 };
-constexpr std::array family_rows = {Family{"material", "Material"},      Family{"texture", "Texture"},
-                                    Family{"light", "LightSource"},      Family{"arealight", "AreaLightSource"},
-                                    Family{"medium", "MakeNamedMedium"}, Family{"shape", "Shape"},
-                                    Family{"camera", "Camera"},          Family{"film", "Film"},
-                                    Family{"filter", "PixelFilter"},     Family{"sampler", "Sampler"},
-                                    Family{"integrator", "Integrator"}};
+constexpr std::array family_rows = {
+    Family{"material", "Material"},      Family{"texture", "Texture"},
+    Family{"light", "LightSource"},      Family{"arealight", "AreaLightSource"},
+    Family{"medium", "MakeNamedMedium"}, Family{"shape", "Shape"},
+    Family{"camera", "Camera"},          Family{"film", "Film"},
+    Family{"filter", "PixelFilter"},     Family{"sampler", "Sampler"},
+    Family{"integrator", "Integrator"}};
 
 constexpr std::array material_rows = {
     Row{{"displacement", "heights along the normal; only the normals follow them"}, "texture"},
-    Row{{"normalmap", "an image of normals in tangent space; not together with displacement"}, "string"}};
+    Row{{"normalmap", "an image of normals in tangent space; not together with displacement"},
+        "string"}};
 
 constexpr std::array subsurface_rows = {
     Row{{"name", "a measured stuff by its name"}, "string"},
     Row{{"sigma_a", "absorption per unit of length", 0}, "rgb spectrum blackbody float texture"},
     Row{{"sigma_s", "scattering per unit of length", 0}, "rgb spectrum blackbody float texture"},
-    Row{{"reflectance", "colour of a half-space of it", 0, 1}, "rgb spectrum blackbody float texture"},
-    Row{{"mfp", "mean free path, with reflectance", 0}, "rgb spectrum blackbody float texture", "1"},
+    Row{{"reflectance", "colour of a half-space of it", 0, 1},
+        "rgb spectrum blackbody float texture"},
+    Row{{"mfp", "mean free path, with reflectance", 0},
+        "rgb spectrum blackbody float texture",
+        "1"},
     Row{{"scale", "factor of both coefficients", 0}, "float", "1"},
-    Row{{"g", "mean cosine of a scattering", -ScatteringProperties::most_asymmetry, ScatteringProperties::most_asymmetry},
+    Row{{"g", "mean cosine of a scattering", -ScatteringProperties::most_asymmetry,
+         ScatteringProperties::most_asymmetry},
         "float",
         "0"}};
 
 constexpr std::array light_rows = {Row{{"scale", "factor of the light", 0}, "float", "1"}};
 constexpr Row power_row = {
-    {"power", "luminous power that replaces the spectrum's magnitude; not above 0: none", -no_limit, no_limit, "lumens"},
+    {"power", "luminous power that replaces the spectrum's magnitude; not above 0: none", -no_limit,
+     no_limit, "lumens"},
     "float",
     "-1"};
 constexpr Row illuminance_row = {
-    {"illuminance", "illuminance that replaces the spectrum's magnitude; not above 0: none", -no_limit, no_limit, "lux"},
+    {"illuminance", "illuminance that replaces the spectrum's magnitude; not above 0: none",
+     -no_limit, no_limit, "lux"},
     "float",
     "-1"};
 
-constexpr std::array area_rows = {Row{{"L", "radiance", 0}, "rgb spectrum blackbody float", "the colour space's white"},
-                                  Row{{"filename", "an image over the surface's (u, v), in place of L"}, "string"},
-                                  Row{{"scale", "factor of the light", 0}, "float", "1"},
-                                  power_row,
-                                  Row{{"twosided", "shines from both sides"}, "bool", "false"},
-                                  Row{{"surfaces", "the surfaces that shine; all where none is named", 0}, "integer"}};
+constexpr std::array area_rows = {
+    Row{{"L", "radiance", 0}, "rgb spectrum blackbody float", "the colour space's white"},
+    Row{{"filename", "an image over the surface's (u, v), in place of L"}, "string"},
+    Row{{"scale", "factor of the light", 0}, "float", "1"},
+    power_row,
+    Row{{"twosided", "shines from both sides"}, "bool", "false"},
+    Row{{"surfaces", "the surfaces that shine; all where none is named", 0}, "integer"}};
 
 template <class Type>
 void describe(std::vector<Parameter>& out, bool may_be_textures = false) {
@@ -77,7 +86,8 @@ void add_material(const std::string& type, std::vector<Parameter>& out) {
 }
 
 void add_texture(const std::string& type, std::vector<Parameter>& out) {
-  if (type == "constant") Describe(out).operand({"value", "the value everywhere"}, TextureOperand(1));
+  if (type == "constant")
+    Describe(out).operand({"value", "the value everywhere"}, TextureOperand(1));
 #define TEXTURE_MODEL(name, Type) \
   if (type == #name) describe<Type>(out);
 #include "scene/textures.def"
@@ -97,7 +107,8 @@ void add_medium(const std::string& type, std::vector<Parameter>& out) {
 #define MEDIUM_MODEL(name, Type) \
   if (type == #name) describe<Type>(out);
 #include "scene/media.def"
-  out.push_back(parameter_of({{"subsurface", "a walk within it counts as one scattering"}, "bool", "false"}));
+  out.push_back(
+      parameter_of({{"subsurface", "a walk within it counts as one scattering"}, "bool", "false"}));
 }
 
 }  // namespace

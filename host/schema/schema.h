@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// The parameters of every material, texture, light, medium, shape, camera, film, filter, sampler and integrator, as
-// their models declare them (scene/field.h). `caplet info --parameters`, the library, Python and the documentation list
-// these.
+// The parameters of every material, texture, light, medium, shape, camera, film, filter, sampler
+// and integrator, as their models declare them (scene/field.h). `caplet info --parameters`, the
+// library, Python and the documentation list these.
 #pragma once
 
 #include <string>
@@ -20,7 +20,8 @@ const std::vector<std::string>& families();
 /// Returns the directive of a family in scene files: "LightSource" of "light".
 std::string directive_of(std::string_view family);
 
-/// Returns the parameters of a statement of an accepted type (import/statement.h); none for an unknown type.
+/// Returns the parameters of a statement of an accepted type (import/statement.h); none for an
+/// unknown type.
 std::vector<Parameter> parameters_of(std::string_view directive, const std::string& type);
 
 }  // namespace caplet::schema

@@ -20,7 +20,8 @@
 
 namespace caplet {
 
-static_assert(std::endian::native == std::endian::little, "elements are written as they lie in memory");
+static_assert(std::endian::native == std::endian::little,
+              "elements are written as they lie in memory");
 
 namespace {
 
@@ -35,7 +36,8 @@ constexpr std::size_t longest_header = 1 << 16;
   throw InputError(SourceLocation{path.string()}, message);
 }
 
-/// Parses the header: a Python dictionary of strings, booleans, tuples of integers and, in types, lists.
+/// Parses the header: a Python dictionary of strings, booleans, tuples of integers and, in types,
+/// lists.
 class HeaderParser {
  public:
   explicit HeaderParser(std::string_view text) : text_(text) {}
@@ -74,7 +76,9 @@ class HeaderParser {
 
  private:
   void skip_blanks() {
-    while (!text_.empty() && (text_.front() == ' ' || text_.front() == '\n' || text_.front() == '\t')) text_.remove_prefix(1);
+    while (!text_.empty() &&
+           (text_.front() == ' ' || text_.front() == '\n' || text_.front() == '\t'))
+      text_.remove_prefix(1);
   }
   char peek() {
     skip_blanks();
@@ -150,18 +154,22 @@ NpyHeader read_header(std::ifstream& file, const fs::path& path) {
   const auto bytes = [&](std::size_t count) {
     std::string out(count, '\0');
     file.read(out.data(), static_cast<std::streamsize>(count));
-    if (static_cast<std::size_t>(file.gcount()) != count) refuse(path, "the file ends within its .npy header");
+    if (static_cast<std::size_t>(file.gcount()) != count)
+      refuse(path, "the file ends within its .npy header");
     return out;
   };
   std::string start(magic.size(), '\0');
   file.read(start.data(), static_cast<std::streamsize>(start.size()));
-  if (file.gcount() != static_cast<std::streamsize>(start.size()) || start != magic) refuse(path, "this is no .npy file");
+  if (file.gcount() != static_cast<std::streamsize>(start.size()) || start != magic)
+    refuse(path, "this is no .npy file");
   const std::string version = bytes(2);
   if (version[0] < 1 || version[0] > 3)
-    refuse(path, fmt::format(".npy version {} is not known", static_cast<int>(static_cast<unsigned char>(version[0]))));
+    refuse(path, fmt::format(".npy version {} is not known",
+                             static_cast<int>(static_cast<unsigned char>(version[0]))));
   std::size_t length = 0;
   const std::string stored = bytes(version[0] == 1 ? 2 : 4);
-  for (std::size_t i = stored.size(); i-- > 0;) length = length << 8 | static_cast<unsigned char>(stored[i]);
+  for (std::size_t i = stored.size(); i-- > 0;)
+    length = length << 8 | static_cast<unsigned char>(stored[i]);
   if (length > longest_header) refuse(path, fmt::format("the .npy header claims {} bytes", length));
   const auto header = HeaderParser(bytes(length)).parse();
   if (!header) refuse(path, "the .npy header is malformed");
@@ -183,16 +191,22 @@ double of_half(std::uint16_t bits) {
   const int exponent = bits >> 10 & 31;
   const double fraction = bits & 1023, sign = bits & 0x8000 ? -1 : 1;
   if (exponent == 31)
-    return fraction > 0 ? std::numeric_limits<double>::quiet_NaN() : sign * std::numeric_limits<double>::infinity();
-  return exponent == 0 ? sign * std::ldexp(fraction, -24) : sign * std::ldexp(fraction + 1024, exponent - 25);
+    return fraction > 0 ? std::numeric_limits<double>::quiet_NaN()
+                        : sign * std::numeric_limits<double>::infinity();
+  return exponent == 0 ? sign * std::ldexp(fraction, -24)
+                       : sign * std::ldexp(fraction + 1024, exponent - 25);
 }
 
-/// Returns the bytes of an element from the number in its type, which for text counts characters of four bytes.
-std::size_t bytes_of(const std::string& type) { return std::stoul(type.substr(2)) * (type[1] == 'U' ? 4 : 1); }
+/// Returns the bytes of an element from the number in its type, which for text counts characters of
+/// four bytes.
+std::size_t bytes_of(const std::string& type) {
+  return std::stoul(type.substr(2)) * (type[1] == 'U' ? 4 : 1);
+}
 
 }  // namespace
 
-NpyReader::NpyReader(const fs::path& path, std::vector<std::size_t> columns, std::size_t dimensions) : path_(path) {
+NpyReader::NpyReader(const fs::path& path, std::vector<std::size_t> columns, std::size_t dimensions)
+    : path_(path) {
   std::error_code error;
   if (const fs::file_status status = fs::status(path, error); !fs::is_regular_file(status))
     refuse(path, fs::is_directory(status) ? "cannot read: it is a folder"
@@ -201,25 +215,31 @@ NpyReader::NpyReader(const fs::path& path, std::vector<std::size_t> columns, std
   file_.open(path, std::ios::binary);
   if (!file_) refuse(path, "cannot read");
   const NpyHeader header = read_header(file_, path);
-  static constexpr std::string_view known[] = {"f2", "f4", "f8", "i1", "i2", "i4", "i8", "u1", "u2", "u4", "u8"};
+  static constexpr std::string_view known[] = {"f2", "f4", "f8", "i1", "i2", "i4",
+                                               "i8", "u1", "u2", "u4", "u8"};
   const std::string& type = header.type;
   if (type.size() != 3 || std::string_view("<>|=").find(type[0]) == std::string_view::npos ||
       std::ranges::find(known, std::string_view(type).substr(1)) == std::end(known))
-    refuse(path, fmt::format("the array's type is {}; floats or whole numbers are needed, such as '<f4' (float32)",
-                             type.starts_with('[') ? "structured" : "'" + type.substr(0, 32) + "'"));
+    refuse(
+        path,
+        fmt::format(
+            "the array's type is {}; floats or whole numbers are needed, such as '<f4' (float32)",
+            type.starts_with('[') ? "structured" : "'" + type.substr(0, 32) + "'"));
   kind_ = type[1];
   size_ = static_cast<std::size_t>(type[2] - '0');
   is_swapped_ = type[0] == '>';
   shape_ = header.shape;
   if (shape_.size() != dimensions || std::ranges::find(columns, shape_.back()) == columns.end())
-    refuse(path, fmt::format("the array's shape is {}; ({}{}) is needed", shape_text(shape_), dimensions == 2 ? "N, " : "T, N, ",
-                             fmt::join(columns, " or ")));
+    refuse(path, fmt::format("the array's shape is {}; ({}{}) is needed", shape_text(shape_),
+                             dimensions == 2 ? "N, " : "T, N, ", fmt::join(columns, " or ")));
   columns_ = static_cast<std::size_t>(shape_.back());
   by_columns_ = header.fortran_order;
-  if (by_columns_ && dimensions > 2) refuse(path, "the array is in Fortran order; C order is needed (numpy.ascontiguousarray)");
+  if (by_columns_ && dimensions > 2)
+    refuse(path, "the array is in Fortran order; C order is needed (numpy.ascontiguousarray)");
   rows_ = 1;
   for (std::size_t i = 0; i + 1 < shape_.size(); ++i) {
-    if (shape_[i] != 0 && rows_ > UINT64_MAX / shape_[i]) refuse(path, "the file is cut off: its shape is far too large");
+    if (shape_[i] != 0 && rows_ > UINT64_MAX / shape_[i])
+      refuse(path, "the file is cut off: its shape is far too large");
     rows_ *= shape_[i];
   }
   const std::uint64_t row_bytes = columns_ * size_;
@@ -227,22 +247,27 @@ NpyReader::NpyReader(const fs::path& path, std::vector<std::size_t> columns, std
   const auto size = static_cast<std::uint64_t>(fs::file_size(path, error));
   if (rows_ > (size - data_) / row_bytes)
     refuse(path, fmt::format("the file is cut off: {} rows are {} bytes, {} are there", rows_,
-                             rows_ > UINT64_MAX / row_bytes ? "far too many" : std::to_string(rows_ * row_bytes), size - data_));
+                             rows_ > UINT64_MAX / row_bytes ? "far too many"
+                                                            : std::to_string(rows_ * row_bytes),
+                             size - data_));
   if (rows_ * row_bytes != size - data_)
-    refuse(path, fmt::format("{} bytes follow the array's {} rows", size - data_ - rows_ * row_bytes, rows_));
+    refuse(path, fmt::format("{} bytes follow the array's {} rows",
+                             size - data_ - rows_ * row_bytes, rows_));
 }
 
 void NpyReader::read(std::span<double> out) {
   const std::size_t count = out.size() / columns_;
   if (count == 0) return;
   if (by_columns_)
-    for (std::size_t c = 0; c < columns_; ++c) read_elements(c * rows_ + next_, count, columns_, out.data() + c);
+    for (std::size_t c = 0; c < columns_; ++c)
+      read_elements(c * rows_ + next_, count, columns_, out.data() + c);
   else
     read_elements(next_ * columns_, count * columns_, 1, out.data());
   next_ += count;
 }
 
-void NpyReader::read_elements(std::uint64_t first, std::size_t count, std::size_t stride, double* out) {
+void NpyReader::read_elements(std::uint64_t first, std::size_t count, std::size_t stride,
+                              double* out) {
   bytes_.resize(count * size_);
   file_.seekg(static_cast<std::streamoff>(data_ + first * size_));
   file_.read(reinterpret_cast<char*>(bytes_.data()), static_cast<std::streamsize>(bytes_.size()));
@@ -258,7 +283,8 @@ void NpyReader::read_elements(std::uint64_t first, std::size_t count, std::size_
   for (std::size_t i = 0; i < count; ++i) {
     std::uint64_t bits = 0;
     const unsigned char* from = bytes_.data() + i * size_;
-    for (std::size_t k = 0; k < size_; ++k) bits |= std::uint64_t{from[is_swapped_ ? size_ - 1 - k : k]} << (8 * k);
+    for (std::size_t k = 0; k < size_; ++k)
+      bits |= std::uint64_t{from[is_swapped_ ? size_ - 1 - k : k]} << (8 * k);
     double& to = out[i * stride];
     if (kind_ == 'u') {
       to = static_cast<double>(bits);
@@ -283,11 +309,13 @@ NpyWriter::NpyWriter(const fs::path& path, std::vector<NpyField> fields, const f
 
 void NpyWriter::write_header(std::uint64_t rows) {
   std::string text = "{'descr': [";
-  for (const NpyField& field : fields_) text += fmt::format("('{}', '{}'), ", field.name, field.type);
+  for (const NpyField& field : fields_)
+    text += fmt::format("('{}', '{}'), ", field.name, field.type);
   text.resize(text.size() - 2);
   text += "], 'fortran_order': False, 'shape': (";
   // The header has the same length for every count of rows, so that it can be overwritten.
-  const std::size_t least = preamble + text.size() + std::to_string(UINT64_MAX).size() + std::string_view(",), }\n").size();
+  const std::size_t least = preamble + text.size() + std::to_string(UINT64_MAX).size() +
+                            std::string_view(",), }\n").size();
   const std::size_t length = (least + alignment - 1) / alignment * alignment - preamble;
   text += fmt::format("{},), }}", rows);
   text.resize(length - 1, ' ');

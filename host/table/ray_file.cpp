@@ -36,15 +36,19 @@ bool is_separator(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\
 
 std::optional<BadRay> to_ray(const std::array<double, 6>& numbers, RayNumbers& ray) {
   for (std::size_t i = 0; i < 6; ++i) {
-    if (!std::isfinite(numbers[i])) return BadRay{i, fmt::format("the ray's {} is not finite", i < 3 ? "origin" : "direction")};
+    if (!std::isfinite(numbers[i]))
+      return BadRay{i, fmt::format("the ray's {} is not finite", i < 3 ? "origin" : "direction")};
     if (std::abs(numbers[i]) > largest_ray_number)
-      return BadRay{i, fmt::format("{:.3g} is out of range (largest: 2^60 = {:.3g})", numbers[i], largest_ray_number)};
+      return BadRay{i, fmt::format("{:.3g} is out of range (largest: 2^60 = {:.3g})", numbers[i],
+                                   largest_ray_number)};
     ray[i] = static_cast<float>(numbers[i]);
   }
-  const double length = std::hypot(static_cast<double>(ray[3]), static_cast<double>(ray[4]), static_cast<double>(ray[5]));
+  const double length = std::hypot(static_cast<double>(ray[3]), static_cast<double>(ray[4]),
+                                   static_cast<double>(ray[5]));
   if (length == 0) return BadRay{3, "the ray has no direction"};
   if (length < 1 / largest_ray_number || length > largest_ray_number)
-    return BadRay{3, fmt::format("the direction's length, {:.3g}, is not between 2^-60 and 2^60", length)};
+    return BadRay{
+        3, fmt::format("the direction's length, {:.3g}, is not between 2^-60 and 2^60", length)};
   return std::nullopt;
 }
 
@@ -58,9 +62,11 @@ std::optional<BadRay> to_listed(std::span<const double> numbers, ListedRay& out)
   if (!(numbers[6] >= 0) || numbers[6] > largest_ray_number)
     return BadRay{6, fmt::format("t_min, {:.3g}, is not from 0 to 2^60", numbers[6])};
   if (!(numbers[7] > numbers[6]))
-    return BadRay{7, fmt::format("t_max, {:.3g}, is not above t_min, {:.3g}", numbers[7], numbers[6])};
+    return BadRay{7,
+                  fmt::format("t_max, {:.3g}, is not above t_min, {:.3g}", numbers[7], numbers[6])};
   out.t_min = static_cast<float>(numbers[6]);
-  out.t_max = static_cast<float>(std::min(numbers[7], static_cast<double>(std::numeric_limits<float>::max())));
+  out.t_max = static_cast<float>(
+      std::min(numbers[7], static_cast<double>(std::numeric_limits<float>::max())));
   if (numbers[7] > largest_ray_number) out.t_max = std::numeric_limits<float>::infinity();
   return std::nullopt;
 }
@@ -72,7 +78,8 @@ std::optional<std::string> parse_number(std::string_view token, double& value) {
   const char* begin = token.data() + (plus ? 1 : 0);
   const char* end = token.data() + token.size();
   const auto [stop, error] = std::from_chars(begin, end, value);
-  if (stop != end || error == std::errc::invalid_argument) return fmt::format("{} is not a number", quoted(token));
+  if (stop != end || error == std::errc::invalid_argument)
+    return fmt::format("{} is not a number", quoted(token));
   if (error != std::errc()) return fmt::format("{} is out of range", quoted(token));
   if (!std::isfinite(value)) return fmt::format("{} is not finite", quoted(token));
   return std::nullopt;
@@ -119,7 +126,8 @@ std::vector<ListedRay> RayFile::next_rows(std::size_t most) {
   Diagnostics diagnostics;
   for (std::size_t i = 0; i < count; ++i, ++row_)
     if (const auto bad = to_listed(std::span(numbers).subspan(columns * i, columns), out[i]))
-      diagnostics.error(SourceLocation{path_.string()}, fmt::format("row {}: {}", row_, bad->message));
+      diagnostics.error(SourceLocation{path_.string()},
+                        fmt::format("row {}: {}", row_, bad->message));
   diagnostics.finish();
   return out;
 }
@@ -146,7 +154,8 @@ std::optional<std::string_view> RayFile::take_line() {
   return line;
 }
 
-std::optional<ListedRay> RayFile::parse_line(std::string_view line, Diagnostics& diagnostics) const {
+std::optional<ListedRay> RayFile::parse_line(std::string_view line,
+                                             Diagnostics& diagnostics) const {
   line = line.substr(0, line.find('#'));
   const auto fail = [&](std::size_t column, const std::string& message) {
     diagnostics.error(SourceLocation{path_.string(), line_, static_cast<int>(column) + 1}, message);
@@ -166,7 +175,8 @@ std::optional<ListedRay> RayFile::parse_line(std::string_view line, Diagnostics&
     const std::size_t start = i;
     while (i < line.size() && !is_separator(line[i]) && line[i] != ',') ++i;
     if (i == start) return fail(start, "a number is missing");
-    if (count == 8) return fail(start, "there are more than eight numbers (origin, direction, t_min and t_max)");
+    if (count == 8)
+      return fail(start, "there are more than eight numbers (origin, direction, t_min and t_max)");
     columns[count] = start;
     const std::string_view word = line.substr(start, i - start);
     if (count == 7 && (word == "inf" || word == "infinity"))
@@ -176,10 +186,12 @@ std::optional<ListedRay> RayFile::parse_line(std::string_view line, Diagnostics&
     ++count;
   }
   if (count == 0) return std::nullopt;
-  if (count < 6) return fail(line.size(), fmt::format("{} of six numbers (origin and direction)", count));
+  if (count < 6)
+    return fail(line.size(), fmt::format("{} of six numbers (origin and direction)", count));
   if (count == 7) return fail(line.size(), "seven numbers: t_max is missing after t_min");
   ListedRay ray;
-  if (const auto bad = to_listed(std::span(numbers).first(count), ray)) return fail(columns[bad->number], bad->message);
+  if (const auto bad = to_listed(std::span(numbers).first(count), ray))
+    return fail(columns[bad->number], bad->message);
   return ray;
 }
 

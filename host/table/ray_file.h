@@ -28,30 +28,33 @@ struct ListedRay {
   float t_min = 0, t_max = std::numeric_limits<float>::infinity();
 };
 
-/// Squares of larger coordinates, and of directions longer than this or shorter than its inverse, do not fit into floats.
+/// Squares of larger coordinates, and of directions longer than this or shorter than its inverse,
+/// do not fit into floats.
 inline constexpr double largest_ray_number = 0x1p60;  // 1.15e18
 
-/// Returns the six numbers as floats. Otherwise returns the error (not finite, too large, no direction) and the number's index.
+/// Returns the six numbers as floats. Otherwise returns the error (not finite, too large, no
+/// direction) and the number's index.
 struct BadRay {
   std::size_t number;  // 0..5
   std::string message;
 };
 std::optional<BadRay> to_ray(const std::array<double, 6>& numbers, RayNumbers& ray);
 
-/// Parses a whole token as a number in decimal notation; a leading '+' is allowed. Otherwise returns the error.
+/// Parses a whole token as a number in decimal notation; a leading '+' is allowed. Otherwise
+/// returns the error.
 std::optional<std::string> parse_number(std::string_view token, double& value);
 
-/// Reads .npy by extension (rows of six or eight numbers, NpyReader), else text: six or eight numbers
-/// per line, separated by blanks or commas; `#` starts a comment, blank lines are skipped. The
-/// seventh and eighth are t_min, from 0, and t_max, above it or `inf`. "-" is the standard input, as
-/// text.
+/// Reads .npy by extension (rows of six or eight numbers, NpyReader), else text: six or eight
+/// numbers per line, separated by blanks or commas; `#` starts a comment, blank lines are skipped.
+/// The seventh and eighth are t_min, from 0, and t_max, above it or `inf`. "-" is the standard
+/// input, as text.
 class RayFile {
  public:
   /// Throws InputError when the file is missing, unreadable or not such a list.
   explicit RayFile(const std::filesystem::path& path);
 
-  /// Returns up to `most` more rays; fewer only at the end. Throws InputError with every bad ray among them, up to 20, with line
-  /// and column or, in a .npy file, its row.
+  /// Returns up to `most` more rays; fewer only at the end. Throws InputError with every bad ray
+  /// among them, up to 20, with line and column or, in a .npy file, its row.
   std::vector<ListedRay> next(std::size_t most);
 
  private:

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Bounds the error of each primitive for a ray: the kernels' stated bounds (docs/numerics.md) and the rounding of the scene's
-// numbers to 32-bit floats on their way to the device.
+// Bounds the error of each primitive for a ray: the kernels' stated bounds (docs/numerics.md) and
+// the rounding of the scene's numbers to 32-bit floats on their way to the device.
 #pragma once
 
 #include <glm/vec3.hpp>
@@ -20,7 +20,9 @@ struct LocalRay {
   const reference::Primitive* primitive;
   reference::Ray ray;  // t in (0, infinity)
   double bound;        // the most that a crossing may be off the primitive's surface, in its space
-  double value(double t) const { return reference::value(*primitive, ray.origin + t * ray.direction); }
+  double value(double t) const {
+    return reference::value(*primitive, ray.origin + t * ray.direction);
+  }
 };
 
 class Bounds {
@@ -31,17 +33,21 @@ class Bounds {
   /// Returns the longest image, in the primitive's space, of a world vector of length 1.
   double stretch(std::size_t primitive) const { return places_[primitive].object_stretch; }
   /// Returns the product of the stretches in both directions: 3 for similarities.
-  double condition(std::size_t primitive) const { return places_[primitive].object_stretch * places_[primitive].world_stretch; }
-  /// Bounds how far a point of the surface may move in the world by the rounding of the primitive's numbers and of its transform
-  /// to floats.
+  double condition(std::size_t primitive) const {
+    return places_[primitive].object_stretch * places_[primitive].world_stretch;
+  }
+  /// Bounds how far a point of the surface may move in the world by the rounding of the primitive's
+  /// numbers and of its transform to floats.
   double rounding(std::size_t primitive) const;
-  /// Bounds the angle (radians, world) by which that, and the kernels' differences of its points, may turn its planes and axis.
+  /// Bounds the angle (radians, world) by which that, and the kernels' differences of its points,
+  /// may turn its planes and axis.
   double tilt(std::size_t primitive) const;
 
  private:
   struct Place {
     double object_stretch, world_stretch, world_size, object_shift;
-    double corner;  // for csg shapes: the greatest distance of a box of their solids from the ball's centre
+    double corner;  // for csg shapes: the greatest distance of a box of their solids from the
+                    // ball's centre
   };
   const reference::SceneReference* reference_;
   std::vector<Place> places_;

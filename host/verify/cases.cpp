@@ -60,7 +60,8 @@ Json to_json(const Failure& failure) {
   out["device"] = failure.device;
   out["driver"] = failure.driver;
   for (const Disagreement& d : failure.disagreements)
-    out["disagreements"].push_back({{"fault", fault_names[static_cast<std::size_t>(d.fault)]}, {"what", d.text}});
+    out["disagreements"].push_back(
+        {{"fault", fault_names[static_cast<std::size_t>(d.fault)]}, {"what", d.text}});
   out["nearest"] = failure.nearest.object == CAPLET_NONE ? Json(nullptr) : to_json(failure.nearest);
   out["crossings"] = Json::array();
   for (const PickRecord& pick : failure.list) out["crossings"].push_back(to_json(pick));
@@ -78,17 +79,22 @@ float number(const Json& value, const fs::path& file) {
   } else if (value.is_number()) {
     if (const auto x = value.get<float>(); std::isfinite(x)) return x;
   }
-  throw InputError(SourceLocation{file.string()}, "a ray has six finite numbers, not " + json_dump(value));
+  throw InputError(SourceLocation{file.string()},
+                   "a ray has six finite numbers, not " + json_dump(value));
 }
 
 Case load(const fs::path& file) {
-  const auto refuse = [&](const std::string& why) -> InputError { return InputError(SourceLocation{file.string()}, why); };
+  const auto refuse = [&](const std::string& why) -> InputError {
+    return InputError(SourceLocation{file.string()}, why);
+  };
   std::error_code ignored;
-  if (const auto size = fs::file_size(file, ignored); !ignored && size > largest_file) throw refuse("too large for a case");
+  if (const auto size = fs::file_size(file, ignored); !ignored && size > largest_file)
+    throw refuse("too large for a case");
   std::ifstream in(file, std::ios::binary);
   if (!in) throw refuse("cannot be read");
   const Json json = Json::parse(in, nullptr, false);
-  if (!json.is_object() || json.value("format", Json()) != format_name) throw refuse("not a case of caplet verify");
+  if (!json.is_object() || json.value("format", Json()) != format_name)
+    throw refuse("not a case of caplet verify");
   Case out{file, {}, {}};
   try {
     if (const auto scene = json.find("scene"); scene != json.end()) {
@@ -98,7 +104,8 @@ Case load(const fs::path& file) {
         const Json& value = json.at("torture").at(name);
         if (!value.is_number_unsigned())
           throw refuse(
-              fmt::format("not a case of caplet verify: {} is a whole number from 0 up, not {}", name, json_dump(value)));
+              fmt::format("not a case of caplet verify: {} is a whole number from 0 up, not {}",
+                          name, json_dump(value)));
         return value.get<std::uint64_t>();
       };
       out.scene.seed = whole("seed");
@@ -118,13 +125,16 @@ Case load(const fs::path& file) {
 void save_cases(const fs::path& folder, const std::vector<Failure>& failures) {
   std::error_code error;
   fs::create_directories(folder, error);
-  if (error) throw RunError(fmt::format("cannot make the folder {}: {}", folder.string(), error.message()));
+  if (error)
+    throw RunError(fmt::format("cannot make the folder {}: {}", folder.string(), error.message()));
   for (std::size_t i = 0; i < failures.size(); ++i)
-    write_atomically(folder / fmt::format("case-{:05}.json", i + 1), [&](const fs::path& temporary) {
-      std::ofstream out(temporary, std::ios::binary);
-      out << json_dump(to_json(failures[i]), 2) << '\n';
-      if (!out.flush()) throw RunError(fmt::format("cannot write {}", temporary.string()));
-    });
+    write_atomically(folder / fmt::format("case-{:05}.json", i + 1),
+                     [&](const fs::path& temporary) {
+                       std::ofstream out(temporary, std::ios::binary);
+                       out << json_dump(to_json(failures[i]), 2) << '\n';
+                       if (!out.flush())
+                         throw RunError(fmt::format("cannot write {}", temporary.string()));
+                     });
 }
 
 std::vector<Case> load_cases(const fs::path& path) {
@@ -136,7 +146,8 @@ std::vector<Case> load_cases(const fs::path& path) {
       if (name.starts_with("case-") && name.ends_with(".json")) files.push_back(entry.path());
     }
     std::ranges::sort(files);
-    if (files.empty()) throw InputError(SourceLocation{path.string()}, "the folder has no case-*.json");
+    if (files.empty())
+      throw InputError(SourceLocation{path.string()}, "the folder has no case-*.json");
   } else {
     files.push_back(path);
   }

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Stores failures in files that a later run can repeat: JSON, with every float of the ray in hexadecimal to keep its bits.
+// Stores failures in files that a later run can repeat: JSON, with every float of the ray in
+// hexadecimal to keep its bits.
 #pragma once
 
 #include <filesystem>
@@ -20,7 +21,8 @@ struct Case {
   RayRecord ray{};
 };
 
-/// Loads one case, or all case-*.json of a folder in order. Throws InputError when there is none, or one is not a case.
+/// Loads one case, or all case-*.json of a folder in order. Throws InputError when there is none,
+/// or one is not a case.
 std::vector<Case> load_cases(const std::filesystem::path& path);
 
 }  // namespace caplet::verify

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Compares crossings primitive by primitive: whether a displacement of the primitive by at most its bound explains a difference
-// does not depend on other primitives.
+// Compares crossings primitive by primitive: whether a displacement of the primitive by at most its
+// bound explains a difference does not depend on other primitives.
 #include "verify/compare.h"
 
 #include <fmt/format.h>
@@ -30,7 +30,8 @@ double ulp_of(double x) {
   return static_cast<double>(std::nextafter(at, HUGE_VALF)) - static_cast<double>(at);
 }
 
-/// Recognises open shapes: only their normal, which ReverseOrientation turns, distinguishes entering from leaving.
+/// Recognises open shapes: only their normal, which ReverseOrientation turns, distinguishes
+/// entering from leaving.
 bool is_sheet(const reference::Primitive& primitive) {
   return !reference::is_solid(primitive) && !std::holds_alternative<reference::Frustum>(primitive);
 }
@@ -38,18 +39,22 @@ bool is_sheet(const reference::Primitive& primitive) {
 bool begins_at(const LocalRay& local) { return std::abs(local.value(0)) <= local.bound; }
 
 /// Collects t of all crossings of the solids of a csg shape.
-void collect_crossings(const reference::Csg& csg, const reference::Ray& ray, std::vector<double>& out) {
+void collect_crossings(const reference::Csg& csg, const reference::Ray& ray,
+                       std::vector<double>& out) {
   for (const reference::CsgOperand& operand : csg.body->operands) {
     const glm::dmat4& m = operand.operand_from_csg;
-    const reference::Ray local{dvec3(m * glm::dvec4(ray.origin, 1)), dvec3(m * glm::dvec4(ray.direction, 0)), 0, HUGE_VAL};
+    const reference::Ray local{dvec3(m * glm::dvec4(ray.origin, 1)),
+                               dvec3(m * glm::dvec4(ray.direction, 0)), 0, HUGE_VAL};
     if (const auto* nested = std::get_if<reference::Csg>(&operand.primitive))
       collect_crossings(*nested, local, out);
     else
-      for (const reference::Crossing& crossing : reference::crossings(operand.primitive, local)) out.push_back(crossing.t);
+      for (const reference::Crossing& crossing : reference::crossings(operand.primitive, local))
+        out.push_back(crossing.t);
   }
 }
 
-/// Csg shapes treat walls and gaps thinner than the bounds of both sides as closed, and may see one where solids just touch.
+/// Csg shapes treat walls and gaps thinner than the bounds of both sides as closed, and may see one
+/// where solids just touch.
 bool has_thin_wall(const reference::Csg& csg, const LocalRay& local) {
   std::vector<double> events;
   collect_crossings(csg, local.ray, events);
@@ -57,36 +62,41 @@ bool has_thin_wall(const reference::Csg& csg, const LocalRay& local) {
   for (std::size_t i = 0; i + 1 < events.size(); ++i) {
     double deepest = 0;
     for (int k = 0; k <= 16; ++k)
-      deepest = std::max(deepest, std::abs(local.value(events[i] + (events[i + 1] - events[i]) * k / 16)));
+      deepest = std::max(deepest,
+                         std::abs(local.value(events[i] + (events[i + 1] - events[i]) * k / 16)));
     if (deepest <= 2 * local.bound) return true;
   }
   return false;
 }
 
-/// Returns whether both answers are right: the ray begins at the surface, the line touches it or passes a rim, all within the
-/// bound. For csg shapes, it is enough that this holds for one of their solids.
+/// Returns whether both answers are right: the ray begins at the surface, the line touches it or
+/// passes a rim, all within the bound. For csg shapes, it is enough that this holds for one of
+/// their solids.
 bool is_grazing(const LocalRay& local) {
   if (begins_at(local)) return true;
   const auto* csg = std::get_if<reference::Csg>(local.primitive);
   if (!csg) return reference::comes_within(*local.primitive, local.ray, local.bound);
   for (const reference::CsgOperand& operand : csg->body->operands) {
     const glm::dmat4& m = operand.operand_from_csg;
-    const reference::Ray ray{dvec3(m * glm::dvec4(local.ray.origin, 1)), dvec3(m * glm::dvec4(local.ray.direction, 0)), 0,
-                             HUGE_VAL};
+    const reference::Ray ray{dvec3(m * glm::dvec4(local.ray.origin, 1)),
+                             dvec3(m * glm::dvec4(local.ray.direction, 0)), 0, HUGE_VAL};
     if (is_grazing({&operand.primitive, ray, local.bound * operand.stretch})) return true;
   }
-  return has_thin_wall(*csg, local) || reference::comes_within(*local.primitive, local.ray, local.bound);
+  return has_thin_wall(*csg, local) ||
+         reference::comes_within(*local.primitive, local.ray, local.bound);
 }
 
-/// Returns the greatest distance of the ray from the surface between two parameters of one crossing, in bounds. The ray may pass
-/// the hole or the gap of a partial disk there; its distance from the disk's plane is greatest at an end.
+/// Returns the greatest distance of the ray from the surface between two parameters of one
+/// crossing, in bounds. The ray may pass the hole or the gap of a partial disk there; its distance
+/// from the disk's plane is greatest at an end.
 double apart(const LocalRay& local, double t, double other) {
   const double at_end = std::abs(local.value(t));
   if (std::holds_alternative<reference::PartialDisk>(*local.primitive)) return at_end / local.bound;
   return std::max(at_end, std::abs(local.value(0.5 * (t + other)))) / local.bound;
 }
 
-/// Returns the least and greatest of `f` at x and the corners of an octahedron that contains the ball of radius `reach` around x.
+/// Returns the least and greatest of `f` at x and the corners of an octahedron that contains the
+/// ball of radius `reach` around x.
 template <class T, class F>
 std::pair<T, T> range_around(const dvec3& x, double reach, const F& f) {
   T low = f(x), high = low;
@@ -112,23 +122,26 @@ Solid solid_of(const reference::SceneReference::PlacedPrimitive& placed, std::ui
   Solid out{&placed.primitive, placed.object_from_world, 1, static_cast<int>(surface)};
   while (const auto* csg = std::get_if<reference::Csg>(out.primitive)) {
     const auto& operands = csg->body->operands;
-    const auto after = std::ranges::find_if(operands, [&](const auto& operand) { return operand.surface_begin > out.surface; });
+    const auto after = std::ranges::find_if(
+        operands, [&](const auto& operand) { return operand.surface_begin > out.surface; });
     const reference::CsgOperand& operand = *std::prev(after);
-    out = {&operand.primitive, operand.operand_from_csg * out.object_from_world, out.stretch * operand.stretch,
-           out.surface - operand.surface_begin};
+    out = {&operand.primitive, operand.operand_from_csg * out.object_from_world,
+           out.stretch * operand.stretch, out.surface - operand.surface_begin};
   }
   return out;
 }
 
-/// Bounds the error of v of a chain whose axis and ray are off by `angle` (radians): both define the direction across, which is
-/// undefined where they are parallel.
+/// Bounds the error of v of a chain whose axis and ray are off by `angle` (radians): both define
+/// the direction across, which is undefined where they are parallel.
 double turn_of_v(const reference::Primitive& primitive, const dvec3& direction, double angle) {
   const auto* capsule = std::get_if<reference::Capsule>(&primitive);
   if (!capsule || !capsule->u) return 0;
-  const double length = glm::length(capsule->p1 - capsule->p0), growth = std::abs(capsule->radius1 - capsule->radius0);
+  const double length = glm::length(capsule->p1 - capsule->p0),
+               growth = std::abs(capsule->radius1 - capsule->radius0);
   const dvec3 axis = length > 0 ? (capsule->p1 - capsule->p0) / length : dvec3(0, 0, 1);
   const double sine = glm::length(glm::cross(direction, axis)) / glm::length(direction);
-  const double cosine = length > growth ? std::sqrt((length - growth) * (length + growth)) / length : 1;
+  const double cosine =
+      length > growth ? std::sqrt((length - growth) * (length + growth)) / length : 1;
   return std::min(1.0, angle / std::max(sine * cosine, 1e-300));
 }
 
@@ -150,16 +163,18 @@ Expected Comparison::expected(const RayRecord& r) const {
   return out;
 }
 
-/// Returns the reference's index of the device's primitive; no_primitive where the scene has no such primitive.
+/// Returns the reference's index of the device's primitive; no_primitive where the scene has no
+/// such primitive.
 std::size_t Comparison::primitive_of(const PickRecord& pick) const {
   const std::size_t in_world = scene_.shapes.size();
   std::optional<std::size_t> index;
   if (pick.object < in_world) {
-    if (pick.shape == pick.object) index = reference_.index_of(reference::no_instance, pick.shape, pick.primitive);
+    if (pick.shape == pick.object)
+      index = reference_.index_of(reference::no_instance, pick.shape, pick.primitive);
   } else if (pick.shape >= in_world) {
     // The numbers of an object's shapes continue those of the world's (lower/identity.h).
     index = reference_.index_of(static_cast<std::uint32_t>(pick.object - in_world),
-                              static_cast<std::uint32_t>(pick.shape - in_world), pick.primitive);
+                                static_cast<std::uint32_t>(pick.shape - in_world), pick.primitive);
   }
   return index.value_or(no_primitive);
 }
@@ -169,12 +184,14 @@ std::string Comparison::name_of(std::size_t primitive) const {
   const auto placed = reference_.placed(primitive);
   const SceneHit& id = placed.identity;
   std::string out =
-      fmt::format("{} {} of shape {}", reference::kind_names[reference::kind_of(placed.primitive)], id.primitive, id.shape);
+      fmt::format("{} {} of shape {}", reference::kind_names[reference::kind_of(placed.primitive)],
+                  id.primitive, id.shape);
   if (id.instance != reference::no_instance) out += fmt::format(" of instance {}", id.instance);
   return out + ": ";
 }
 
-Match Comparison::measure(const LocalRay& local, const SceneHit& hit, const PickRecord& pick, const reference::Ray& ray) const {
+Match Comparison::measure(const LocalRay& local, const SceneHit& hit, const PickRecord& pick,
+                          const reference::Ray& ray) const {
   const Solid solid = solid_of(reference_.placed(hit.index), pick.surface);
   const reference::Primitive& primitive = *solid.primitive;
   const double t = pick.t;
@@ -188,23 +205,26 @@ Match Comparison::measure(const LocalRay& local, const SceneHit& hit, const Pick
   out.deviations[0].in_ulps = std::abs(t - hit.t) / ulp_of(hit.t);
 
   const dvec3 point = to_dvec3(pick.point), x(solid.object_from_world * glm::dvec4(point, 1));
-  // A point of the surface lies within this distance of x, and the normal may be that of any point as close.
+  // A point of the surface lies within this distance of x, and the normal may be that of any point
+  // as close.
   const double error = static_cast<double>(pick.error) + bounds_.rounding(hit.index);
   const double reach = error * bounds_.stretch(hit.index) * solid.stretch;
   const dmat3 normal_matrix = glm::transpose(dmat3(solid.object_from_world));
   const glm::dmat4 world_from_object = glm::inverse(solid.object_from_world);
   const auto world_normal = [&](const dvec3& there) {
-    return glm::normalize(normal_matrix * reference::normal_of_surface(primitive, there, solid.surface, reach));
+    return glm::normalize(normal_matrix *
+                          reference::normal_of_surface(primitive, there, solid.surface, reach));
   };
   // The gradient of the value in the world is the transposed matrix's image of its gradient here.
   const double largest = std::max({std::abs(point.x), std::abs(point.y), std::abs(point.z)});
   set(Quantity::point,
-      std::abs(reference::value(primitive, x)) / glm::length(normal_matrix * reference::normal_at(primitive, x, reach)), error,
-      ulp_of(largest));
+      std::abs(reference::value(primitive, x)) /
+          glm::length(normal_matrix * reference::normal_at(primitive, x, reach)),
+      error, ulp_of(largest));
 
   const dvec3 own = to_dvec3(pick.normal), unit = world_normal(x);
-  // The device's arithmetic contributes: a unit vector by a square root and quotients (16 eps), the sine and cosine of a cone
-  // (16), then a matrix and normalisation.
+  // The device's arithmetic contributes: a unit vector by a square root and quotients (16 eps), the
+  // sine and cosine of a cone (16), then a matrix and normalisation.
   double allowed = bounds_.tilt(hit.index) + (32 + 8 * bounds_.condition(hit.index)) * eps;
   double off = std::min(glm::length(own - unit), glm::length(own + unit));
   if (!(off <= 0.25 * allowed)) {
@@ -217,16 +237,20 @@ Match Comparison::measure(const LocalRay& local, const SceneHit& hit, const Pick
   set(Quantity::normal, off, allowed, 0x1p-23);
 
   const auto uv_there = [&](const dvec3& there) {
-    return reference_.uv({.surface = pick.surface, .index = hit.index}, dvec3(world_from_object * glm::dvec4(there, 1)),
-                       ray.direction);
+    return reference_.uv({.surface = pick.surface, .index = hit.index},
+                         dvec3(world_from_object * glm::dvec4(there, 1)), ray.direction);
   };
   const dvec2 own_uv{pick.u, pick.v}, uv = uv_there(x);
-  const auto apart_by = [](const dvec2& a, const dvec2& b) { return std::max(std::abs(a.x - b.x), std::abs(a.y - b.y)); };
-  // A uv takes half a dozen operations on numbers of its size, including an arc tangent (6 ulp); the frame of the angles, with a
-  // quotient that makes the rounding of an axis (4 eps) up to ten times larger; and 1 / 2 pi of that.
-  double allowed_uv = 64 * eps * std::max({1.0, std::abs(uv.x), std::abs(uv.y)}) + bounds_.tilt(hit.index) +
-                      turn_of_v(primitive, dmat3(solid.object_from_world) * ray.direction,
-                                bounds_.tilt(hit.index) + (32 + 8 * bounds_.condition(hit.index)) * eps);
+  const auto apart_by = [](const dvec2& a, const dvec2& b) {
+    return std::max(std::abs(a.x - b.x), std::abs(a.y - b.y));
+  };
+  // A uv takes half a dozen operations on numbers of its size, including an arc tangent (6 ulp);
+  // the frame of the angles, with a quotient that makes the rounding of an axis (4 eps) up to ten
+  // times larger; and 1 / 2 pi of that.
+  double allowed_uv =
+      64 * eps * std::max({1.0, std::abs(uv.x), std::abs(uv.y)}) + bounds_.tilt(hit.index) +
+      turn_of_v(primitive, dmat3(solid.object_from_world) * ray.direction,
+                bounds_.tilt(hit.index) + (32 + 8 * bounds_.condition(hit.index)) * eps);
   if (!(apart_by(own_uv, uv) <= 0.25 * allowed_uv)) {
     const auto [least, most] = range_around<dvec2>(x, reach, uv_there);
     // At poles, centres and seams u may take any value of its range.
@@ -238,7 +262,8 @@ Match Comparison::measure(const LocalRay& local, const SceneHit& hit, const Pick
 
 void Comparison::compare_primitive(const Expected& expected, Pair& pair, Outcome& out) const {
   const LocalRay local = bounds_.local(pair.primitive, expected.ray);
-  const bool sheet = is_sheet(*local.primitive), turned = sheet && reference_.is_reversed(pair.primitive);
+  const bool sheet = is_sheet(*local.primitive),
+             turned = sheet && reference_.is_reversed(pair.primitive);
   const auto disagree = [&](Fault fault, const std::string& text) {
     out.disagreements.push_back({fault, pair.primitive, name_of(pair.primitive) + text});
   };
@@ -258,25 +283,30 @@ void Comparison::compare_primitive(const Expected& expected, Pair& pair, Outcome
     const bool leaving = pair.found[k]->leaving != 0;
     // Where a sheet is folded closer than the bound, either of its sides may come first.
     if (sheet && is_leaving(pair.expected[k]) != leaving) {
-      const auto other = std::find_if(pair.expected.begin() + static_cast<std::ptrdiff_t>(k), pair.expected.end(),
-                                      [&](const SceneHit* hit) { return is_leaving(hit) == leaving; });
-      if (other != pair.expected.end() && apart(local, pair.found[k]->t, (*other)->t) <= 1) std::swap(pair.expected[k], *other);
+      const auto other =
+          std::find_if(pair.expected.begin() + static_cast<std::ptrdiff_t>(k), pair.expected.end(),
+                       [&](const SceneHit* hit) { return is_leaving(hit) == leaving; });
+      if (other != pair.expected.end() && apart(local, pair.found[k]->t, (*other)->t) <= 1)
+        std::swap(pair.expected[k], *other);
     }
-    const double t = pair.found[k]->t, by_reference = pair.expected[k]->t, off = apart(local, t, by_reference);
+    const double t = pair.found[k]->t, by_reference = pair.expected[k]->t,
+                 off = apart(local, t, by_reference);
     if (!(off <= 1)) {
       fault = Fault::t;
-      different =
-          fmt::format("the crossing at {}, at {} by the reference, is off by {:.3g} of what is allowed", t, by_reference, off);
+      different = fmt::format(
+          "the crossing at {}, at {} by the reference, is off by {:.3g} of what is allowed", t,
+          by_reference, off);
     } else if (leaving != is_leaving(pair.expected[k])) {
       fault = Fault::side;
-      different = fmt::format("the crossing at {} is {}, the reference says otherwise", t, leaving ? "leaving" : "entering");
+      different = fmt::format("the crossing at {} is {}, the reference says otherwise", t,
+                              leaving ? "leaving" : "entering");
     }
   }
   const bool matched = different.empty();
   if (!matched) {
     if (std::ranges::count(out.grazed, pair.primitive) == 0 && !is_grazing(local)) {
-      disagree(fault, fmt::format("{}; margin {:.3g}, bound {:.3g}", different, reference::margin(*local.primitive, local.ray),
-                                  local.bound));
+      disagree(fault, fmt::format("{}; margin {:.3g}, bound {:.3g}", different,
+                                  reference::margin(*local.primitive, local.ray), local.bound));
       return;
     }
     out.grazed.push_back(pair.primitive);
@@ -288,35 +318,43 @@ void Comparison::compare_primitive(const Expected& expected, Pair& pair, Outcome
     SceneHit hit = matched ? *pair.expected[k] : reference_.placed(pair.primitive).identity;
     if (!matched) hit.t = t;
     if (!matched || pick.surface != hit.surface) {
-      const double away = reference::distance_from_surface(*local.primitive, local.ray.origin + t * local.ray.direction,
-                                                           static_cast<int>(pick.surface));
+      const double away = reference::distance_from_surface(
+          *local.primitive, local.ray.origin + t * local.ray.direction,
+          static_cast<int>(pick.surface));
       // A ray along an open surface may hit it beside its edge.
       if (!(away <= 2 * local.bound) && !(sheet && !matched && pick.surface == 0))
-        disagree(Fault::surface, fmt::format("surface {} at {} is {} away (bound {}), the reference says {}", pick.surface, t, away,
-                                             local.bound, matched ? std::to_string(hit.surface) : "otherwise"));
+        disagree(Fault::surface,
+                 fmt::format("surface {} at {} is {} away (bound {}), the reference says {}",
+                             pick.surface, t, away, local.bound,
+                             matched ? std::to_string(hit.surface) : "otherwise"));
     }
-    if (const std::uint32_t material = reference_.material(pair.primitive, pick.surface); pick.material != material)
+    if (const std::uint32_t material = reference_.material(pair.primitive, pick.surface);
+        pick.material != material)
       disagree(Fault::material,
-               fmt::format("material {} of surface {} at {}, the reference says {}", pick.material, pick.surface, t, material));
+               fmt::format("material {} of surface {} at {}, the reference says {}", pick.material,
+                           pick.surface, t, material));
     Match& match = out.matches.emplace_back(measure(local, hit, pick, expected.ray));
     if (!matched && sheet) match.deviations[0] = {};
     constexpr std::array faults = {Fault::t, Fault::point, Fault::normal, Fault::uv};
     for (std::size_t q = 0; q < quantity_names.size(); ++q)
       if (!(match.deviations[q].in_bounds <= 1))
-        disagree(faults[q], fmt::format("{} at t {} is off by {:.3g} of what is allowed", quantity_names[q], t,
-                                        match.deviations[q].in_bounds));
+        disagree(faults[q], fmt::format("{} at t {} is off by {:.3g} of what is allowed",
+                                        quantity_names[q], t, match.deviations[q].in_bounds));
   }
 }
 
-/// The nearest crossing must lie where its primitive has one, and earlier crossings of the reference must be within the bounds.
-void Comparison::compare_nearest(const Expected& expected, const PickRecord& nearest, Outcome& out) const {
+/// The nearest crossing must lie where its primitive has one, and earlier crossings of the
+/// reference must be within the bounds.
+void Comparison::compare_nearest(const Expected& expected, const PickRecord& nearest,
+                                 Outcome& out) const {
   const bool hit = nearest.object != CAPLET_NONE;
   const std::size_t own = hit ? primitive_of(nearest) : no_primitive;
   const double t = hit ? static_cast<double>(nearest.t) : HUGE_VAL;
   if (hit && own == no_primitive) {
-    out.disagreements.push_back({Fault::id, no_primitive,
-                                 fmt::format("the nearest hit is on object {} shape {} primitive {}: there is none",
-                                             nearest.object, nearest.shape, nearest.primitive)});
+    out.disagreements.push_back(
+        {Fault::id, no_primitive,
+         fmt::format("the nearest hit is on object {} shape {} primitive {}: there is none",
+                     nearest.object, nearest.shape, nearest.primitive)});
     return;
   }
   const auto excuse = [&](std::size_t primitive) {
@@ -333,19 +371,25 @@ void Comparison::compare_nearest(const Expected& expected, const PickRecord& nea
       if (!excuse(own)) {
         out.disagreements.push_back(
             {Fault::hit, own,
-             name_of(own) + fmt::format("the nearest hit is at {}, where the reference has no crossing of it", t)});
+             name_of(own) +
+                 fmt::format("the nearest hit is at {}, where the reference has no crossing of it",
+                             t)});
         return;
       }
     }
   }
   for (const SceneHit& other : expected.hits) {
     if (!(other.t < t)) break;
-    if (other.index == own && hit && apart(bounds_.local(own, expected.ray), t, other.t) <= 1) continue;
+    if (other.index == own && hit && apart(bounds_.local(own, expected.ray), t, other.t) <= 1)
+      continue;
     if (hit && apart(bounds_.local(other.index, expected.ray), t, other.t) <= 1) continue;
     if (excuse(other.index)) continue;
-    const std::string text = hit ? fmt::format("the nearest hit is at {}", t) : std::string("the ray misses");
-    out.disagreements.push_back({hit ? Fault::order : Fault::hit, other.index,
-                                 name_of(other.index) + text + fmt::format("; the reference has a crossing of it at {}", other.t)});
+    const std::string text =
+        hit ? fmt::format("the nearest hit is at {}", t) : std::string("the ray misses");
+    out.disagreements.push_back(
+        {hit ? Fault::order : Fault::hit, other.index,
+         name_of(other.index) + text +
+             fmt::format("; the reference has a crossing of it at {}", other.t)});
     return;
   }
 }
@@ -363,13 +407,15 @@ Outcome Comparison::compare(const Expected& expected, const Found& found) const 
   for (const PickRecord& pick : found.list) {
     const double t = pick.t;
     if (!(t > 0 && t >= last && t < HUGE_VAL))
-      out.disagreements.push_back({Fault::order, no_primitive, fmt::format("a crossing at {} comes after one at {}", t, last)});
+      out.disagreements.push_back({Fault::order, no_primitive,
+                                   fmt::format("a crossing at {} comes after one at {}", t, last)});
     last = t;
     const std::size_t primitive = primitive_of(pick);
     if (primitive == no_primitive)
-      out.disagreements.push_back({Fault::id, no_primitive,
-                                   fmt::format("a crossing at {} is on object {} shape {} primitive {}: there is none", t,
-                                               pick.object, pick.shape, pick.primitive)});
+      out.disagreements.push_back(
+          {Fault::id, no_primitive,
+           fmt::format("a crossing at {} is on object {} shape {} primitive {}: there is none", t,
+                       pick.object, pick.shape, pick.primitive)});
     else
       pair_of(primitive).found.push_back(&pick);
   }

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Compares one ray on the device with the reference: their disagreements, and the size of the differences where they agree.
+// Compares one ray on the device with the reference: their disagreements, and the size of the
+// differences where they agree.
 #pragma once
 
 #include <array>
@@ -28,7 +29,7 @@ inline constexpr std::array quantity_names = {"t", "point", "normal", "uv"};
 
 struct Deviation {
   double in_bounds = 0;  // in units of the allowed deviation: more than 1 is a disagreement
-  double in_ulps = 0;    // in units in the last place (of t; of the point's largest coordinate; of 1)
+  double in_ulps = 0;  // in units in the last place (of t; of the point's largest coordinate; of 1)
 };
 
 /// A crossing that both find.
@@ -39,7 +40,8 @@ struct Match {
 
 /// The subject of a disagreement.
 enum class Fault { hit, id, surface, order, side, material, t, point, normal, uv };
-inline constexpr std::array fault_names = {"hit", "id", "surface", "order", "side", "material", "t", "point", "normal", "uv"};
+inline constexpr std::array fault_names = {"hit",      "id", "surface", "order",  "side",
+                                           "material", "t",  "point",   "normal", "uv"};
 
 struct Disagreement {
   Fault fault = Fault::hit;
@@ -64,7 +66,8 @@ struct Found {
 struct Outcome {
   std::vector<Match> matches;
   std::vector<Disagreement> disagreements;
-  std::vector<std::size_t> grazed;  // primitives where both answers are right: the line touches within the bound, or begins there
+  std::vector<std::size_t> grazed;  // primitives where both answers are right: the line touches
+                                    // within the bound, or begins there
 };
 
 class Comparison {
@@ -82,7 +85,8 @@ class Comparison {
   std::string name_of(std::size_t primitive) const;
   void compare_primitive(const Expected& expected, Pair& pair, Outcome& out) const;
   void compare_nearest(const Expected& expected, const PickRecord& nearest, Outcome& out) const;
-  Match measure(const LocalRay& local, const reference::SceneHit& hit, const PickRecord& pick, const reference::Ray& ray) const;
+  Match measure(const LocalRay& local, const reference::SceneHit& hit, const PickRecord& pick,
+                const reference::Ray& ray) const;
 
   const Scene& scene_;
   const reference::SceneReference& reference_;

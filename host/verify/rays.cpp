@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Finds points on surfaces with the reference, along random lines through a primitive, so that no shape needs code here.
+// Finds points on surfaces with the reference, along random lines through a primitive, so that no
+// shape needs code here.
 #include "verify/rays.h"
 
 #include <algorithm>
@@ -39,19 +40,23 @@ bool is_usable(const RayRecord& r) {
 }  // namespace
 
 RayRecord ray_record(const dvec3& o, const dvec3& d) {
-  return {static_cast<float>(o.x), static_cast<float>(o.y), static_cast<float>(o.z), 0,
-          static_cast<float>(d.x), static_cast<float>(d.y), static_cast<float>(d.z), std::numeric_limits<float>::infinity()};
+  return {static_cast<float>(o.x), static_cast<float>(o.y),
+          static_cast<float>(o.z), 0,
+          static_cast<float>(d.x), static_cast<float>(d.y),
+          static_cast<float>(d.z), std::numeric_limits<float>::infinity()};
 }
 
 /// A point on a primitive's surface, in its space.
 struct RaySource::Point {
   dvec3 at, normal;  // unit
-  double size;       // of the primitive near the point: the length of a chord, at most the ball's radius
+  double size;  // of the primitive near the point: the length of a chord, at most the ball's radius
 };
 
-RaySource::RaySource(const Scene& scene, const reference::SceneReference& reference, std::uint64_t seed)
+RaySource::RaySource(const Scene& scene, const reference::SceneReference& reference,
+                     std::uint64_t seed)
     : scene_(scene), reference_(reference), seed_(seed), by_kind_(reference::kind_names.size()) {
-  for (std::size_t i = 0; i < reference.size(); ++i) by_kind_[reference::kind_of(reference.placed(i).primitive)].push_back(i);
+  for (std::size_t i = 0; i < reference.size(); ++i)
+    by_kind_[reference::kind_of(reference.placed(i).primitive)].push_back(i);
   std::erase_if(by_kind_, [](const auto& primitives) { return primitives.empty(); });
 }
 
@@ -66,7 +71,8 @@ RaySource::Point RaySource::surface_point(std::size_t index, Random& random) con
   const reference::Ball& ball = placed.ball;
   Point out{ball.center, random.direction(), ball.radius};
   for (int attempt = 0; attempt < 12; ++attempt) {
-    // Thin shapes are hit along lines through two points of the ball, the second of which is drawn near the centre.
+    // Thin shapes are hit along lines through two points of the ball, the second of which is drawn
+    // near the centre.
     const dvec3 a = ball.center + ball.radius * random.in_ball();
     const dvec3 b = ball.center + ball.radius * std::pow(random.unit(), 3.0) * random.direction();
     const reference::Ray line{a, b - a, -HUGE_VAL, HUGE_VAL};
@@ -75,7 +81,8 @@ RaySource::Point RaySource::surface_point(std::size_t index, Random& random) con
     const std::size_t k = random.below(crossings.size());
     out.at = a + crossings[k].t * line.direction;
     if (crossings.size() > 1)
-      out.size = std::min(ball.radius, (crossings.back().t - crossings.front().t) * glm::length(line.direction));
+      out.size = std::min(ball.radius,
+                          (crossings.back().t - crossings.front().t) * glm::length(line.direction));
     out.size = std::max(out.size, 1e-6 * ball.radius);
     const dvec3 n = reference::normal_at(placed.primitive, out.at, 1e-6 * out.size);
     if (std::isfinite(n.x) && std::isfinite(n.y) && std::isfinite(n.z)) out.normal = n;
@@ -90,13 +97,14 @@ std::optional<RaySource::Point> RaySource::rim(std::size_t index, Random& random
   if (const auto curves = reference::boundary(placed.primitive);
       !curves.empty() && (reference::surface_count(placed.primitive) == 1 || random.one_in(2))) {
     const reference::Curve& curve = curves[random.below(curves.size())];
-    return Point{curve.at(random.one_in(8) ? static_cast<double>(random.below(2)) : random.unit()), random.direction(),
-                 placed.ball.radius};
+    return Point{curve.at(random.one_in(8) ? static_cast<double>(random.below(2)) : random.unit()),
+                 random.direction(), placed.ball.radius};
   }
   const Point a = surface_point(index, random), b = surface_point(index, random);
   const int surface = reference::surface_at(placed.primitive, a.at).surface;
   if (reference::surface_at(placed.primitive, b.at).surface == surface) return std::nullopt;
-  // Bisection along the segment between the points, projected from the ball's centre, finds where the surface changes.
+  // Bisection along the segment between the points, projected from the ball's centre, finds where
+  // the surface changes.
   const dvec3 from = placed.ball.center;
   double low = 0, high = 1;
   Point out = a;
@@ -125,7 +133,8 @@ RayRecord RaySource::chord(Random& random) const {
     return dvec3(glm::inverse(placed.object_from_world) * glm::dvec4(local, 1));
   };
   const dvec3 a = point(), b = point();
-  return ray_record(random.one_in(2) ? a : a - random.uniform(0, 2) * (b - a), glm::normalize(b - a) * random.power(-2, 2));
+  return ray_record(random.one_in(2) ? a : a - random.uniform(0, 2) * (b - a),
+                    glm::normalize(b - a) * random.power(-2, 2));
 }
 
 std::optional<RayRecord> RaySource::bounce(Random& random) const {
@@ -146,7 +155,8 @@ std::optional<RayRecord> RaySource::bounce(Random& random) const {
 std::optional<RayRecord> RaySource::hard(RayFamily family, Random& random) const {
   const std::size_t index = primitive(random);
   const auto placed = reference_.placed(index);
-  std::optional<Point> p = family == RayFamily::rim ? rim(index, random) : surface_point(index, random);
+  std::optional<Point> p =
+      family == RayFamily::rim ? rim(index, random) : surface_point(index, random);
   if (!p) return std::nullopt;
   const dvec3 tangent = perpendicular(p->normal, random);
   const double size = p->size;
@@ -176,7 +186,8 @@ std::optional<RayRecord> RaySource::hard(RayFamily family, Random& random) const
       break;
     default:  // to the point, or beside it
       d = random.direction();
-      o = p->at + (random.one_in(2) ? 0 : random.power(-6, 0)) * size * random.direction() - random.uniform(0.01, 10) * size * d;
+      o = p->at + (random.one_in(2) ? 0 : random.power(-6, 0)) * size * random.direction() -
+          random.uniform(0.01, 10) * size * d;
   }
   const glm::dmat4 world = glm::inverse(placed.object_from_world);
   dvec3 origin(world * glm::dvec4(o, 1)), direction(world * glm::dvec4(d, 0));
@@ -191,18 +202,21 @@ std::optional<RayRecord> RaySource::hard(RayFamily family, Random& random) const
 
 VerifyRay RaySource::ray(std::uint64_t index) const {
   Random random(seed_, 0, index);
-  // Two rays in sixteen come from the camera, three are bounces, two are chords, and the others are hard.
+  // Two rays in sixteen come from the camera, three are bounces, two are chords, and the others are
+  // hard.
   constexpr std::array<RayFamily, 16> turns = {
-      RayFamily::camera, RayFamily::camera,   RayFamily::bounce,   RayFamily::bounce,    RayFamily::bounce,  RayFamily::chord,
-      RayFamily::chord,  RayFamily::touching, RayFamily::touching, RayFamily::grazing,   RayFamily::grazing, RayFamily::rim,
-      RayFamily::axis,   RayFamily::far,      RayFamily::inside,   RayFamily::on_surface};
+      RayFamily::camera,   RayFamily::camera,  RayFamily::bounce,  RayFamily::bounce,
+      RayFamily::bounce,   RayFamily::chord,   RayFamily::chord,   RayFamily::touching,
+      RayFamily::touching, RayFamily::grazing, RayFamily::grazing, RayFamily::rim,
+      RayFamily::axis,     RayFamily::far,     RayFamily::inside,  RayFamily::on_surface};
   VerifyRay out;
   out.family = turns[index % turns.size()];
   for (int attempt = 0; attempt < 8; ++attempt) {
-    const std::optional<RayRecord> made = out.family == RayFamily::camera   ? std::optional(camera_ray(random))
-                                          : out.family == RayFamily::bounce ? bounce(random)
-                                          : out.family == RayFamily::chord  ? std::optional(chord(random))
-                                                                            : hard(out.family, random);
+    const std::optional<RayRecord> made =
+        out.family == RayFamily::camera   ? std::optional(camera_ray(random))
+        : out.family == RayFamily::bounce ? bounce(random)
+        : out.family == RayFamily::chord  ? std::optional(chord(random))
+                                          : hard(out.family, random);
     if (made && is_usable(*made)) {
       out.ray = *made;
       return out;

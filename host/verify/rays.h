@@ -17,15 +17,15 @@
 namespace caplet::verify {
 
 enum class RayFamily {
-  camera,     // through the centre of a random pixel
-  bounce,     // from the hit of a camera ray or chord, cosine-distributed
-  chord,      // between two primitives: from outside, or from between them
-  touching,   // along the tangent plane of a surface point, offset by up to 1e-8 to 1e-1 of the size
-  grazing,    // to a surface point, at 1e-6 to 1e-1 to its tangent plane
-  rim,        // through a point where two surfaces meet, or where an open one ends
-  axis,       // along a coordinate axis, with zeros of both signs, to a surface point or beside it
-  far,        // to a surface point, from 10 to 1e6 times the size away
-  inside,     // from within
+  camera,    // through the centre of a random pixel
+  bounce,    // from the hit of a camera ray or chord, cosine-distributed
+  chord,     // between two primitives: from outside, or from between them
+  touching,  // along the tangent plane of a surface point, offset by up to 1e-8 to 1e-1 of the size
+  grazing,   // to a surface point, at 1e-6 to 1e-1 to its tangent plane
+  rim,       // through a point where two surfaces meet, or where an open one ends
+  axis,      // along a coordinate axis, with zeros of both signs, to a surface point or beside it
+  far,       // to a surface point, from 10 to 1e6 times the size away
+  inside,    // from within
   on_surface  // from a surface point after rounding
 };
 inline constexpr std::array family_names = {"camera", "bounce", "chord", "touching", "grazing",
@@ -36,7 +36,8 @@ struct VerifyRay {
   RayFamily family = RayFamily::chord;
 };
 
-/// Ray number `index` of a scene depends only on the seed and the index. All are finite, with t in (0, infinity).
+/// Ray number `index` of a scene depends only on the seed and the index. All are finite, with t in
+/// (0, infinity).
 class RaySource {
  public:
   /// Both arguments must outlive this.

@@ -27,7 +27,10 @@ double Distribution::percentile(double share) const {
   for (std::size_t i = 0; i < counts_.size(); ++i) {
     sum += counts_[i];
     if (sum > 0 && static_cast<double>(sum) >= wanted)
-      return i == 0 ? 0 : i + 1 == counts_.size() ? worst_ : std::min(worst_, std::exp2(static_cast<double>(i) / steps + lowest));
+      return i == 0 ? 0
+             : i + 1 == counts_.size()
+                 ? worst_
+                 : std::min(worst_, std::exp2(static_cast<double>(i) / steps + lowest));
   }
   return 0;
 }

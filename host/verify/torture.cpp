@@ -41,26 +41,30 @@ class Maker {
     for (std::uint32_t i = 0; i < 8; ++i) {
       Object object;
       object.name = fmt::format("object {}", i);
-      for (int k = 0; k < 4; ++k) object.shapes.push_back(shape(static_cast<int>(4 * i) % kind_count + k));
+      for (int k = 0; k < 4; ++k)
+        object.shapes.push_back(shape(static_cast<int>(4 * i) % kind_count + k));
       out.objects.push_back(object);
-      for (std::size_t k = random_.below(2); k < 3; ++k) out.instances.push_back({i, placement(0.5), {}});
+      for (std::size_t k = random_.below(2); k < 3; ++k)
+        out.instances.push_back({i, placement(0.5), {}});
     }
-    out.camera.world_from_camera = glm::inverse(glm::lookAtLH(dvec3(0, -30, 10), dvec3(0, 0, 0), dvec3(0, 0, 1)));
+    out.camera.world_from_camera =
+        glm::inverse(glm::lookAtLH(dvec3(0, -30, 10), dvec3(0, 0, 0), dvec3(0, 0, 1)));
     out.film.width = 320;
     out.film.height = 180;
     return out;
   }
 
  private:
-  /// Returns a random transform: a translation, a rotation and a scale of 10^-scales to 10^scales; one in three is stretched and
-  /// half of those are mirrored.
+  /// Returns a random transform: a translation, a rotation and a scale of 10^-scales to 10^scales;
+  /// one in three is stretched and half of those are mirrored.
   dmat4 placement(double scales) {
     const double size = random_.power(-scales, scales);
     const double away = std::min(random_.power(-1, 5), most_sizes * size);
     dmat4 m = glm::translate(dmat4(1), away * random_.direction());
     m = glm::rotate(m, random_.uniform(0, full_turn), random_.direction());
     if (random_.one_in(3))
-      m = glm::scale(m, dvec3(random_.uniform(0.3, 3), random_.uniform(0.3, 3), random_.uniform(0.3, 3) * random_.sign()));
+      m = glm::scale(m, dvec3(random_.uniform(0.3, 3), random_.uniform(0.3, 3),
+                              random_.uniform(0.3, 3) * random_.sign()));
     return glm::scale(m, dvec3(size));
   }
 
@@ -126,8 +130,11 @@ class Maker {
     const auto solid = [&](auto make) {
       auto one = std::make_shared<Shape>();
       one->geometry = make();
-      one->world_from_object = glm::translate(dmat4(1), random_.uniform(0, 0.5) * random_.direction());
-      if (random_.one_in(3)) one->world_from_object = glm::scale(one->world_from_object, dvec3(random_.uniform(0.4, 2), 1, 1));
+      one->world_from_object =
+          glm::translate(dmat4(1), random_.uniform(0, 0.5) * random_.direction());
+      if (random_.one_in(3))
+        one->world_from_object =
+            glm::scale(one->world_from_object, dvec3(random_.uniform(0.4, 2), 1, 1));
       one->material = material();
       out.operands.push_back(one);
     };
@@ -137,7 +144,10 @@ class Maker {
       return drawn_one<BoxShape>();
     });
     solid([&] { return drawn_one<PolyhedronShape>(); });
-    solid([&] { return CylinderShape{dvec3(point()), dvec3(0), random_.uniform(0.1, 0.6), {Cap::flat, Cap::round}}; });
+    solid([&] {
+      return CylinderShape{
+          dvec3(point()), dvec3(0), random_.uniform(0.1, 0.6), {Cap::flat, Cap::round}};
+    });
     return out;
   }
 
@@ -166,7 +176,8 @@ class Maker {
       add(std::move(chain));
     } else if (which == 1) {  // a wall of boxes, and balls that rest on it
       for (int i = 0; i < 3; ++i)
-        for (int k = 0; k < 3; ++k) add(BoxShape{dvec3(0.1 * i, 0.1 * k, 0), dvec3(0.1 * i + 0.1, 0.1 * k + 0.1, 0.1)});
+        for (int k = 0; k < 3; ++k)
+          add(BoxShape{dvec3(0.1 * i, 0.1 * k, 0), dvec3(0.1 * i + 0.1, 0.1 * k + 0.1, 0.1)});
       for (int i = 0; i < 3; ++i) {
         add(SphereShape{0.05});
         out.back().world_from_object = glm::translate(placed, dvec3(0.1 * i + 0.05, 0.05, 0.15));
@@ -176,7 +187,8 @@ class Maker {
       constexpr std::uint32_t n = 5;
       for (std::uint32_t i = 0; i < n; ++i)
         for (std::uint32_t k = 0; k < n; ++k)
-          sheet.positions.emplace_back(0.2f * static_cast<float>(i), 0.2f * static_cast<float>(k), 0.1 * random_.unit());
+          sheet.positions.emplace_back(0.2f * static_cast<float>(i), 0.2f * static_cast<float>(k),
+                                       0.1 * random_.unit());
       for (std::uint32_t i = 0; i + 1 < n; ++i)
         for (std::uint32_t k = 0; k + 1 < n; ++k) {
           const std::uint32_t a = i * n + k;

@@ -22,7 +22,8 @@ namespace caplet::verify {
 
 namespace {
 
-// Most rays fit the small limit; the few that have more crossings are traced again. PoCL's batch is just below 65,536 rays.
+// Most rays fit the small limit; the few that have more crossings are traced again. PoCL's batch is
+// just below 65,536 rays.
 constexpr std::size_t few_crossings = 32, many_crossings = std::size_t{1} << 16;
 constexpr std::size_t chunk_rays = 65'536 - 64;
 constexpr std::uint64_t rays_a_round = 250'000;
@@ -34,7 +35,8 @@ struct DeviceAnswers {
 
   std::span<const PickRecord> list(std::size_t ray) const {
     if (const auto found = long_lists.find(ray); found != long_lists.end()) return found->second;
-    return std::span(lists.crossings).subspan(lists.begin[ray], lists.begin[ray + 1] - lists.begin[ray]);
+    return std::span(lists.crossings)
+        .subspan(lists.begin[ray], lists.begin[ray + 1] - lists.begin[ray]);
   }
 };
 
@@ -46,8 +48,8 @@ DeviceAnswers ask(Query& query, std::span<const RayRecord> rays) {
 }
 
 bool same_place(const PickRecord& a, const PickRecord& b) {
-  return a.object == b.object && a.shape == b.shape && a.primitive == b.primitive && a.surface == b.surface &&
-         a.leaving == b.leaving;
+  return a.object == b.object && a.shape == b.shape && a.primitive == b.primitive &&
+         a.surface == b.surface && a.leaving == b.leaving;
 }
 
 void count(Difference& out, const PickRecord& a, const PickRecord& b) {
@@ -58,16 +60,20 @@ void count(Difference& out, const PickRecord& a, const PickRecord& b) {
   const auto bits_a = std::bit_cast<std::int32_t>(a.t), bits_b = std::bit_cast<std::int32_t>(b.t);
   ++(bits_a == bits_b ? out.same : out.other_t);
   // Both are positive, so the difference of their bits counts units in the last place.
-  out.worst_ulps = std::max(out.worst_ulps, std::abs(static_cast<double>(bits_a) - static_cast<double>(bits_b)));
+  out.worst_ulps =
+      std::max(out.worst_ulps, std::abs(static_cast<double>(bits_a) - static_cast<double>(bits_b)));
 }
 
-void count(Statistics& out, const reference::SceneReference& reference, const Expected& expected, const Found& found,
-           const Outcome& outcome, RayFamily family) {
-  const auto kind_of = [&](std::size_t primitive) { return reference::kind_of(reference.placed(primitive).primitive); };
+void count(Statistics& out, const reference::SceneReference& reference, const Expected& expected,
+           const Found& found, const Outcome& outcome, RayFamily family) {
+  const auto kind_of = [&](std::size_t primitive) {
+    return reference::kind_of(reference.placed(primitive).primitive);
+  };
   const auto once_a_kind = [&](const auto& primitives, auto&& add) {
     std::array<bool, reference::kind_names.size()> seen{};
     for (const std::size_t primitive : primitives)
-      if (const std::size_t kind = kind_of(primitive); !std::exchange(seen[kind], true)) add(out.kinds[kind]);
+      if (const std::size_t kind = kind_of(primitive); !std::exchange(seen[kind], true))
+        add(out.kinds[kind]);
   };
   ++out.rays;
   out.hits += found.nearest.object != CAPLET_NONE;
@@ -107,7 +113,8 @@ SceneCheck::SceneCheck(const Scene& scene, const std::vector<Device>& devices)
   for (const Device& device : devices) queries_.push_back(std::make_unique<Query>(flat, device));
 }
 
-void SceneCheck::check(std::span<const RayRecord> rays, const std::function<void(const Checked&)>& visit) {
+void SceneCheck::check(std::span<const RayRecord> rays,
+                       const std::function<void(const Checked&)>& visit) {
   for (std::size_t first = 0; first < rays.size(); first += chunk_rays) {
     const auto chunk = rays.subspan(first, std::min(chunk_rays, rays.size() - first));
     std::vector<DeviceAnswers> answers;
@@ -136,14 +143,16 @@ std::uint64_t Report::disagreements() const {
   return out;
 }
 
-Report verify(const Scene* scene, const std::string& file, const std::vector<Device>& devices, const Options& options) {
+Report verify(const Scene* scene, const std::string& file, const std::vector<Device>& devices,
+              const Options& options) {
   const auto start = Clock::now();
   Report report;
   Work empty;
   for (std::size_t d = 0; d < devices.size(); ++d) {
     report.devices.push_back({devices[d].info(), {}, 0, {}});
     empty.statistics.emplace_back();
-    for (std::size_t other = d + 1; other < devices.size(); ++other) empty.differences.push_back({d, other});
+    for (std::size_t other = d + 1; other < devices.size(); ++other)
+      empty.differences.push_back({d, other});
   }
   tbb::enumerable_thread_specific<Work> work(empty);
   std::mutex mutex;
@@ -177,7 +186,8 @@ Report verify(const Scene* scene, const std::string& file, const std::vector<Dev
       check.check(rays, [&](const SceneCheck::Checked& ray) {
         Work& own = work.local();
         for (std::size_t d = 0; d < devices.size(); ++d) {
-          count(own.statistics[d], check.reference(), ray.expected, ray.found[d], ray.outcomes[d], families[ray.ray]);
+          count(own.statistics[d], check.reference(), ray.expected, ray.found[d], ray.outcomes[d],
+                families[ray.ray]);
           if (ray.outcomes[d].disagreements.empty()) continue;
           const std::lock_guard lock(mutex);
           failures[d].push_back({ray.ray,
@@ -192,23 +202,27 @@ Report verify(const Scene* scene, const std::string& file, const std::vector<Dev
                                   ray.expected.hits}});
         }
         for (Difference& difference : own.differences)
-          count(difference, ray.found[difference.first].nearest, ray.found[difference.second].nearest);
+          count(difference, ray.found[difference.first].nearest,
+                ray.found[difference.second].nearest);
       });
       // Results are in the order of the rays, independent of the threads.
       for (std::size_t d = 0; d < devices.size(); ++d) {
         std::ranges::sort(failures[d], {}, &std::pair<std::size_t, Failure>::first);
         for (auto& [ray, failure] : failures[d])
-          if (report.devices[d].failures.size() < options.kept_failures) report.devices[d].failures.push_back(std::move(failure));
+          if (report.devices[d].failures.size() < options.kept_failures)
+            report.devices[d].failures.push_back(std::move(failure));
       }
       done += size;
       if (options.progress) options.progress(done);
     }
-    for (std::size_t d = 0; d < devices.size(); ++d) report.devices[d].seconds += check.device_seconds()[d];
+    for (std::size_t d = 0; d < devices.size(); ++d)
+      report.devices[d].seconds += check.device_seconds()[d];
   }
 
   report.differences = empty.differences;
   for (const Work& own : work) {
-    for (std::size_t d = 0; d < devices.size(); ++d) report.devices[d].statistics.add(own.statistics[d]);
+    for (std::size_t d = 0; d < devices.size(); ++d)
+      report.devices[d].statistics.add(own.statistics[d]);
     for (std::size_t i = 0; i < own.differences.size(); ++i) {
       Difference& sum = report.differences[i];
       sum.same += own.differences[i].same;
@@ -229,7 +243,8 @@ std::vector<HeatPixel> heatmap(const Scene& scene, const std::vector<Device>& de
   std::vector<RayRecord> rays;
   for (uint y = 0; y < p.crop_height; ++y)
     for (uint x = 0; x < p.crop_width; ++x)
-      rays.push_back(ray_of_pixel(scene, static_cast<int>(p.crop_x + x), static_cast<int>(p.crop_y + y)));
+      rays.push_back(
+          ray_of_pixel(scene, static_cast<int>(p.crop_x + x), static_cast<int>(p.crop_y + y)));
   std::vector<HeatPixel> out(rays.size());
   check.check(rays, [&](const SceneCheck::Checked& ray) {
     HeatPixel& pixel = out[ray.ray];

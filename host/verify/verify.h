@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Compares devices with the reference: millions of rays through traversal and hit lists, compared one by one.
+// Compares devices with the reference: millions of rays through traversal and hit lists, compared
+// one by one.
 #pragma once
 
 #include <cstdint>
@@ -26,7 +27,8 @@ class SceneCheck {
   /// The scene and the devices must outlive this. Throws RunError, InputError.
   SceneCheck(const Scene& scene, const std::vector<Device>& devices);
 
-  /// The devices' answers for a ray, and the expected one. `found` and `outcomes` have an entry per device.
+  /// The devices' answers for a ray, and the expected one. `found` and `outcomes` have an entry per
+  /// device.
   struct Checked {
     std::size_t ray;
     const Expected& expected;
@@ -71,7 +73,8 @@ struct DeviceReport {
   std::vector<Failure> failures;  // the first failures
 };
 
-/// Compares the nearest hits of two devices. The reference decides which are right; this measures how similar they are.
+/// Compares the nearest hits of two devices. The reference decides which are right; this measures
+/// how similar they are.
 struct Difference {
   std::size_t first = 0, second = 0;  // indices into Report::devices
   std::uint64_t same = 0;             // bit for bit
@@ -96,9 +99,10 @@ struct Options {
   std::function<void(std::uint64_t rays_done)> progress = {};
 };
 
-/// `scene`: the scene to verify, and its file; null: torture scenes, a new one every 250,000 rays. Rays are those of RaySource.
-/// Ends early when interrupt_requested().
-Report verify(const Scene* scene, const std::string& file, const std::vector<Device>& devices, const Options& options);
+/// `scene`: the scene to verify, and its file; null: torture scenes, a new one every 250,000 rays.
+/// Rays are those of RaySource. Ends early when interrupt_requested().
+Report verify(const Scene* scene, const std::string& file, const std::vector<Device>& devices,
+              const Options& options);
 
 /// The ray through a pixel's centre.
 struct HeatPixel {

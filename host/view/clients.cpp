@@ -17,7 +17,9 @@ constexpr std::size_t most_questions = 16, most_wishes = 1000;  // limits of wai
 
 void Clients::Client::ask(Question question) {
   // Only the last of several queries for the pixel under the cursor counts.
-  const auto is_hover = [](const Question& one) { return std::holds_alternative<Ask>(one) && !std::get<Ask>(one).all; };
+  const auto is_hover = [](const Question& one) {
+    return std::holds_alternative<Ask>(one) && !std::get<Ask>(one).all;
+  };
   if (is_hover(question)) std::erase_if(asked, is_hover);
   if (asked.size() < most_questions) asked.push_back(std::move(question));
 }
@@ -113,7 +115,8 @@ std::deque<Wish> Clients::take_wishes() {
 
 std::optional<Clients::Asked> Clients::take_question(bool has_snapshot) {
   const std::lock_guard lock(mutex_);
-  const auto found = std::ranges::find_if(clients_, [](const auto& client) { return client.second.waits(); });
+  const auto found =
+      std::ranges::find_if(clients_, [](const auto& client) { return client.second.waits(); });
   if (found == clients_.end()) return {};
   auto& [id, client] = *found;
   if (!client.asked.empty()) {

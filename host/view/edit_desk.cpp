@@ -23,13 +23,22 @@ struct EditDesk::Counts {
   std::uint64_t rearrangements = 0, renumberings = 0, camera_changes = 0;
 };
 
-EditDesk::Counts EditDesk::counts() const { return {editor_.rearrangements(), editor_.renumberings(), editor_.camera_changes()}; }
+EditDesk::Counts EditDesk::counts() const {
+  return {editor_.rearrangements(), editor_.renumberings(), editor_.camera_changes()};
+}
 
-EditDesk::EditDesk(const LiveScene& live, const Editor& editor, Keeping& keeping, Clients& clients, const EyeFilms& films,
-                   std::string device)
-    : live_(live), editor_(editor), keeping_(keeping), clients_(clients), films_(films), device_(std::move(device)) {}
+EditDesk::EditDesk(const LiveScene& live, const Editor& editor, Keeping& keeping, Clients& clients,
+                   const EyeFilms& films, std::string device)
+    : live_(live),
+      editor_(editor),
+      keeping_(keeping),
+      clients_(clients),
+      films_(films),
+      device_(std::move(device)) {}
 
-nlohmann::ordered_json EditDesk::told_scene() const { return scene_text(live_.scene(), device_, films_.target()); }
+nlohmann::ordered_json EditDesk::told_scene() const {
+  return scene_text(live_.scene(), device_, films_.target());
+}
 
 nlohmann::ordered_json EditDesk::told_parts() const {
   nlohmann::ordered_json out = parts_text(live_.scene());
@@ -56,12 +65,15 @@ bool EditDesk::make(const Wish& wish, Server& server, std::vector<Made>& made) {
   bool has_changed = false;
   try {
     if (const Save* save = std::get_if<Save>(&wish.message)) {
-      tell_saved(keeping_.save(*save, films_.look(), [this] { return clients_.is_ended(); }), wish.from, server);
+      tell_saved(keeping_.save(*save, films_.look(), [this] { return clients_.is_ended(); }),
+                 wish.from, server);
       return false;
     }
     has_changed = keeping_.make(wish.message, wish.text);
     if (edit && edit->number > 0)
-      made.push_back({wish.from, text_of({{"type", "made"}, {"number", edit->number}, {"ids", editor_.made()}})});
+      made.push_back(
+          {wish.from,
+           text_of({{"type", "made"}, {"number", edit->number}, {"ids", editor_.made()}})});
   } catch (const std::exception& error) {  // an invalid scene, or a file that cannot be written
     server.send(wish.from, error_text(error.what(), edit ? edit->number : 0));
   }

@@ -21,22 +21,28 @@ namespace {
 /// Throws InputError when the thing does not exist.
 void check_thing(const Scene& scene, std::uint32_t id) {
   const std::size_t count = scene.shapes.size() + scene.instances.size();
-  if (id >= count) throw InputError(fmt::format("there is no thing {}, of {} counted from 0", id, count));
+  if (id >= count)
+    throw InputError(fmt::format("there is no thing {}, of {} counted from 0", id, count));
 }
 
 /// Two edits with the same key replace each other.
 std::tuple<std::size_t, std::uint32_t, std::size_t> place_of(const SceneEdit& edit) {
-  if (const auto* capsule = std::get_if<CapsuleEdit>(&edit)) return {edit.index(), capsule->at.shape, capsule->capsule};
-  if (const auto* transform = std::get_if<TransformEdit>(&edit)) return {edit.index(), transform->at.shape, 0};
-  if (const auto* material = std::get_if<MaterialEdit>(&edit)) return {edit.index(), material->material, 0};
+  if (const auto* capsule = std::get_if<CapsuleEdit>(&edit))
+    return {edit.index(), capsule->at.shape, capsule->capsule};
+  if (const auto* transform = std::get_if<TransformEdit>(&edit))
+    return {edit.index(), transform->at.shape, 0};
+  if (const auto* material = std::get_if<MaterialEdit>(&edit))
+    return {edit.index(), material->material, 0};
   if (const auto* light = std::get_if<LightEdit>(&edit)) return {edit.index(), light->light, 0};
-  if (const auto* emission = std::get_if<EmissionEdit>(&edit)) return {edit.index(), emission->at.shape, 0};
+  if (const auto* emission = std::get_if<EmissionEdit>(&edit))
+    return {edit.index(), emission->at.shape, 0};
   return {edit.index(), std::get<InstanceEdit>(edit).instance, 0};
 }
 
 SceneEdit moved(const Scene& scene, std::uint32_t id, const glm::dmat4& world_from_world) {
   check_thing(scene, id);
-  if (id < scene.shapes.size()) return TransformEdit{{std::nullopt, id}, world_from_world * scene.shapes[id].world_from_object};
+  if (id < scene.shapes.size())
+    return TransformEdit{{std::nullopt, id}, world_from_world * scene.shapes[id].world_from_object};
   const auto instance = static_cast<std::uint32_t>(id - scene.shapes.size());
   return InstanceEdit{instance, world_from_world * scene.instances[instance].world_from_object};
 }
@@ -45,13 +51,16 @@ SceneEdit moved(const Scene& scene, std::uint32_t id, const glm::dmat4& world_fr
 
 std::uint32_t world_shape(const Scene& scene, std::uint32_t id) {
   check_thing(scene, id);
-  if (id >= scene.shapes.size()) throw InputError(fmt::format("thing {} is an instance: its shapes are those of its object", id));
+  if (id >= scene.shapes.size())
+    throw InputError(
+        fmt::format("thing {} is an instance: its shapes are those of its object", id));
   return id;
 }
 
 namespace {
 
-using Materials = std::vector<std::pair<std::uint32_t, std::pair<std::uint32_t, std::vector<std::uint32_t>>>>;
+using Materials =
+    std::vector<std::pair<std::uint32_t, std::pair<std::uint32_t, std::vector<std::uint32_t>>>>;
 
 /// Returns the rearrangement that sets the materials of shapes.
 template <class Rearrange>
@@ -73,22 +82,27 @@ Editor::Step Editor::step_of(const Change& change) const {
   const Scene& scene = live_.scene();
   if (const auto* move = std::get_if<Move>(&change)) {
     InPlace out;
-    for (const std::uint32_t id : move->ids) out.push_back(moved(scene, id, move->world_from_world));
+    for (const std::uint32_t id : move->ids)
+      out.push_back(moved(scene, id, move->world_from_world));
     return out;
   }
   if (const auto* reshape = std::get_if<Reshape>(&change)) {
     const ShapeAt at{std::nullopt, world_shape(scene, reshape->id)};
     (void)capsule_at(scene, at, reshape->capsule);
     const glm::dmat4 object_from_world = glm::inverse(scene.shapes[reshape->id].world_from_object);
-    const auto place = [&](const glm::dvec3& p) { return glm::vec3(object_from_world * glm::dvec4(p, 1)); };
-    return InPlace{CapsuleEdit{
-        at,
-        reshape->capsule,
-        {place(reshape->p0), place(reshape->p1), static_cast<float>(reshape->radius0), static_cast<float>(reshape->radius1)}}};
+    const auto place = [&](const glm::dvec3& p) {
+      return glm::vec3(object_from_world * glm::dvec4(p, 1));
+    };
+    return InPlace{
+        CapsuleEdit{at,
+                    reshape->capsule,
+                    {place(reshape->p0), place(reshape->p1), static_cast<float>(reshape->radius0),
+                     static_cast<float>(reshape->radius1)}}};
   }
   if (const auto* paint = std::get_if<Paint>(&change)) {
     if (paint->material >= scene.materials.size())
-      throw InputError(SourceLocation{"material"}, fmt::format("there are {} materials", scene.materials.size()));
+      throw InputError(SourceLocation{"material"},
+                       fmt::format("there are {} materials", scene.materials.size()));
     Materials out;
     for (const std::uint32_t id : paint->ids) {
       const Shape& shape = scene.shapes[world_shape(scene, id)];
@@ -98,8 +112,10 @@ Editor::Step Editor::step_of(const Change& change) const {
         continue;
       }
       if (*paint->surface >= surfaces)
-        throw InputError(SourceLocation{"surface"}, fmt::format("thing {} has {} surfaces", id, surfaces));
-      std::vector<std::uint32_t> each = shape.materials.empty() ? std::vector(surfaces, shape.material) : shape.materials;
+        throw InputError(SourceLocation{"surface"},
+                         fmt::format("thing {} has {} surfaces", id, surfaces));
+      std::vector<std::uint32_t> each =
+          shape.materials.empty() ? std::vector(surfaces, shape.material) : shape.materials;
       each[*paint->surface] = paint->material;
       out.emplace_back(id, std::pair(shape.material, std::move(each)));
     }
@@ -127,7 +143,8 @@ Editor::Step Editor::step_of(const Change& change) const {
       if (!shape.name.empty()) shape.name += " copy";
     }
     for (const std::size_t i : instances) {
-      things->instances.emplace_back(scene.instances.size() + things->instances.size(), scene.instances[i]);
+      things->instances.emplace_back(scene.instances.size() + things->instances.size(),
+                                     scene.instances[i]);
       Instance& instance = things->instances.back().second;
       instance.world_from_object = by * instance.world_from_object;
     }
@@ -149,7 +166,9 @@ Editor::Step Editor::take(const Step& step) {
     validate(scene, diagnostics);
     diagnostics.finish();
     const Scene& before = live_.scene();
-    if (before.shapes.size() != scene.shapes.size() || before.instances.size() != scene.instances.size()) ++renumberings_;
+    if (before.shapes.size() != scene.shapes.size() ||
+        before.instances.size() != scene.instances.size())
+      ++renumberings_;
     ++rearrangements_;
     live_.replace(std::move(scene));
     hidden_ = std::move(hidden);
@@ -197,7 +216,9 @@ bool Editor::have_same_places(const Step& a, const Step& b) {
   const InPlace* of_a = std::get_if<InPlace>(&a);
   const InPlace* of_b = std::get_if<InPlace>(&b);
   return of_a && of_b &&
-         std::ranges::equal(*of_a, *of_b, [](const SceneEdit& x, const SceneEdit& y) { return place_of(x) == place_of(y); });
+         std::ranges::equal(*of_a, *of_b, [](const SceneEdit& x, const SceneEdit& y) {
+           return place_of(x) == place_of(y);
+         });
 }
 
 }  // namespace caplet::view

@@ -19,15 +19,16 @@
 
 namespace caplet::view {
 
-/// Changes a scene, each time completely or not at all, and records an unlimited undo history. Moves of the camera that
-/// shows it are no changes; a new film size or camera of the document is one, but of the document only.
+/// Changes a scene, each time completely or not at all, and records an unlimited undo history.
+/// Moves of the camera that shows it are no changes; a new film size or camera of the document is
+/// one, but of the document only.
 class Editor {
  public:
   /// `live` must outlive this, and only this may change it (except for its view).
   explicit Editor(LiveScene& live) : live_(live), view_(view_of(live.scene())) {}
 
-  /// Throws InputError when the thing does not exist or validate() would refuse the result. `goes_on`: merges the change with the
-  /// one before if both affect the same things.
+  /// Throws InputError when the thing does not exist or validate() would refuse the result.
+  /// `goes_on`: merges the change with the one before if both affect the same things.
   void make(const Change& change, bool goes_on = false);
   /// Ends the merging of changes: undo can return to this state.
   void end_gesture() { log_.end_gesture(); }
@@ -41,8 +42,8 @@ class Editor {
   bool can_undo() const { return log_.can_undo(); }
   bool can_redo() const { return log_.can_redo(); }
 
-  /// Returns a number for the scene's state: 0 at first. Undoing later changes gives the same number
-  /// again.
+  /// Returns a number for the scene's state: 0 at first. Undoing later changes gives the same
+  /// number again.
   std::uint64_t state() const { return log_.state(); }
   /// Notes that the present state is saved. Later changes do not merge with earlier ones.
   void mark_saved() {
@@ -50,7 +51,8 @@ class Editor {
     log_.end_gesture();
   }
   bool has_unsaved() const { return log_.has_unsaved(); }
-  /// Returns how to reach the saved state: by undo (false), by redo (true), or no value if it is lost.
+  /// Returns how to reach the saved state: by undo (false), by redo (true), or no value if it is
+  /// lost.
   std::optional<bool> way_to_saved() const { return log_.way_to_saved(); }
 
   /// Returns the hidden things, listed as shapes, then instances.
@@ -64,15 +66,16 @@ class Editor {
   /// Returns what the last change made: numbers of things, or the index of a part.
   const std::vector<std::uint32_t>& made() const { return made_; }
 
-  /// Count all changes so far, including undone ones: those that alter the described scene (rearrangements), and of these, those
-  /// that renumber things (renumberings).
+  /// Count all changes so far, including undone ones: those that alter the described scene
+  /// (rearrangements), and of these, those that renumber things (renumberings).
   std::uint64_t rearrangements() const { return rearrangements_; }
   std::uint64_t renumberings() const { return renumberings_; }
   /// Counts the changes of the document's camera.
   std::uint64_t camera_changes() const { return camera_changes_; }
 
  private:
-  /// A step is an edit in place or a change of the whole scene. Making it returns the step that undoes it.
+  /// A step is an edit in place or a change of the whole scene. Making it returns the step that
+  /// undoes it.
   using InPlace = std::vector<SceneEdit>;
   struct Rearrange {
     std::function<Rearrange(Scene&, HiddenPointer&)> work;
@@ -104,7 +107,8 @@ class Editor {
   std::uint64_t states_ = 0, rearrangements_ = 0, renumberings_ = 0, camera_changes_ = 0;
 };
 
-/// Returns a shape of the world by number. Throws InputError if it does not exist or is an instance.
+/// Returns a shape of the world by number. Throws InputError if it does not exist or is an
+/// instance.
 std::uint32_t world_shape(const Scene& scene, std::uint32_t id);
 
 }  // namespace caplet::view

@@ -39,7 +39,8 @@ Rearrange reshaping(std::uint32_t id, std::shared_ptr<const Shape> to) {
 template <class T>
 const T& at(const std::vector<T>& of, std::uint32_t number, const char* what) {
   if (number >= of.size())
-    throw InputError(SourceLocation{"part"}, fmt::format("there is no {} {}, of {} counted from 0", what, number, of.size()));
+    throw InputError(SourceLocation{"part"}, fmt::format("there is no {} {}, of {} counted from 0",
+                                                         what, number, of.size()));
   return of[number];
 }
 
@@ -48,13 +49,15 @@ void hide_some(std::vector<T>& of, const std::vector<std::size_t>& places, Hidde
                std::vector<std::pair<std::size_t, T>>& things) {
   const std::vector<std::size_t> in_whole = places_in_whole(hidden, places);
   take_out(of, places, things);
-  for (std::size_t i = 0; i < places.size(); ++i) hidden.emplace_back(in_whole[i], std::make_shared<const T>(things[i].second));
+  for (std::size_t i = 0; i < places.size(); ++i)
+    hidden.emplace_back(in_whole[i], std::make_shared<const T>(things[i].second));
   std::ranges::sort(hidden, {}, [](const auto& one) { return one.first; });
 }
 
 /// Moves those of `hidden` whose index `is_wanted` accepts to the shown things.
 template <class T, class Wanted>
-void show_some(HiddenList<T>& hidden, Wanted&& is_wanted, std::vector<std::pair<std::size_t, T>>& things) {
+void show_some(HiddenList<T>& hidden, Wanted&& is_wanted,
+               std::vector<std::pair<std::size_t, T>>& things) {
   HiddenList<T> rest;
   for (std::size_t i = 0; i < hidden.size(); ++i) {
     if (is_wanted(i))
@@ -83,7 +86,8 @@ Editor::Step Editor::set(const Set& set) const {
       const auto displacement = to.displacement;
       const std::string name = to.name;
       set_field(to, scene, set);
-      if (to.displacement == displacement && to.name == name) return InPlace{MaterialEdit{number, to.model, to.textures}};
+      if (to.displacement == displacement && to.name == name)
+        return InPlace{MaterialEdit{number, to.model, to.textures}};
       auto list = scene.materials;
       list[number] = std::move(to);
       return replacing<&Scene::materials, Rearrange>(std::move(list));
@@ -103,7 +107,8 @@ Editor::Step Editor::set(const Set& set) const {
       const Shape& shape = scene.shapes[world_shape(scene, number)];
       auto to = shape.emission;
       set_field(to, scene, set);
-      if (to && shape.emission) return InPlace{EmissionEdit{{std::nullopt, number}, *std::move(to)}};
+      if (to && shape.emission)
+        return InPlace{EmissionEdit{{std::nullopt, number}, *std::move(to)}};
       Shape changed = shape;
       changed.emission = std::move(to);
       return reshaping<Rearrange>(number, std::make_shared<const Shape>(std::move(changed)));
@@ -136,7 +141,8 @@ Editor::Step Editor::add(const Add& add) const {
     return replacing<&Scene::materials, Rearrange>(with(scene.materials, new_material(scene, add)));
   if (add.what == FormSubject::Kind::texture)
     return replacing<&Scene::textures, Rearrange>(with(scene.textures, new_texture(scene, add)));
-  if (add.what == FormSubject::Kind::light) return replacing<&Scene::lights, Rearrange>(with(scene.lights, new_light(add)));
+  if (add.what == FormSubject::Kind::light)
+    return replacing<&Scene::lights, Rearrange>(with(scene.lights, new_light(add)));
   throw InputError(SourceLocation{"of"}, "is nothing that can be added");
 }
 
@@ -145,15 +151,19 @@ Editor::Step Editor::hide(const Hide& hide) const {
   const std::size_t count = scene.shapes.size() + scene.instances.size();
   std::vector<bool> is_chosen(count, hide.others);
   for (const std::uint32_t id : hide.ids) {
-    if (id >= count) throw InputError(fmt::format("there is no thing {}, of {} counted from 0", id, count));
+    if (id >= count)
+      throw InputError(fmt::format("there is no thing {}, of {} counted from 0", id, count));
     is_chosen[id] = !hide.others;
   }
   std::vector<std::size_t> shapes, instances;
   for (std::size_t id = 0; id < count; ++id)
     if (is_chosen[id])
-      (id < scene.shapes.size() ? shapes : instances).push_back(id < scene.shapes.size() ? id : id - scene.shapes.size());
-  if (shapes.size() + instances.size() == count) throw InputError("something has to be shown: the scene would be empty");
-  return Rearrange{[shapes = std::move(shapes), instances = std::move(instances)](Scene& whole, HiddenPointer& hidden) {
+      (id < scene.shapes.size() ? shapes : instances)
+          .push_back(id < scene.shapes.size() ? id : id - scene.shapes.size());
+  if (shapes.size() + instances.size() == count)
+    throw InputError("something has to be shown: the scene would be empty");
+  return Rearrange{[shapes = std::move(shapes), instances = std::move(instances)](
+                       Scene& whole, HiddenPointer& hidden) {
     auto things = std::make_shared<Things>();
     auto now = std::make_shared<Hidden>(*hidden);
     hide_some(whole.shapes, shapes, now->shapes, things->shapes);
@@ -166,8 +176,9 @@ Editor::Step Editor::hide(const Hide& hide) const {
 Editor::Step Editor::show(const Show& show) const {
   const std::size_t shapes = hidden_->shapes.size(), count = shapes + hidden_->instances.size();
   if (show.hidden && *show.hidden >= count)
-    throw InputError(SourceLocation{"hidden"},
-                     fmt::format("there is no hidden thing {}, of {} counted from 0", *show.hidden, count));
+    throw InputError(
+        SourceLocation{"hidden"},
+        fmt::format("there is no hidden thing {}, of {} counted from 0", *show.hidden, count));
   if (count == 0) throw InputError("nothing is hidden");
   auto things = std::make_shared<Things>();
   auto now = std::make_shared<Hidden>(*hidden_);

@@ -28,7 +28,8 @@ SessionOptions session_options(const ViewerOptions& options) {
 
 }  // namespace
 
-EyeFilms::EyeFilms(LiveScene& live, const Editor& editor, const Device& device, const ViewerOptions& options)
+EyeFilms::EyeFilms(LiveScene& live, const Editor& editor, const Device& device,
+                   const ViewerOptions& options)
     : live_(live),
       editor_(editor),
       options_(options),
@@ -39,7 +40,8 @@ EyeFilms::EyeFilms(LiveScene& live, const Editor& editor, const Device& device, 
 }
 
 std::uint32_t EyeFilms::target() const {
-  return static_cast<std::uint32_t>(options_.samples > 0 ? options_.samples : live_.scene().sampler.samples_per_pixel);
+  return static_cast<std::uint32_t>(options_.samples > 0 ? options_.samples
+                                                         : live_.scene().sampler.samples_per_pixel);
 }
 
 void EyeFilms::look_with(const ShowView& look, int scale, std::size_t eye) {
@@ -69,7 +71,9 @@ void EyeFilms::begin(const ShowView& look) {
   drop();
   const double pixels = static_cast<double>(look.width) * look.height;
   int scale = 1;
-  while (scale < coarsest_scale && pixels > options_.coarse_seconds * paths_a_second_ * scale * scale) scale *= 2;
+  while (scale < coarsest_scale &&
+         pixels > options_.coarse_seconds * paths_a_second_ * scale * scale)
+    scale *= 2;
   set_film(look, scale);
   look_ = look;
   ++view_;
@@ -79,7 +83,8 @@ std::uint32_t EyeFilms::samples_of_step(std::size_t eye, double pixels) const {
   if (scale_ != 1) return 1;
   if (eye == 1) return samples_[0] - samples_[1];
   const double affordable = options_.step_seconds * paths_a_second_ / pixels;
-  return std::clamp(static_cast<std::uint32_t>(affordable), 1u, std::max(1u, std::min(samples_[0], target() - samples_[0])));
+  return std::clamp(static_cast<std::uint32_t>(affordable), 1u,
+                    std::max(1u, std::min(samples_[0], target() - samples_[0])));
 }
 
 void EyeFilms::step(const std::function<void(bool is_coarse)>& between_batches) {
@@ -99,7 +104,8 @@ void EyeFilms::step(const std::function<void(bool is_coarse)>& between_batches) 
 
 Picture EyeFilms::picture() {
   NotFinite not_finite;
-  const LayeredImage image = develop(session_.film(), live_.scene(), session_options(options_).layers, not_finite);
+  const LayeredImage image =
+      develop(session_.film(), live_.scene(), session_options(options_).layers, not_finite);
   Picture out = shown_of(image, is_full());
   out.version = ++version_;
   out.view = view_;
@@ -110,7 +116,8 @@ Picture EyeFilms::picture() {
 }
 
 std::string EyeFilms::snapshot() {
-  return exr_bytes(develop(eye_ == 0 ? session_.film() : *films_[0], live_.scene(), session_options(options_).layers));
+  return exr_bytes(develop(eye_ == 0 ? session_.film() : *films_[0], live_.scene(),
+                           session_options(options_).layers));
 }
 
 }  // namespace caplet::view

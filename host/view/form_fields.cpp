@@ -75,7 +75,8 @@ class MaterialFields : public CompositesInParts<MaterialFields> {
   void unbounded(const Field& field, Spectrum& value) { spectrum(field, value); }
   void index(const Field& field, Spectrum& value) { to_.spectrum(field.name, value, field.high); }
   void number(const Field& field, double& value) {
-    with_slot(field.name, true, [&](Slot& slot) { to_.number(field.name, value, field.low, field.high, &slot); });
+    with_slot(field.name, true,
+              [&](Slot& slot) { to_.number(field.name, value, field.low, field.high, &slot); });
   }
   void integer(const Field& field, int& value) { whole(to_, field, value); }
   void flag(const Field& field, bool& value) { to_.flag(field.name, value); }
@@ -83,19 +84,23 @@ class MaterialFields : public CompositesInParts<MaterialFields> {
     to_.material("material 0", of[0]);
     to_.material("material 1", of[1]);
   }
-  void metal(const MetalFields& fields, Spectrum& eta, Spectrum& k, std::optional<Spectrum>& reflectance) {
-    instead("metal", {std::string(fields.eta.name) + " and k", fields.reflectance.name}, {fields.eta.name, fields.k.name},
-            reflectance);
+  void metal(const MetalFields& fields, Spectrum& eta, Spectrum& k,
+             std::optional<Spectrum>& reflectance) {
+    instead("metal", {std::string(fields.eta.name) + " and k", fields.reflectance.name},
+            {fields.eta.name, fields.k.name}, reflectance);
     CompositesInParts::metal(fields, eta, k, reflectance);
   }
-  void pigment(const PigmentFields& fields, Spectrum& sigma_a, std::optional<Spectrum>& reflectance) {
-    instead("pigment", {fields.sigma_a.name, fields.reflectance.name}, {fields.sigma_a.name}, reflectance);
+  void pigment(const PigmentFields& fields, Spectrum& sigma_a,
+               std::optional<Spectrum>& reflectance) {
+    instead("pigment", {fields.sigma_a.name, fields.reflectance.name}, {fields.sigma_a.name},
+            reflectance);
     CompositesInParts::pigment(fields, sigma_a, reflectance);
   }
 
  private:
   void spectrum(const Field& field, Spectrum& value) {
-    with_slot(field.name, false, [&](Slot& slot) { to_.spectrum(field.name, value, field.high, &slot); });
+    with_slot(field.name, false,
+              [&](Slot& slot) { to_.spectrum(field.name, value, field.high, &slot); });
   }
   template <class Work>
   void with_slot(const std::string& field, bool is_float, Work&& work) {
@@ -110,8 +115,8 @@ class MaterialFields : public CompositesInParts<MaterialFields> {
     std::erase_if(material_.textures, [&](const TexturedField& one) { return one.field == field; });
   }
   /// Offers a reflectance as an alternative to other fields.
-  void instead(const char* name, const std::vector<std::string>& options, const std::vector<std::string>& others,
-               std::optional<Spectrum>& reflectance) {
+  void instead(const char* name, const std::vector<std::string>& options,
+               const std::vector<std::string>& others, std::optional<Spectrum>& reflectance) {
     const int before = reflectance ? 1 : 0;
     int now = before;
     to_.choice(name, now, options);
@@ -135,11 +140,14 @@ MaterialModel default_material(std::size_t kind, std::uint32_t own, std::size_t 
 }
 
 /// The interface cannot be seen: files drop shapes that have it and separate no media.
-bool bounds_alone(std::size_t kind) { return std::holds_alternative<InterfaceMaterial>(model_of<MaterialModel>(kind)); }
+bool bounds_alone(std::size_t kind) {
+  return std::holds_alternative<InterfaceMaterial>(model_of<MaterialModel>(kind));
+}
 
 class TextureFields : public IgnoresFields {
  public:
-  TextureFields(FormFields& to, bool is_float, std::uint32_t own) : to_(to), is_float_(is_float), own_(own) {}
+  TextureFields(FormFields& to, bool is_float, std::uint32_t own)
+      : to_(to), is_float_(is_float), own_(own) {}
 
   void operand(const Field& field, TextureOperand& of) {
     if (is_float_) return factor(field, of);
@@ -155,7 +163,9 @@ class TextureFields : public IgnoresFields {
     of.value = ConstantSpectrum{value};
     of.texture = slot.texture;
   }
-  void number(const Field& field, double& value) { to_.number(field.name, value, field.low, field.high); }
+  void number(const Field& field, double& value) {
+    to_.number(field.name, value, field.low, field.high);
+  }
   void integer(const Field& field, int& value) { whole(to_, field, value); }
   void vector(const Field& field, glm::dvec3& value) { to_.point(field.name, value); }
   template <class Names>
@@ -163,8 +173,12 @@ class TextureFields : public IgnoresFields {
     to_.choice(field.name, value, std::vector<std::string>(names.begin(), names.end()));
   }
   void flag(const Field& field, bool& value) { to_.flag(field.name, value); }
-  void image(const Field& field, const std::shared_ptr<const TextureImage>& of) { to_.file(field.name, of ? of->file : ""); }
-  void vectors(const Field& field, const std::shared_ptr<const TextureImage>& of) { image(field, of); }
+  void image(const Field& field, const std::shared_ptr<const TextureImage>& of) {
+    to_.file(field.name, of ? of->file : "");
+  }
+  void vectors(const Field& field, const std::shared_ptr<const TextureImage>& of) {
+    image(field, of);
+  }
   void mapping(TextureMapping& of) {
     int kind = static_cast<int>(of.kind);
     choice(TextureMapping::kind_field, kind, texture_mapping_names);
@@ -209,18 +223,30 @@ struct LightFields {
 
   void emission(const Field& field, Spectrum& value) { to.spectrum(field.name, value, infinity); }
   void position(const Field& field, glm::dvec3& value) { to.point(field.name, value); }
-  void direction(const Field&, const Field&, glm::dvec3& value) { to.direction("direction", value); }
-  void number(const Field& field, double& value) { to.number(field.name, value, field.low, field.high); }
+  void direction(const Field&, const Field&, glm::dvec3& value) {
+    to.direction("direction", value);
+  }
+  void number(const Field& field, double& value) {
+    to.number(field.name, value, field.low, field.high);
+  }
   void place(glm::dvec3& at, const glm::dmat3&) { to.point("from", at); }
-  void image(const Field& field, const std::shared_ptr<const EnvironmentImage>& of) { to.file(field.name, of ? of->file : ""); }
-  void directions(const Field& field, const std::shared_ptr<const EnvironmentImage>& of) { image(field, of); }
-  void profile(const Field& field, const std::shared_ptr<const IesProfile>& of) { to.file(field.name, of ? of->file : ""); }
+  void image(const Field& field, const std::shared_ptr<const EnvironmentImage>& of) {
+    to.file(field.name, of ? of->file : "");
+  }
+  void directions(const Field& field, const std::shared_ptr<const EnvironmentImage>& of) {
+    image(field, of);
+  }
+  void profile(const Field& field, const std::shared_ptr<const IesProfile>& of) {
+    to.file(field.name, of ? of->file : "");
+  }
   void cone(double& total_angle, double& falloff_start_angle) {
-    const double edge_before = std::max(0.0, total_angle - falloff_start_angle), total_before = total_angle;
+    const double edge_before = std::max(0.0, total_angle - falloff_start_angle),
+                 total_before = total_angle;
     double edge = edge_before;
     angle(to, SpotLight::cone_field, total_angle);
     angle(to, SpotLight::delta_field, edge);
-    if (edge != edge_before || total_angle != total_before) falloff_start_angle = std::max(0.0, total_angle - edge);
+    if (edge != edge_before || total_angle != total_before)
+      falloff_start_angle = std::max(0.0, total_angle - edge);
   }
   void sky(InfiniteLight& light) {
     if (light.image)
@@ -235,11 +261,14 @@ class OptionFields {
  public:
   explicit OptionFields(FormFields& to) : to_(to) {}
 
-  void number(const Field& field, double& value) { to_.number(field.name, value, field.low, field.high); }
+  void number(const Field& field, double& value) {
+    to_.number(field.name, value, field.low, field.high);
+  }
   /// Files may say more: what a page asks for must end.
   void integer(const Field& field, int& value) {
     const int most = std::string_view(field.name) == "maxdepth" ? 10000 : 1 << 24;
-    to_.whole(field.name, value, static_cast<int>(field.low), std::min(static_cast<int>(field.high), most));
+    to_.whole(field.name, value, static_cast<int>(field.low),
+              std::min(static_cast<int>(field.high), most));
   }
   void flag(const Field& field, bool& value) { to_.flag(field.name, value); }
   /// An unsigned integer, as in scene files.
@@ -268,7 +297,8 @@ void visit_camera(FormFields& fields, Camera& camera) {
     camera.screen_window.reset();  // its unit belongs to the projection
     return;
   }
-  if (auto* perspective = std::get_if<PerspectiveProjection>(&camera.projection)) angle(fields, fov_field, perspective->fov);
+  if (auto* perspective = std::get_if<PerspectiveProjection>(&camera.projection))
+    angle(fields, fov_field, perspective->fov);
   if (auto* spherical = std::get_if<SphericalProjection>(&camera.projection)) {
     const char* name = SphericalProjection::mapping_field.name;
     spherical->mapping = options.kind(name, spherical->mapping, SphericalProjection::mapping_names);
@@ -335,19 +365,22 @@ const std::vector<NewShape>& new_shapes() {
   static const std::vector<NewShape> all = [] {
     std::vector<NewShape> out;
     const auto offer = [&](const std::string& name, Geometry geometry) {
-      if (std::ranges::any_of(out, [&](const NewShape& other) { return other.name == name; })) return;
+      if (std::ranges::any_of(out, [&](const NewShape& other) { return other.name == name; }))
+        return;
       Scene scene;
       scene.materials.emplace_back();
       scene.shapes.emplace_back().geometry = geometry;
       Diagnostics diagnostics;
       if (primitive_count(scene.shapes[0]) > 0) validate(scene, diagnostics);
-      if (primitive_count(scene.shapes[0]) > 0 && !diagnostics.has_errors()) out.push_back({name, std::move(geometry)});
+      if (primitive_count(scene.shapes[0]) > 0 && !diagnostics.has_errors())
+        out.push_back({name, std::move(geometry)});
     };
     offer("capsule", CapsulesShape{{{0, 0, 0}}, {{0, 0, 1}}, {0.3f}, {}, {}});
     offer("tapered capsule", CapsulesShape{{{0, 0, 0}}, {{0, 0, 1}}, {0.4f}, {0.2f}, {}});
-    offer("tetrahedron",
-          TriangleMeshShape{
-              {{1, 1, 1}, {1, -1, -1}, {-1, 1, -1}, {-1, -1, 1}}, {{0, 1, 2}, {0, 3, 1}, {0, 2, 3}, {1, 3, 2}}, {}, {}});
+    offer("tetrahedron", TriangleMeshShape{{{1, 1, 1}, {1, -1, -1}, {-1, 1, -1}, {-1, -1, 1}},
+                                           {{0, 1, 2}, {0, 3, 1}, {0, 2, 3}, {1, 3, 2}},
+                                           {},
+                                           {}});
 #define GEOMETRY(Type, name) offer(#name, Type{});
 #include "scene/geometries.def"
     return out;
@@ -360,7 +393,8 @@ std::size_t row_of(const Options& known, const std::string& name) {
   const auto found = std::ranges::find(known, name);
   if (found == known.end())
     throw InputError(SourceLocation{kind_field},
-                     fmt::format("is \"{}\"; the nearest known name is \"{}\"", name, nearest_name(name, known)));
+                     fmt::format("is \"{}\"; the nearest known name is \"{}\"", name,
+                                 nearest_name(name, known)));
   return static_cast<std::size_t>(found - known.begin());
 }
 
@@ -370,7 +404,8 @@ std::string free_name(const List& of, const std::string& wanted) {
     return std::ranges::any_of(of, [&](const auto& one) { return one.name == name; });
   };
   for (int i = 1;; ++i)
-    if (const std::string name = i == 1 ? wanted : fmt::format("{} {}", wanted, i); !is_taken(name)) return name;
+    if (const std::string name = i == 1 ? wanted : fmt::format("{} {}", wanted, i); !is_taken(name))
+      return name;
 }
 
 }  // namespace
@@ -382,7 +417,8 @@ void visit_form(FormFields& fields, Material& material, std::uint32_t own, const
   fields.choice(kind_field, kind, material_kinds);
   if (kind != before) {
     if (bounds_alone(static_cast<std::size_t>(kind)))
-      throw InputError(SourceLocation{kind_field}, "bounds media alone: a shape that holds none would be nothing");
+      throw InputError(SourceLocation{kind_field},
+                       "bounds media alone: a shape that holds none would be nothing");
     material.model = default_material(static_cast<std::size_t>(kind), own, scene.materials.size());
     material.textures.clear();
     return;
@@ -396,7 +432,8 @@ void visit_form(FormFields& fields, Material& material, std::uint32_t own, const
 
 void visit_form(FormFields& fields, Texture& texture, std::uint32_t own) {
   fields.text("name", texture.name);
-  std::visit([&](auto& m) { m.fields(m, TextureFields(fields, texture.is_float, own)); }, texture.model);
+  std::visit([&](auto& m) { m.fields(m, TextureFields(fields, texture.is_float, own)); },
+             texture.model);
 }
 
 void visit_form(FormFields& fields, Light& light) {
@@ -439,8 +476,12 @@ void visit_form(FormFields& fields, std::optional<AreaEmission>& emission) {
 void visit_form(FormFields& fields, Shape& shape) {
   fields.text("name", shape.name);
   fields.flag("onesided", shape.one_sided);
-  const auto positive = [&](const char* name, double& value) { fields.number(name, value, 0, largest_length); };
-  const auto any = [&](const char* name, double& value) { fields.number(name, value, -largest_length, largest_length); };
+  const auto positive = [&](const char* name, double& value) {
+    fields.number(name, value, 0, largest_length);
+  };
+  const auto any = [&](const char* name, double& value) {
+    fields.number(name, value, -largest_length, largest_length);
+  };
   const auto turn = [&](const char* name, double& radians) {
     const double before = radians / degree;
     double now = before;
@@ -461,11 +502,14 @@ void visit_form(FormFields& fields, Shape& shape) {
           struct Each : Fields {
             FormFields& to;
             explicit Each(FormFields& fields) : to(fields) {}
-            void corners(const char* name0, const char* name1, glm::dvec3& p0, glm::dvec3& p1) override {
+            void corners(const char* name0, const char* name1, glm::dvec3& p0,
+                         glm::dvec3& p1) override {
               to.point(name0, p0);
               to.point(name1, p1);
             }
-            void positive(const char* name, double& value) override { to.number(name, value, 0, largest_length); }
+            void positive(const char* name, double& value) override {
+              to.number(name, value, 0, largest_length);
+            }
           } each(fields);
           caplet::fields(geometry, each);
         } else if constexpr (std::is_same_v<Type, SphereShape>) {
@@ -486,7 +530,8 @@ void visit_form(FormFields& fields, Shape& shape) {
           positive("radius 0", geometry.radius[0]);
           positive("radius 1", geometry.radius[1]);
           caps(geometry.caps);
-        } else if constexpr (std::is_same_v<Type, PartialSphereShape> || std::is_same_v<Type, OpenCylinderShape>) {
+        } else if constexpr (std::is_same_v<Type, PartialSphereShape> ||
+                             std::is_same_v<Type, OpenCylinderShape>) {
           positive("radius", geometry.radius);
           any("zmin", geometry.z_min);
           any("zmax", geometry.z_max);
@@ -504,7 +549,8 @@ void visit_form(FormFields& fields, ViewEdit& view, FormSubject::Kind of) {
     FilmSettings& film = view.film;
     const int width = film.width, height = film.height;
     FilmSettings::fields(film, options);
-    if (film.width != width || film.height != height) film.crop.reset();  // the crop was part of the old picture
+    if (film.width != width || film.height != height)
+      film.crop.reset();  // the crop was part of the old picture
     fields.number("exposure time", film.exposure_time, 0, infinity);
     film.space = options.kind("colorspace", film.space, color_space_names);
   } else if (of == FormSubject::Kind::filter) {
@@ -519,7 +565,8 @@ void visit_form(FormFields& fields, ViewEdit& view, FormSubject::Kind of) {
     sampler.x_strata = strata[0];
     sampler.y_strata = strata[1];
     SamplerSettings::fields(sampler, options);
-    if (kind == SamplerSettings::Kind::stratified) sampler.samples_per_pixel = sampler.x_strata * sampler.y_strata;
+    if (kind == SamplerSettings::Kind::stratified)
+      sampler.samples_per_pixel = sampler.x_strata * sampler.y_strata;
   } else {
     view.integrator.kind = options.kind(kind_field, view.integrator.kind, integrator_names);
     IntegratorSettings::fields(view.integrator, options);
@@ -538,7 +585,8 @@ std::vector<std::string> new_kinds(FormSubject::Kind what) {
       if (stands_alone(model_of<LightModel>(i))) out.push_back(light_kinds[i]);
   if (what == FormSubject::Kind::texture)
     for (std::size_t i = 0; i < texture_kinds.size(); ++i)
-      if (const TextureKind kind = texture_kind(model_of<TextureModel>(i)); !kind.has_image && kind.has_more)
+      if (const TextureKind kind = texture_kind(model_of<TextureModel>(i));
+          !kind.has_image && kind.has_more)
         out.push_back(texture_kinds[i]);
   return out;
 }
@@ -546,15 +594,18 @@ std::vector<std::string> new_kinds(FormSubject::Kind what) {
 Material new_material(const Scene& scene, const Add& add) {
   if (add.like) {
     if (*add.like >= scene.materials.size())
-      throw InputError(SourceLocation{"like"}, fmt::format("there are {} materials", scene.materials.size()));
+      throw InputError(SourceLocation{"like"},
+                       fmt::format("there are {} materials", scene.materials.size()));
     Material out = scene.materials[*add.like];
-    out.name = free_name(scene.materials, out.name.empty() ? material_kinds[out.model.index()] : out.name);
+    out.name =
+        free_name(scene.materials, out.name.empty() ? material_kinds[out.model.index()] : out.name);
     return out;
   }
   (void)row_of(new_kinds(FormSubject::Kind::material), add.kind);
   const std::size_t kind = row_of(material_kinds, add.kind);
   Material out;
-  out.model = default_material(kind, static_cast<std::uint32_t>(scene.materials.size()), scene.materials.size());
+  out.model = default_material(kind, static_cast<std::uint32_t>(scene.materials.size()),
+                               scene.materials.size());
   out.name = free_name(scene.materials, add.kind);
   return out;
 }
@@ -576,14 +627,16 @@ Light new_light(const Add& add) {
   Light out;
   out.model = light_of(row_of(light_kinds, add.kind), traits);
   // The light has the same brightness at that distance, whatever its kind.
-  if (std::visit([](const auto& m) { return m.unit; }, out.model) == LightUnit::power) out.scale = add.size * add.size;
+  if (std::visit([](const auto& m) { return m.unit; }, out.model) == LightUnit::power)
+    out.scale = add.size * add.size;
   return out;
 }
 
 Shape new_shape(const Scene& scene, const Add& add) {
   const std::size_t row = row_of(new_kinds(FormSubject::Kind::shape), add.kind);
   if (add.material >= scene.materials.size())
-    throw InputError(SourceLocation{"material"}, fmt::format("there are {} materials", scene.materials.size()));
+    throw InputError(SourceLocation{"material"},
+                     fmt::format("there are {} materials", scene.materials.size()));
   Shape out;
   out.geometry = new_shapes()[row].geometry;
   out.material = add.material;
@@ -592,7 +645,8 @@ Shape new_shape(const Scene& scene, const Add& add) {
   const glm::dvec3 extent = bounds.max - bounds.min;
   const double factor = add.size * 2 / std::max({extent.x, extent.y, extent.z});
   out.world_from_object =
-      glm::translate(glm::scale(glm::translate(glm::dmat4(1), add.at), glm::dvec3(factor)), -0.5 * (bounds.min + bounds.max));
+      glm::translate(glm::scale(glm::translate(glm::dmat4(1), add.at), glm::dvec3(factor)),
+                     -0.5 * (bounds.min + bounds.max));
   return out;
 }
 

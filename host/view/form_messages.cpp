@@ -11,10 +11,13 @@ constexpr std::size_t most_numbers = 16;
 
 Spectrum spectrum(const json& of) {
   if (of.size() != 1) refuse("to", "is not one of constant, rgb, blackbody, name and texture");
-  if (of.contains("constant")) return ConstantSpectrum{number(of["constant"], "to.constant", 0, 1e30)};
-  if (of.contains("blackbody")) return BlackbodySpectrum{number(of["blackbody"], "to.blackbody", 1, 1e6)};
+  if (of.contains("constant"))
+    return ConstantSpectrum{number(of["constant"], "to.constant", 0, 1e30)};
+  if (of.contains("blackbody"))
+    return BlackbodySpectrum{number(of["blackbody"], "to.blackbody", 1, 1e6)};
   if (of.contains("rgb")) return RgbSpectrum{point(of, "rgb"), ColorSpace::srgb};
-  if (!of.contains("name")) refuse("to", "is not one of constant, rgb, blackbody, name and texture");
+  if (!of.contains("name"))
+    refuse("to", "is not one of constant, rgb, blackbody, name and texture");
   const std::string name = text(of, "name", longest_name);
   const auto known = named_spectrum(name);
   if (!known) refuse("to", fmt::format("there is no spectrum \"{}\"", name));
@@ -27,9 +30,11 @@ Value value(const json& to) {
   if (to.is_number()) return number(to, "to", -1e30, 1e30);
   if (to.is_string()) return to.get<std::string>();
   if (to.is_array()) {
-    if (to.size() > most_numbers) refuse("to", fmt::format("is a list of more than {} numbers", most_numbers));
+    if (to.size() > most_numbers)
+      refuse("to", fmt::format("is a list of more than {} numbers", most_numbers));
     std::vector<double> out;
-    for (std::size_t i = 0; i < to.size(); ++i) out.push_back(number(to[i], fmt::format("to[{}]", i), -1e30, 1e30));
+    for (std::size_t i = 0; i < to.size(); ++i)
+      out.push_back(number(to[i], fmt::format("to[{}]", i), -1e30, 1e30));
     return out;
   }
   if (to.size() == 1 && to.contains("texture")) return TextureChoice{id(to, "texture")};
@@ -45,8 +50,8 @@ FormSubject::Kind kind_of(const std::string& name, const char* field) {
 Add add(const json& of) {
   Add out;
   out.what = kind_of(text(of, "of", longest_name), "of");
-  if (out.what != FormSubject::Kind::material && out.what != FormSubject::Kind::texture && out.what != FormSubject::Kind::light &&
-      out.what != FormSubject::Kind::shape)
+  if (out.what != FormSubject::Kind::material && out.what != FormSubject::Kind::texture &&
+      out.what != FormSubject::Kind::light && out.what != FormSubject::Kind::shape)
     refuse("of", "is none of material, texture, light and shape");
   if (out.what == FormSubject::Kind::material && of.contains("like")) {
     out.like = id(of, "like");
@@ -65,7 +70,8 @@ Add add(const json& of) {
 }  // namespace
 
 FormSubject part(const json& object) {
-  return {kind_of(text(object, "of", longest_name), "of"), object.contains("part") ? id(object, "part") : 0};
+  return {kind_of(text(object, "of", longest_name), "of"),
+          object.contains("part") ? id(object, "part") : 0};
 }
 
 std::optional<FormChange> form_change(const json& of) {
@@ -78,7 +84,8 @@ std::optional<FormChange> form_change(const json& of) {
     return Remove{which};
   }
   if (what == "hide") return Hide{ids(of), truth(of, "others")};
-  if (what == "show") return Show{field(of, "hidden").is_null() ? std::nullopt : std::optional(id(of, "hidden"))};
+  if (what == "show")
+    return Show{field(of, "hidden").is_null() ? std::nullopt : std::optional(id(of, "hidden"))};
   return {};
 }
 

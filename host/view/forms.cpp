@@ -33,7 +33,8 @@ std::string name_of(const SampledSpectrum& spectrum) {
     std::map<std::vector<double>, std::string> out;
     for (const std::string& name : named_spectrum_names())
       if (const auto known = named_spectrum(name))
-        if (const auto* sampled = std::get_if<SampledSpectrum>(&*known)) out.emplace(sampled->values, name);
+        if (const auto* sampled = std::get_if<SampledSpectrum>(&*known))
+          out.emplace(sampled->values, name);
     return out;
   }();
   const auto found = named.find(spectrum.values);
@@ -41,10 +42,13 @@ std::string name_of(const SampledSpectrum& spectrum) {
 }
 
 Json spectrum_text(const Spectrum& spectrum) {
-  if (const auto* constant = std::get_if<ConstantSpectrum>(&spectrum)) return {{"constant", constant->value}};
+  if (const auto* constant = std::get_if<ConstantSpectrum>(&spectrum))
+    return {{"constant", constant->value}};
   if (const auto* rgb = std::get_if<RgbSpectrum>(&spectrum))
-    return {{"rgb", to_json(rgb->rgb)}, {"space", color_space_names[static_cast<std::size_t>(rgb->space)]}};
-  if (const auto* black = std::get_if<BlackbodySpectrum>(&spectrum)) return {{"blackbody", black->kelvin}};
+    return {{"rgb", to_json(rgb->rgb)},
+            {"space", color_space_names[static_cast<std::size_t>(rgb->space)]}};
+  if (const auto* black = std::get_if<BlackbodySpectrum>(&spectrum))
+    return {{"blackbody", black->kelvin}};
   const auto& sampled = std::get<SampledSpectrum>(spectrum);
   const std::string name = name_of(sampled);
   return name.empty() ? Json{{"samples", sampled.values.size()}} : Json{{"name", name}};
@@ -55,7 +59,8 @@ class Writer final : public FormFields {
  public:
   Json fields = Json::array();
 
-  void number(const std::string& name, double& value, double low, double high, Slot* slot) override {
+  void number(const std::string& name, double& value, double low, double high,
+              Slot* slot) override {
     Json& field = add("number", name, value);
     if (std::isfinite(low)) field["low"] = low;
     if (std::isfinite(high)) field["high"] = high;
@@ -66,7 +71,8 @@ class Writer final : public FormFields {
     field["low"] = low;
     field["high"] = high;
   }
-  void choice(const std::string& name, int& value, const std::vector<std::string>& options) override {
+  void choice(const std::string& name, int& value,
+              const std::vector<std::string>& options) override {
     add("choice", name, options[static_cast<std::size_t>(value)])["options"] = options;
   }
   void flag(const std::string& name, bool& value) override { add("flag", name, value); }
@@ -79,11 +85,21 @@ class Writer final : public FormFields {
   void option(const std::string& name, std::optional<double>& value) override {
     add("option", name, value ? Json(*value) : Json(nullptr));
   }
-  void point(const std::string& name, glm::dvec3& value) override { add("point", name, to_json(value)); }
-  void direction(const std::string& name, glm::dvec3& value) override { add("direction", name, to_json(value)); }
-  void file(const std::string& name, const std::string& value) override { add("file", name, value); }
-  void material(const std::string& name, std::uint32_t& value) override { add("material", name, value); }
-  void texture(const std::string& name, Slot& slot) override { say(add("texture", name, nullptr), &slot); }
+  void point(const std::string& name, glm::dvec3& value) override {
+    add("point", name, to_json(value));
+  }
+  void direction(const std::string& name, glm::dvec3& value) override {
+    add("direction", name, to_json(value));
+  }
+  void file(const std::string& name, const std::string& value) override {
+    add("file", name, value);
+  }
+  void material(const std::string& name, std::uint32_t& value) override {
+    add("material", name, value);
+  }
+  void texture(const std::string& name, Slot& slot) override {
+    say(add("texture", name, nullptr), &slot);
+  }
 
  private:
   Json& add(const char* type, const std::string& name, Json value) {
@@ -103,7 +119,8 @@ class Setter final : public FormFields {
  public:
   Setter(const Set& set, const Scene& scene) : set_(set), scene_(scene) {}
 
-  void number(const std::string& name, double& value, double low, double high, Slot* slot) override {
+  void number(const std::string& name, double& value, double low, double high,
+              Slot* slot) override {
     if (!is_it(name) || textured(slot)) return;
     const double to = get<double>("a number");
     if (!(to >= low && to <= high) || !std::isfinite(to)) refuse(must_lie_within(low, high));
@@ -116,11 +133,13 @@ class Setter final : public FormFields {
     if (!(to >= low && to <= high)) refuse(must_lie_within(low, high));
     value = static_cast<int>(to);
   }
-  void choice(const std::string& name, int& value, const std::vector<std::string>& options) override {
+  void choice(const std::string& name, int& value,
+              const std::vector<std::string>& options) override {
     if (!is_it(name)) return;
     const std::string& to = get<std::string>("a text");
     const auto found = std::ranges::find(options, to);
-    if (found == options.end()) refuse(fmt::format("is \"{}\", and none of {}", to, fmt::join(options, ", ")));
+    if (found == options.end())
+      refuse(fmt::format("is \"{}\", and none of {}", to, fmt::join(options, ", ")));
     value = static_cast<int>(found - options.begin());
   }
   void flag(const std::string& name, bool& value) override {
@@ -130,16 +149,19 @@ class Setter final : public FormFields {
     if (!is_it(name)) return;
     const std::string& to = get<std::string>("a text");
     if (to.size() > longest_text) refuse(fmt::format("is longer than {} bytes", longest_text));
-    if (std::ranges::any_of(to, [](unsigned char c) { return c < 0x20 || c == 0x7f; })) refuse("has control characters");
+    if (std::ranges::any_of(to, [](unsigned char c) { return c < 0x20 || c == 0x7f; }))
+      refuse("has control characters");
     value = to;
   }
   void spectrum(const std::string& name, Spectrum& value, double most, Slot* slot) override {
     if (!is_it(name) || textured(slot)) return;
     const auto& to = get<Spectrum>("a spectrum");
     const auto within = [&](double x) { return std::isfinite(x) && x >= 0 && x <= most; };
-    if (const auto* constant = std::get_if<ConstantSpectrum>(&to); constant && !within(constant->value))
+    if (const auto* constant = std::get_if<ConstantSpectrum>(&to);
+        constant && !within(constant->value))
       refuse(must_lie_within(0, most));
-    if (const auto* rgb = std::get_if<RgbSpectrum>(&to); rgb && !(within(rgb->rgb.x) && within(rgb->rgb.y) && within(rgb->rgb.z)))
+    if (const auto* rgb = std::get_if<RgbSpectrum>(&to);
+        rgb && !(within(rgb->rgb.x) && within(rgb->rgb.y) && within(rgb->rgb.z)))
       refuse(must_lie_within(0, most));
     value = to;
   }
@@ -184,7 +206,9 @@ class Setter final : public FormFields {
     if (found_ || name != set_.field) return false;
     return found_ = true;
   }
-  [[noreturn]] void refuse(const std::string& why) const { throw InputError(SourceLocation{set_.field}, why); }
+  [[noreturn]] void refuse(const std::string& why) const {
+    throw InputError(SourceLocation{set_.field}, why);
+  }
   template <class T>
   const T& get(const char* what) const {
     const T* value = std::get_if<T>(&set_.to);
@@ -235,17 +259,20 @@ struct Swatch : IgnoresFields {
     }
     take(sum);
   }
-  void pigment(const PigmentFields&, const Spectrum& sigma_a, const std::optional<Spectrum>& reflectance) {
+  void pigment(const PigmentFields&, const Spectrum& sigma_a,
+               const std::optional<Spectrum>& reflectance) {
     if (reflectance) return take(of(*reflectance));
     const glm::dvec3 absorbed = of(sigma_a);
     take({std::exp(-2 * absorbed.x), std::exp(-2 * absorbed.y), std::exp(-2 * absorbed.z)});
   }
   /// The colour is the reflectance at normal incidence.
-  void metal(const MetalFields&, const Spectrum& eta, const Spectrum& k, const std::optional<Spectrum>& reflectance) {
+  void metal(const MetalFields&, const Spectrum& eta, const Spectrum& k,
+             const std::optional<Spectrum>& reflectance) {
     if (reflectance) return take(of(*reflectance));
     const glm::dvec3 n = of(eta), e = of(k);
     glm::dvec3 out;
-    for (int i = 0; i < 3; ++i) out[i] = ((n[i] - 1) * (n[i] - 1) + e[i] * e[i]) / ((n[i] + 1) * (n[i] + 1) + e[i] * e[i]);
+    for (int i = 0; i < 3; ++i)
+      out[i] = ((n[i] - 1) * (n[i] - 1) + e[i] * e[i]) / ((n[i] + 1) * (n[i] + 1) + e[i] * e[i]);
     take(out);
   }
 
@@ -320,7 +347,8 @@ Json form_text(const Scene& scene, const ViewEdit& view, const FormSubject& part
 
 Json lists_text() {
   Json out;
-  for (const FormSubject::Kind kind : {FormSubject::Kind::material, FormSubject::Kind::texture, FormSubject::Kind::light, FormSubject::Kind::shape})
+  for (const FormSubject::Kind kind : {FormSubject::Kind::material, FormSubject::Kind::texture,
+                                       FormSubject::Kind::light, FormSubject::Kind::shape})
     out[form_subject_names[static_cast<std::size_t>(kind)]] = new_kinds(kind);
   out["spectra"] = named_spectrum_names();
   return out;
@@ -329,22 +357,35 @@ Json lists_text() {
 Json parts_text(const Scene& scene) {
   Json materials = Json::array(), textures = Json::array(), lights = Json::array();
   for (std::uint32_t i = 0; i < scene.materials.size() && i < most_named; ++i)
-    materials.push_back({{"name", material_label(scene, i)}, {"color", swatch(scene, scene.materials[i])}});
+    materials.push_back(
+        {{"name", material_label(scene, i)}, {"color", swatch(scene, scene.materials[i])}});
   for (std::size_t i = 0; i < scene.textures.size() && i < most_named; ++i)
-    textures.push_back({{"name", scene.textures[i].name}, {"of_floats", scene.textures[i].is_float}});
+    textures.push_back(
+        {{"name", scene.textures[i].name}, {"of_floats", scene.textures[i].is_float}});
   static constexpr const char* kinds[] = {
 #define LIGHT_MODEL(row, Type) #row,
 #include "scene/lights.def"
   };
-  for (std::size_t i = 0; i < scene.lights.size() && i < most_named; ++i) lights.push_back(kinds[scene.lights[i].model.index()]);
-  return {{"materials", std::move(materials)}, {"textures", std::move(textures)}, {"lights", std::move(lights)}};
+  for (std::size_t i = 0; i < scene.lights.size() && i < most_named; ++i)
+    lights.push_back(kinds[scene.lights[i].model.index()]);
+  return {{"materials", std::move(materials)},
+          {"textures", std::move(textures)},
+          {"lights", std::move(lights)}};
 }
 
-void set_field(Material& material, const Scene& scene, const Set& set) { set_one(material, scene, set, set.part.number, scene); }
-void set_field(Texture& texture, const Scene& scene, const Set& set) { set_one(texture, scene, set, set.part.number); }
+void set_field(Material& material, const Scene& scene, const Set& set) {
+  set_one(material, scene, set, set.part.number, scene);
+}
+void set_field(Texture& texture, const Scene& scene, const Set& set) {
+  set_one(texture, scene, set, set.part.number);
+}
 void set_field(Light& light, const Scene& scene, const Set& set) { set_one(light, scene, set); }
-void set_field(std::optional<AreaEmission>& emission, const Scene& scene, const Set& set) { set_one(emission, scene, set); }
+void set_field(std::optional<AreaEmission>& emission, const Scene& scene, const Set& set) {
+  set_one(emission, scene, set);
+}
 void set_field(Shape& shape, const Scene& scene, const Set& set) { set_one(shape, scene, set); }
-void set_field(ViewEdit& view, const Scene& scene, const Set& set) { set_one(view, scene, set, set.part.kind); }
+void set_field(ViewEdit& view, const Scene& scene, const Set& set) {
+  set_one(view, scene, set, set.part.kind);
+}
 
 }  // namespace caplet::view

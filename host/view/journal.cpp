@@ -49,7 +49,9 @@ bool Journal::begin(const fs::path& file, const std::vector<std::string>& lines)
   std::error_code ignored;
   fs::remove(fresh, ignored);
   descriptor_ = ::open(fresh.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_APPEND | O_CLOEXEC, 0600);
-  if (descriptor_ >= 0 && write_all(descriptor_, text) && ::rename(fresh.c_str(), file.c_str()) == 0) return true;
+  if (descriptor_ >= 0 && write_all(descriptor_, text) &&
+      ::rename(fresh.c_str(), file.c_str()) == 0)
+    return true;
   const int why = errno;
   if (descriptor_ >= 0) fs::remove(fresh, ignored);
   close();
@@ -85,7 +87,8 @@ std::vector<std::string> Journal::read(const fs::path& file) {
   std::size_t bytes = 0;
   while (std::getline(in, line) && !in.eof()) {  // a last line without its end is incomplete
     bytes += line.size();
-    if (bytes > most_journal_bytes || line.size() <= check_length || line[check_length] != ' ') break;
+    if (bytes > most_journal_bytes || line.size() <= check_length || line[check_length] != ' ')
+      break;
     std::string text = line.substr(check_length + 1);
     std::string wanted = check_of(check, text);
     if (std::string_view(line).substr(0, check_length) != wanted) break;
@@ -103,7 +106,8 @@ std::string file_hash(const fs::path& file) {
   std::string piece(std::size_t{1} << 22, '\0'), hashes;
   while (in) {
     in.read(piece.data(), static_cast<std::streamsize>(piece.size()));
-    hashes += content_hash(std::string_view(piece).substr(0, static_cast<std::size_t>(in.gcount())));
+    hashes +=
+        content_hash(std::string_view(piece).substr(0, static_cast<std::size_t>(in.gcount())));
   }
   return in.bad() ? std::string() : content_hash(hashes);
 }

@@ -43,9 +43,11 @@ std::optional<Json> object_of(const std::string& line) {
   return out.is_object() ? std::optional(std::move(out)) : std::nullopt;
 }
 
-constexpr std::string_view of_bytes = "bytes:";  // marks encoded bytes: absolute paths begin with a slash
+constexpr std::string_view of_bytes =
+    "bytes:";  // marks encoded bytes: absolute paths begin with a slash
 
-/// Returns a path for JSON. One that is not UTF-8 is encoded as a character per byte behind `of_bytes`, and can be read back.
+/// Returns a path for JSON. One that is not UTF-8 is encoded as a character per byte behind
+/// `of_bytes`, and can be read back.
 std::string json_of_path(const std::string& path) {
   if (valid_utf8(path) == path) return path;
   std::string out(of_bytes);
@@ -63,7 +65,8 @@ std::string path_of_json(const std::string& text) {
   for (std::size_t i = of_bytes.size(); i < text.size(); ++i) {
     const auto byte = static_cast<unsigned char>(text[i]);
     const bool is_pair = byte >= 0x80 && i + 1 < text.size();
-    out += is_pair ? static_cast<char>(byte << 6 | (static_cast<unsigned char>(text[++i]) & 0x3f)) : text[i];
+    out += is_pair ? static_cast<char>(byte << 6 | (static_cast<unsigned char>(text[++i]) & 0x3f))
+                   : text[i];
   }
   return out;
 }
@@ -86,8 +89,10 @@ bool is_written_by_caplet(const fs::path& file) {
 
 }  // namespace
 
-Keeper::Keeper(const fs::path& scene, const ReadAs& read_as) : scene_(fs::absolute(scene).lexically_normal()) {
-  for (const auto& [name, value] : read_as) read_as_.emplace(name, valid_utf8(value));  // as the journal returns it
+Keeper::Keeper(const fs::path& scene, const ReadAs& read_as)
+    : scene_(fs::absolute(scene).lexically_normal()) {
+  for (const auto& [name, value] : read_as)
+    read_as_.emplace(name, valid_utf8(value));  // as the journal returns it
   const std::string known_as = fs::weakly_canonical(scene_).string();
   const fs::path folder = scene_.parent_path(), name = scene_.filename();
   copy_ = folder / fmt::format(".{}.unsaved.pbrt", name.stem().string());
@@ -95,7 +100,8 @@ Keeper::Keeper(const fs::path& scene, const ReadAs& read_as) : scene_(fs::absolu
   elsewhere_ = in_cache("unsaved " + known_as, "unsaved");
   default_name_ = name.extension() == ".pbrt" ? name.string() : name.stem().string() + ".pbrt";
   if (fs::path(default_name_).stem().extension() == ".pbrt")
-    default_name_ = fs::path(default_name_).stem().string();  // removes the first ending of .pbrt.gz
+    default_name_ =
+        fs::path(default_name_).stem().string();  // removes the first ending of .pbrt.gz
 
   lock_file_ = in_cache("lock " + known_as, "lock");
   if (!lock_file_.empty()) {
@@ -112,12 +118,15 @@ Keeper::Keeper(const fs::path& scene, const ReadAs& read_as) : scene_(fs::absolu
   }
   // Hashing a large file takes a while, and the hash is needed only when there is something to
   // keep.
-  scene_hash_ = std::async(std::launch::deferred, [content = content_of(scene_)] { return hash_of(content); }).share();
+  scene_hash_ = std::async(std::launch::deferred, [content = content_of(scene_)] {
+                  return hash_of(content);
+                }).share();
   base_hash_ = scene_hash_;
   for (const fs::path& place : {journal_, elsewhere_})
     if (!place.empty()) find_left(place);
   std::error_code ignored;
-  if (!base_is_copy_) fs::remove(copy_, ignored);  // a copy left by a session that had saved everything
+  if (!base_is_copy_)
+    fs::remove(copy_, ignored);  // a copy left by a session that had saved everything
 }
 
 Keeper::~Keeper() {
@@ -156,7 +165,8 @@ void Keeper::find_left(const fs::path& journal) try {
     return;
   }
   const bool begins_in_copy = head->value("copy", false);
-  bool fits = lines_.empty() && head->value("read_as", ReadAs{}) == read_as_ && scene_hash_.get() == wanted;
+  bool fits =
+      lines_.empty() && head->value("read_as", ReadAs{}) == read_as_ && scene_hash_.get() == wanted;
   if (begins_in_copy) fits = fits && file_hash(copy_) == head->value("content", "");
   Others others;
   const Json named = head->value("others", Json::object());
@@ -201,10 +211,12 @@ void Keeper::has_read(const std::vector<std::string>& files) {
   std::vector<Content> contents;
   std::error_code error;
   for (const std::string& file : files)
-    if (!fs::equivalent(file, base(), error)) contents.push_back(content_of(fs::absolute(file).lexically_normal()));
+    if (!fs::equivalent(file, base(), error))
+      contents.push_back(content_of(fs::absolute(file).lexically_normal()));
   others_ = std::async(std::launch::deferred, [contents = std::move(contents)] {
               Others out;
-              for (const Content& content : contents) out.emplace_back(content.path, hash_of(content));
+              for (const Content& content : contents)
+                out.emplace_back(content.path, hash_of(content));
               return out;
             }).share();
 }
@@ -212,12 +224,14 @@ void Keeper::has_read(const std::vector<std::string>& files) {
 Keeper::Content Keeper::content_of(const fs::path& file) {
   struct stat status {};
   if (::stat(file.c_str(), &status) != 0) return {file.string()};
-  return {file.string(), status.st_size, std::int64_t{status.st_mtim.tv_sec} * 1'000'000'000 + status.st_mtim.tv_nsec};
+  return {file.string(), status.st_size,
+          std::int64_t{status.st_mtim.tv_sec} * 1'000'000'000 + status.st_mtim.tv_nsec};
 }
 
 std::string Keeper::hash_of(const Content& content) {
   const Content now = content_of(content.path);
-  return now.bytes == content.bytes && now.written == content.written ? file_hash(content.path) : "unknown";
+  return now.bytes == content.bytes && now.written == content.written ? file_hash(content.path)
+                                                                      : "unknown";
 }
 
 void Keeper::look_at_contents() {
@@ -230,7 +244,8 @@ void Keeper::look_at_contents() {
 
 void Keeper::has_made(std::size_t count) {
   if (count >= lines_.size()) return;
-  const std::vector<std::string> rest(lines_.begin() + static_cast<std::ptrdiff_t>(count), lines_.end());
+  const std::vector<std::string> rest(lines_.begin() + static_cast<std::ptrdiff_t>(count),
+                                      lines_.end());
   lines_.resize(count);
   Journal aside;
   if (aside.begin(journal_, rest)) put_aside(journal_);
@@ -241,7 +256,10 @@ std::string Keeper::head() const {
   Json others = Json::object();
   if (others_.valid())
     for (const auto& [name, hash] : others_.get()) others[json_of_path(name)] = hash;
-  Json head{{"caplet", format}, {"content", base_hash_.get()}, {"copy", base_is_copy_}, {"others", others}};
+  Json head{{"caplet", format},
+            {"content", base_hash_.get()},
+            {"copy", base_is_copy_},
+            {"others", others}};
   if (!read_as_.empty()) head["read_as"] = read_as_;
   return json_dump(head);
 }
@@ -275,17 +293,22 @@ void Keeper::keep(const std::string& line) {
 fs::path Keeper::target(const std::optional<std::string>& name) const {
   // The page has the name as UTF-8.
   std::string out = name && *name != valid_utf8(default_name_) ? *name : default_name_;
-  const auto refuse = [&](const char* why) { throw InputError(SourceLocation{"name"}, fmt::format("'{}' {}", out, why)); };
+  const auto refuse = [&](const char* why) {
+    throw InputError(SourceLocation{"name"}, fmt::format("'{}' {}", out, why));
+  };
   if (out.empty()) refuse("is no name");
-  if (std::ranges::any_of(out, [](char c) { return static_cast<unsigned char>(c) < 32 || c == 127; }))
+  if (std::ranges::any_of(out,
+                          [](char c) { return static_cast<unsigned char>(c) < 32 || c == 127; }))
     refuse("holds a control character");
-  if (out.find('/') != std::string::npos || out.find('\\') != std::string::npos || out.front() == '.')
+  if (out.find('/') != std::string::npos || out.find('\\') != std::string::npos ||
+      out.front() == '.')
     refuse("is not a plain name: scenes are saved beside the scene's file");
   if (!out.ends_with(".pbrt")) out += ".pbrt";
   fs::path path = scene_.parent_path() / out;
   std::error_code error;
   const fs::file_status status = fs::symlink_status(path, error);
-  if (path != scene_ && fs::exists(status) && !fs::is_regular_file(status)) refuse("is there, and is no regular file");
+  if (path != scene_ && fs::exists(status) && !fs::is_regular_file(status))
+    refuse("is there, and is no regular file");
   return path;
 }
 
@@ -294,14 +317,19 @@ std::string Keeper::lost_with(const fs::path& target) const {
   if (!fs::exists(target, error)) return {};
   const std::string name = target.filename().string();
   if (const auto ours = written_.find(target); ours != written_.end())
-    return file_hash(target) == ours->second ? std::string() : fmt::format("{} has been changed since it was saved here", name);
+    return file_hash(target) == ours->second
+               ? std::string()
+               : fmt::format("{} has been changed since it was saved here", name);
   if (target != scene_) return fmt::format("{} is there already", name);
-  if (file_hash(target) != scene_hash_.get()) return fmt::format("{} has been changed since it was read", name);
-  if (!is_written_by_caplet(target)) return fmt::format("comments and includes of {} will not be kept", name);
+  if (file_hash(target) != scene_hash_.get())
+    return fmt::format("{} has been changed since it was read", name);
+  if (!is_written_by_caplet(target))
+    return fmt::format("comments and includes of {} will not be kept", name);
   return {};
 }
 
-void Keeper::save(const Scene& scene, const fs::path& target, const std::string& mark, const std::function<bool()>& cancelled) {
+void Keeper::save(const Scene& scene, const fs::path& target, const std::string& mark,
+                  const std::function<bool()>& cancelled) {
   const bool own = target == scene_, copies = own && !base_is_copy_ && !is_second_;
   std::error_code error;
   if (copies) {
@@ -311,7 +339,8 @@ void Keeper::save(const Scene& scene, const fs::path& target, const std::string&
     const fs::path file = fs::canonical(scene_, error);
     fs::create_hard_link(file, copy_, error);
     if (error) fs::copy_file(file, copy_, fs::copy_options::overwrite_existing, error);
-    if (error) throw RunError(fmt::format("{}: cannot be written: {}", copy_.string(), error.message()));
+    if (error)
+      throw RunError(fmt::format("{}: cannot be written: {}", copy_.string(), error.message()));
   }
   try {
     write_scene(scene, target, cancelled);
@@ -348,14 +377,16 @@ void Keeper::end(bool has_unsaved) {
 
 std::string kept_token(const std::string& host, std::uint16_t port, const fs::path& scene) {
   constexpr std::size_t length = 32;
-  const fs::path file = in_cache(fmt::format("token {} {} {}", host, port, fs::weakly_canonical(scene).string()), "token");
+  const fs::path file = in_cache(
+      fmt::format("token {} {} {}", host, port, fs::weakly_canonical(scene).string()), "token");
   if (file.empty()) return random_token();
   struct stat status {};
-  if (::lstat(file.c_str(), &status) == 0 && S_ISREG(status.st_mode) && status.st_uid == ::geteuid() &&
-      (status.st_mode & 077) == 0) {
+  if (::lstat(file.c_str(), &status) == 0 && S_ISREG(status.st_mode) &&
+      status.st_uid == ::geteuid() && (status.st_mode & 077) == 0) {
     std::ifstream in(file);
     std::string token;
-    if (std::getline(in, token) && token.size() == length && token.find_first_not_of("0123456789abcdef") == std::string::npos)
+    if (std::getline(in, token) && token.size() == length &&
+        token.find_first_not_of("0123456789abcdef") == std::string::npos)
       return token;
   }
   std::string token = random_token();
@@ -365,7 +396,8 @@ std::string kept_token(const std::string& host, std::uint16_t port, const fs::pa
   const int out = ::open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC | O_NOFOLLOW, 0600);
   if (out < 0) return token;
   const std::string text = token + "\n";
-  if (::write(out, text.data(), text.size()) != static_cast<ssize_t>(text.size())) fs::remove(file, ignored);
+  if (::write(out, text.data(), text.size()) != static_cast<ssize_t>(text.size()))
+    fs::remove(file, ignored);
   ::close(out);
   return token;
 }

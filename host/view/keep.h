@@ -20,11 +20,12 @@ namespace caplet::view {
 
 /// The files of a session of one scene file.
 ///
-/// Changes are lines of a journal, `.NAME.unsaved` beside the scene's file NAME or, where that folder is not writable, in the
-/// cache: the messages of the page in order, including undos, so that replaying them on the same content gives the same scene and
-/// the same undo history. The first line has a hash of that content and the options it was read with. The journal exists from the
-/// first change to the next save. The content before a save is kept beside it, `.STEM.unsaved.pbrt`, during the session: later
-/// lines of changes start from it, too.
+/// Changes are lines of a journal, `.NAME.unsaved` beside the scene's file NAME or, where that
+/// folder is not writable, in the cache: the messages of the page in order, including undos, so
+/// that replaying them on the same content gives the same scene and the same undo history. The
+/// first line has a hash of that content and the options it was read with. The journal exists from
+/// the first change to the next save. The content before a save is kept beside it,
+/// `.STEM.unsaved.pbrt`, during the session: later lines of changes start from it, too.
 ///
 /// If two sessions open one file at the same time, the second keeps nothing.
 class Keeper {
@@ -42,11 +43,12 @@ class Keeper {
   const std::filesystem::path& base() const { return base_is_copy_ ? copy_ : scene_; }
   /// Tells which other files base() was read from. It must be called once, after reading.
   void has_read(const std::vector<std::string>& files);
-  /// Starts hashing the files on another thread; to be called when the processor is idle. The first change also starts it, and
-  /// waits for it.
+  /// Starts hashing the files on another thread; to be called when the processor is idle. The first
+  /// change also starts it, and waits for it.
   void look_at_contents();
 
-  /// Returns the lines that an earlier session left for base(), oldest first. They must be replayed before other changes.
+  /// Returns the lines that an earlier session left for base(), oldest first. They must be replayed
+  /// before other changes.
   const std::vector<std::string>& lines() const { return lines_; }
   /// Reports that the first `count` lines could be replayed; the others are put aside.
   void has_made(std::size_t count);
@@ -65,14 +67,14 @@ class Keeper {
   /// Returns the journal's path.
   const std::filesystem::path& journal() const { return journal_; }
 
-  /// Returns the file of a name, beside the scene's; without a name the last one, or the scene's own name as .pbrt. Throws
-  /// InputError for an invalid name, or one that leads to another folder.
+  /// Returns the file of a name, beside the scene's; without a name the last one, or the scene's
+  /// own name as .pbrt. Throws InputError for an invalid name, or one that leads to another folder.
   std::filesystem::path target(const std::optional<std::string>& name) const;
   std::string default_name() const { return default_name_; }
   /// Describes what overwriting the file would lose; empty if nothing.
   std::string lost_with(const std::filesystem::path& target) const;
-  /// Writes the scene and ends the journal. `mark` is kept with later changes. Throws as write_scene does, and then leaves
-  /// everything as before.
+  /// Writes the scene and ends the journal. `mark` is kept with later changes. Throws as
+  /// write_scene does, and then leaves everything as before.
   void save(const Scene& scene, const std::filesystem::path& target, const std::string& mark,
             const std::function<bool()>& cancelled = {});
 
@@ -91,7 +93,8 @@ class Keeper {
   void fail(const std::string& why);
 
   ReadAs read_as_;
-  std::filesystem::path scene_, copy_, journal_, elsewhere_;  // elsewhere: the journal's alternative path
+  std::filesystem::path scene_, copy_, journal_,
+      elsewhere_;  // elsewhere: the journal's alternative path
   std::filesystem::path lock_file_;
   int lock_ = -1;
   bool base_is_copy_ = false, is_second_ = false;
@@ -101,7 +104,9 @@ class Keeper {
   Journal file_;
   struct Content {
     std::string path;
-    std::int64_t bytes = -1, written = 0;  // at the time of reading; if they differ later, the content is unknown
+    std::int64_t bytes = -1,
+                 written =
+                     0;  // at the time of reading; if they differ later, the content is unknown
   };
   static Content content_of(const std::filesystem::path& file);
   static std::string hash_of(const Content& content);
@@ -113,8 +118,10 @@ class Keeper {
   std::map<std::filesystem::path, std::string> written_;  // hashes of files that this session wrote
 };
 
-/// Returns the token stored for this address and scene, or a new one that is stored: an open page then continues with the next
-/// session. It is in the cache, in a file that only this user can read.
-std::string kept_token(const std::string& host, std::uint16_t port, const std::filesystem::path& scene);
+/// Returns the token stored for this address and scene, or a new one that is stored: an open page
+/// then continues with the next session. It is in the cache, in a file that only this user can
+/// read.
+std::string kept_token(const std::string& host, std::uint16_t port,
+                       const std::filesystem::path& scene);
 
 }  // namespace caplet::view

@@ -37,10 +37,12 @@ Keeping::Keeping(LiveScene& live, Editor& editor, std::unique_ptr<Keeper> keeper
   if (!keeper_ || keeper_->lines().empty()) return;
   const std::size_t made = make_lines(keeper_->lines()), all = keeper_->lines().size();
   keeper_->has_made(made);
-  if (made < all) log::warn("{} of {} kept changes cannot be made again, and are put aside", all - made, all);
+  if (made < all)
+    log::warn("{} of {} kept changes cannot be made again, and are put aside", all - made, all);
   restored_ = has_unsaved() ? made : 0;
   if (restored_ > 0)
-    log::info("unsaved changes of an earlier session are made again: {} from {}", made, keeper_->journal().string());
+    log::info("unsaved changes of an earlier session are made again: {} from {}", made,
+              keeper_->journal().string());
 }
 
 bool Keeping::change(const Message& message) {
@@ -118,7 +120,8 @@ bool Keeping::make(const Message& message, const std::string& text) {
       return true;
     };
     const std::optional<bool> way = editor_.way_to_saved();
-    if (!way) throw InputError("the saved scene is not among the states that undo leads to any more");
+    if (!way)
+      throw InputError("the saved scene is not among the states that undo leads to any more");
     while (editor_.has_unsaved() && go_and_keep(*way)) {
     }
     restored_ = 0;
@@ -136,7 +139,8 @@ bool Keeping::make(const Message& message, const std::string& text) {
           ++made;
         }
       if (made < lines.size())
-        log::warn("{} of {} changes of an earlier session do not fit the scene as it now is", lines.size() - made, lines.size());
+        log::warn("{} of {} changes of an earlier session do not fit the scene as it now is",
+                  lines.size() - made, lines.size());
     }
     keeper_->forget_old();
     return made > 0;
@@ -151,7 +155,10 @@ Json Keeping::save(const Save& save, const ShowView& look, const std::function<b
   if (!keeper_) throw InputError("this scene has no file to be saved beside");
   const std::filesystem::path target = keeper_->target(save.name);
   if (const std::string lost = keeper_->lost_with(target); !lost.empty() && !save.replace)
-    return {{"type", "save_asks"}, {"name", target.filename().string()}, {"camera", save.camera}, {"why", lost}};
+    return {{"type", "save_asks"},
+            {"name", target.filename().string()},
+            {"camera", save.camera},
+            {"why", lost}};
   const bool camera_is_new = save.camera || own_is_new_;
   const ShowView own = save.camera ? look : own_;
   Scene scene = editor_.document();

@@ -28,8 +28,10 @@ ShowView look(const json& of) {
   out.lens_radius = number(field(of, "lens_radius"), "lens_radius", 0, 1e9);
   out.focal_distance = number(field(of, "focal_distance"), "focal_distance", 1e-9, 1e12);
   if (of.contains("separation")) out.separation = number(of["separation"], "separation", 0, 1e9);
-  if (of.contains("convergence")) out.convergence = number(of["convergence"], "convergence", 0, 1e12);
-  if (of.contains("orthographic")) out.orthographic = number(of["orthographic"], "orthographic", 0, 1e18);
+  if (of.contains("convergence"))
+    out.convergence = number(of["convergence"], "convergence", 0, 1e12);
+  if (of.contains("orthographic"))
+    out.orthographic = number(of["orthographic"], "orthographic", 0, 1e18);
   return out;
 }
 
@@ -56,12 +58,15 @@ Change change(const json& of) {
                    number(field(of, "radius1"), "radius1", 0, 1e30)};
   if (what == "paint") {
     const bool all = field(of, "surface").is_null();
-    return Paint{ids(of), all ? std::nullopt : std::optional(id(of, "surface")), id(of, "material")};
+    return Paint{ids(of), all ? std::nullopt : std::optional(id(of, "surface")),
+                 id(of, "material")};
   }
   if (what == "duplicate") return Duplicate{ids(of), point(of, "by")};
   if (what == "delete") return Delete{ids(of)};
-  if (const auto of_form = form_change(of)) return std::visit([](const auto& one) { return Change(one); }, *of_form);
-  refuse("what", fmt::format("is none of move, reshape, paint, duplicate, delete, {}", form_changes));
+  if (const auto of_form = form_change(of))
+    return std::visit([](const auto& one) { return Change(one); }, *of_form);
+  refuse("what",
+         fmt::format("is none of move, reshape, paint, duplicate, delete, {}", form_changes));
 }
 
 Save save(const json& of) {
@@ -70,7 +75,8 @@ Save save(const json& of) {
   if (!name.is_null()) {
     if (!name.is_string()) refuse("name", "is no text");
     out.name = name.get<std::string>();
-    if (out.name->size() > longest_name) refuse("name", fmt::format("is longer than {} bytes", longest_name));
+    if (out.name->size() > longest_name)
+      refuse("name", fmt::format("is longer than {} bytes", longest_name));
   }
   out.camera = truth(of, "camera");
   out.replace = truth(of, "replace");
@@ -99,8 +105,10 @@ Message parse_message(std::string_view text) {
   if (type == "ask") return ask(message);
   if (type == "snapshot") return Snapshot{};
   if (type == "describe")
-    return Describe{number(field(message, "number"), "number", 0, 1e15), id(message, "id"), id(message, "primitive")};
-  if (type == "form") return Form{number(field(message, "number"), "number", 0, 1e15), part(message)};
+    return Describe{number(field(message, "number"), "number", 0, 1e15), id(message, "id"),
+                    id(message, "primitive")};
+  if (type == "form")
+    return Form{number(field(message, "number"), "number", 0, 1e15), part(message)};
   if (type == "edit")
     return Edit{change(message), truth(message, "goes_on"),
                 message.contains("number") ? number(message["number"], "number", 0, 1e15) : 0};
@@ -108,7 +116,9 @@ Message parse_message(std::string_view text) {
   if (type == "save") return save(message);
   if (type == "discard") return Discard{};
   if (type == "kept") return Kept{truth(message, "restore")};
-  refuse("type", "is none of look, seen, ask, snapshot, describe, form, edit, undo, save, discard and kept");
+  refuse(
+      "type",
+      "is none of look, seen, ask, snapshot, describe, form, edit, undo, save, discard and kept");
 }
 
 }  // namespace caplet::view

@@ -31,7 +31,8 @@ struct ShowView {
 struct Seen {
   bool seen = true;
 };
-/// Asks what a pixel shows: the nearest crossing or all of them, optionally with the reference result.
+/// Asks what a pixel shows: the nearest crossing or all of them, optionally with the reference
+/// result.
 struct Ask {
   double number = 0;  // returned with the answer
   int x = 0, y = 0;
@@ -40,13 +41,15 @@ struct Ask {
 };
 /// Asks for the full picture as an EXR file.
 struct Snapshot {};
-/// Asks for a description of a thing: transform, surfaces, and the capsule `primitive` if it has some.
+/// Asks for a description of a thing: transform, surfaces, and the capsule `primitive` if it has
+/// some.
 struct Describe {
   double number = 0;
   std::uint32_t id = 0, primitive = 0;
 };
 
-// Changes of the scene. Things are shapes of the world and instances, by their numbers in the layer object.id.
+// Changes of the scene. Things are shapes of the world and instances, by their numbers in the layer
+// object.id.
 
 /// Moves things: world_from_object is multiplied from the left by world_from_world.
 struct Move {
@@ -98,7 +101,8 @@ struct Kept {
   bool restore = false;  // replay them as far as possible; else forget them
 };
 
-using Message = std::variant<ShowView, Seen, Ask, Snapshot, Describe, Form, Edit, Undo, Save, Discard, Kept>;
+using Message =
+    std::variant<ShowView, Seen, Ask, Snapshot, Describe, Form, Edit, Undo, Save, Discard, Kept>;
 
 /// The longest file name, in bytes.
 inline constexpr std::size_t longest_name = 200;

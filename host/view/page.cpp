@@ -15,10 +15,11 @@ namespace caplet::view {
 
 namespace {
 
-constexpr std::array<std::pair<std::string_view, std::string_view>, 4> types{{{".html", "text/html; charset=utf-8"},
-                                                                              {".css", "text/css; charset=utf-8"},
-                                                                              {".js", "text/javascript; charset=utf-8"},
-                                                                              {".svg", "image/svg+xml"}}};
+constexpr std::array<std::pair<std::string_view, std::string_view>, 4> types{
+    {{".html", "text/html; charset=utf-8"},
+     {".css", "text/css; charset=utf-8"},
+     {".js", "text/javascript; charset=utf-8"},
+     {".svg", "image/svg+xml"}}};
 
 }  // namespace
 

@@ -17,22 +17,35 @@
 
 namespace caplet::view {
 
-/// A material, texture or light by its index in the scene; the emission or the geometry of a shape of the world, by the shape's
-/// number; or a setting.
+/// A material, texture or light by its index in the scene; the emission or the geometry of a shape
+/// of the world, by the shape's number; or a setting.
 struct FormSubject {
-  enum class Kind { material, texture, light, emission, shape, camera, film, filter, sampler, integrator };
+  enum class Kind {
+    material,
+    texture,
+    light,
+    emission,
+    shape,
+    camera,
+    film,
+    filter,
+    sampler,
+    integrator
+  };
   Kind kind = Kind::material;
   std::uint32_t number = 0;
 };
-inline constexpr std::array form_subject_names = {"material", "texture", "light",  "emission", "shape",
-                                                  "camera",   "film",    "filter", "sampler",  "integrator"};
+inline constexpr std::array form_subject_names = {"material", "texture",   "light", "emission",
+                                                  "shape",    "camera",    "film",  "filter",
+                                                  "sampler",  "integrator"};
 
 /// A texture that replaces a value, by its index.
 struct TextureChoice {
   std::uint32_t texture = 0;
 };
 /// The new value of a field. The first alternative clears an optional field.
-using Value = std::variant<std::monostate, double, bool, std::string, std::vector<double>, Spectrum, TextureChoice>;
+using Value = std::variant<std::monostate, double, bool, std::string, std::vector<double>, Spectrum,
+                           TextureChoice>;
 
 /// Sets a field of a part's form.
 struct Set {
@@ -46,9 +59,9 @@ struct Add {
   std::string kind;                        // as in the list of its kind
   std::optional<std::uint32_t> like = {};  // a material to copy instead
   glm::dvec3 at{0}, towards{0, 0, -1};     // place of lights and shapes; direction of lights
-  double size = 1;                         // half the greatest extent of a shape; the distance that a light illuminates
-  std::uint32_t material = 0;              // for shapes
-  bool is_float = false;                   // for textures
+  double size = 1;  // half the greatest extent of a shape; the distance that a light illuminates
+  std::uint32_t material = 0;  // for shapes
+  bool is_float = false;       // for textures
 };
 /// Removes a light.
 struct Remove {

@@ -42,7 +42,8 @@ Text Picker::answer_to(const Ask& ask, const ShowView& shown) {
   told.all = true;  // reports a list, even for the nearest crossing only
   if (ask.all) {
     told.crossings = query_.all(std::span(&ray, 1), most_crossings).crossings;
-  } else if (const PickRecord pick = query_.closest(std::span(&ray, 1))[0]; pick.object != CAPLET_NONE) {
+  } else if (const PickRecord pick = query_.closest(std::span(&ray, 1))[0];
+             pick.object != CAPLET_NONE) {
     told.crossings = {pick};
   }
   if (ask.reference) told.reference = report::reference_crossings(scene, ray, ask.all);

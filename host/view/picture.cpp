@@ -31,11 +31,14 @@ Tile tile_of(const Picture& picture, int number) {
   return {x, y, std::min(x + tile_size, picture.width), std::min(y + tile_size, picture.height)};
 }
 
-int tiles_of(const Picture& picture) { return ((picture.width - 1) / tile_size + 1) * ((picture.height - 1) / tile_size + 1); }
+int tiles_of(const Picture& picture) {
+  return ((picture.width - 1) / tile_size + 1) * ((picture.height - 1) / tile_size + 1);
+}
 
 bool differ(const Picture& a, const Picture& b, const Tile& tile) {
   for (int y = tile.y0; y < tile.y1; ++y) {
-    const auto first = 3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(a.width) + static_cast<std::size_t>(tile.x0));
+    const auto first = 3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(a.width) +
+                            static_cast<std::size_t>(tile.x0));
     const auto count = 3 * static_cast<std::size_t>(tile.x1 - tile.x0);
     if (std::memcmp(&a.color[first], &b.color[first], count * sizeof a.color[0]) != 0) return true;
   }
@@ -45,14 +48,15 @@ bool differ(const Picture& a, const Picture& b, const Tile& tile) {
 std::string deflated(const std::string& data) {
   uLongf size = ::compressBound(data.size());
   std::string out(size, '\0');
-  if (::compress2(reinterpret_cast<Bytef*>(out.data()), &size, reinterpret_cast<const Bytef*>(data.data()), data.size(), 1) !=
-      Z_OK)
+  if (::compress2(reinterpret_cast<Bytef*>(out.data()), &size,
+                  reinterpret_cast<const Bytef*>(data.data()), data.size(), 1) != Z_OK)
     throw RunError("a picture could not be packed");
   out.resize(size);
   return out;
 }
 
-/// Splits words of `width` bytes into planes, most significant first; each word is stored as its difference to the last.
+/// Splits words of `width` bytes into planes, most significant first; each word is stored as its
+/// difference to the last.
 template <class Word>
 void add_planes(std::string& out, const std::vector<Word>& words) {
   const std::size_t first = out.size(), count = words.size();
@@ -62,7 +66,8 @@ void add_planes(std::string& out, const std::vector<Word>& words) {
     const auto step = static_cast<Word>(words[i] - before);
     before = words[i];
     for (std::size_t plane = 0; plane < sizeof(Word); ++plane)
-      out[first + plane * count + i] = static_cast<char>(step >> (8 * (sizeof(Word) - 1 - plane)) & 0xff);
+      out[first + plane * count + i] =
+          static_cast<char>(step >> (8 * (sizeof(Word) - 1 - plane)) & 0xff);
   }
 }
 
@@ -79,11 +84,14 @@ std::uint16_t to_half(float value) {
 }
 
 std::string packed(const Picture& now, const Picture* before) {
-  const bool same_size = before && before->width == now.width && before->height == now.height && before->scale == now.scale;
-  const bool ids = !now.objects.empty() && (!before || before->view != now.view || before->scale != 1);
+  const bool same_size = before && before->width == now.width && before->height == now.height &&
+                         before->scale == now.scale;
+  const bool ids =
+      !now.objects.empty() && (!before || before->view != now.view || before->scale != 1);
   std::vector<std::uint32_t> tiles;
   for (int i = 0; i < tiles_of(now); ++i)
-    if (!same_size || differ(now, *before, tile_of(now, i))) tiles.push_back(static_cast<std::uint32_t>(i));
+    if (!same_size || differ(now, *before, tile_of(now, i)))
+      tiles.push_back(static_cast<std::uint32_t>(i));
   std::vector<std::uint16_t> color;
   for (std::size_t c = 0; c < 3; ++c)
     for (const std::uint32_t number : tiles) {
@@ -91,7 +99,8 @@ std::string packed(const Picture& now, const Picture* before) {
       for (int y = tile.y0; y < tile.y1; ++y)
         for (int x = tile.x0; x < tile.x1; ++x)
           color.push_back(
-              now.color[3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(now.width) + static_cast<std::size_t>(x)) +
+              now.color[3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(now.width) +
+                             static_cast<std::size_t>(x)) +
                         c]);
     }
   std::string data;
@@ -109,7 +118,8 @@ std::string packed(const Picture& now, const Picture* before) {
   put(out, static_cast<std::uint32_t>(now.scale));
   put(out, now.samples);
   put(out, std::bit_cast<std::uint32_t>(now.noise));
-  put(out, (same_size ? 0u : flag_whole) | (ids ? flag_ids : 0u) | (now.eye == 1 ? flag_right : 0u));
+  put(out,
+      (same_size ? 0u : flag_whole) | (ids ? flag_ids : 0u) | (now.eye == 1 ? flag_right : 0u));
   put(out, static_cast<std::uint32_t>(tiles.size()));
   put(out, static_cast<std::uint32_t>(data.size()));
   return out + deflated(data);

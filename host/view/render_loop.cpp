@@ -24,7 +24,8 @@ RenderLoop::~RenderLoop() { thread_.join(); }
 
 void RenderLoop::wait(double seconds) {
   std::unique_lock lock(mutex_);
-  failed_.wait_for(lock, std::chrono::duration<double>(seconds), [this] { return failure_ != nullptr; });
+  failed_.wait_for(lock, std::chrono::duration<double>(seconds),
+                   [this] { return failure_ != nullptr; });
   if (failure_) std::rethrow_exception(failure_);
 }
 
@@ -69,11 +70,13 @@ void RenderLoop::step() {
 }
 
 void RenderLoop::answer_all() {
-  while (const std::optional<Clients::Asked> asked = tools_.clients.take_question(tools_.films.has_snapshot())) {
+  while (const std::optional<Clients::Asked> asked =
+             tools_.clients.take_question(tools_.films.has_snapshot())) {
     if (asked->question)
       tools_.server.send(asked->from, tools_.picker.answer(*asked->question, tools_.films.look()));
     else
-      tools_.server.send(asked->from, std::make_shared<const std::string>(tools_.films.snapshot()), true);
+      tools_.server.send(asked->from, std::make_shared<const std::string>(tools_.films.snapshot()),
+                         true);
   }
 }
 

@@ -21,7 +21,9 @@ Json to_json(const glm::dmat4& m) {
   return rows;
 }
 
-Json to_json(const Bounds& bounds) { return {view::to_json(bounds.min), view::to_json(bounds.max)}; }
+Json to_json(const Bounds& bounds) {
+  return {view::to_json(bounds.min), view::to_json(bounds.max)};
+}
 
 }  // namespace
 
@@ -48,7 +50,8 @@ Json scene_text(const Scene& scene, const std::string& device, std::uint32_t sam
   for (const Shape& shape : scene.shapes) {
     if (things.size() >= most_named) break;
     Json row{{"name", object_label(scene, {&shape, {}})}, {"primitives", primitive_count(shape)}};
-    row["material"] = material_label(scene, shape.materials.empty() ? shape.material : shape.materials.front());
+    row["material"] =
+        material_label(scene, shape.materials.empty() ? shape.material : shape.materials.front());
     things.push_back(std::move(row));
   }
   for (const Instance& instance : scene.instances) {
@@ -58,7 +61,8 @@ Json scene_text(const Scene& scene, const std::string& device, std::uint32_t sam
   out["things"] = std::move(things);
   out["thing_count"] = scene.shapes.size() + scene.instances.size();
   Json materials = Json::array();
-  for (std::uint32_t i = 0; i < scene.materials.size(); ++i) materials.push_back(material_label(scene, i));
+  for (std::uint32_t i = 0; i < scene.materials.size(); ++i)
+    materials.push_back(material_label(scene, i));
   out["materials"] = std::move(materials);
   return out;
 }
@@ -66,7 +70,8 @@ Json scene_text(const Scene& scene, const std::string& device, std::uint32_t sam
 Json hidden_text(const Scene& scene, const Hidden& hidden) {
   Json out = Json::array();
   for (const auto& [place, shape] : hidden.shapes)
-    if (out.size() < most_named) out.push_back(shape->name.empty() ? geometry_name(*shape) : shape->name);
+    if (out.size() < most_named)
+      out.push_back(shape->name.empty() ? geometry_name(*shape) : shape->name);
   for (const auto& [place, instance] : hidden.instances)
     if (out.size() < most_named) out.push_back(scene.objects[instance->object].name);
   return out;
@@ -85,7 +90,9 @@ Json thing_text(const Scene& scene, std::uint32_t id, std::uint32_t primitive) {
     const auto* capsules = std::get_if<CapsulesShape>(&shape.geometry);
     if (!capsules || primitive >= capsules->p0.size()) return out;
     const Capsule capsule = capsule_at(scene, {std::nullopt, id}, primitive);
-    const auto place = [&shape](const glm::vec3& p) { return to_json(glm::dvec3(shape.world_from_object * glm::dvec4(p, 1))); };
+    const auto place = [&shape](const glm::vec3& p) {
+      return to_json(glm::dvec3(shape.world_from_object * glm::dvec4(p, 1)));
+    };
     out["capsule"] = {{"number", primitive},
                       {"p0", place(capsule.p0)},
                       {"p1", place(capsule.p1)},

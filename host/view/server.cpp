@@ -107,17 +107,20 @@ class Server::State {
   class Client;
   class Connection;
 
-  State(const ServerOptions& options, ServerEvents events) : options_(options), events_(std::move(events)), acceptor_(context_) {
+  State(const ServerOptions& options, ServerEvents events)
+      : options_(options), events_(std::move(events)), acceptor_(context_) {
     try {
       const tcp::endpoint at(asio::ip::make_address(options.host), options.port);
       acceptor_.open(at.protocol());
       acceptor_.set_option(asio::socket_base::reuse_address(true));
-      if (at.protocol() == tcp::v6()) acceptor_.set_option(asio::ip::v6_only(false));  // "::" accepts all of IPv4, too
+      if (at.protocol() == tcp::v6())
+        acceptor_.set_option(asio::ip::v6_only(false));  // "::" accepts all of IPv4, too
       acceptor_.bind(at);
       acceptor_.listen();
       port_ = acceptor_.local_endpoint().port();
     } catch (const boost::system::system_error& error) {
-      throw RunError(fmt::format("cannot listen at {}: {}", authority_of(options.host, options.port), error.code().message()));
+      throw RunError(fmt::format("cannot listen at {}: {}",
+                                 authority_of(options.host, options.port), error.code().message()));
     }
     accept();
     thread_ = std::thread([this] { context_.run(); });
@@ -144,12 +147,14 @@ class Server::State {
   }
   ClientId next_client() { return ++last_client_; }
 
-  /// Accepts only names that a page of this machine uses, and so no name that an attacker's DNS resolves to it.
+  /// Accepts only names that a page of this machine uses, and so no name that an attacker's DNS
+  /// resolves to it.
   bool is_own(std::string_view text, const tcp::endpoint& here) const {
     const std::optional<Authority> authority = authority_in(text);
     if (!authority || authority->port.value_or(80) != port_) return false;
     const std::string_view host = authority->host;
-    if (host == options_.host || host == "localhost" || host == "127.0.0.1" || host == "::1") return true;
+    if (host == options_.host || host == "localhost" || host == "127.0.0.1" || host == "::1")
+      return true;
     return host == plain(here.address()).to_string();
   }
 
@@ -193,7 +198,9 @@ class Server::State::Client : public std::enable_shared_from_this<Client> {
 
   void run(const Request& request) {
     socket_.set_option(websocket::stream_base::timeout{
-        handshake_patience, std::chrono::milliseconds(static_cast<int>(1e3 * server_.options().silence_seconds)), true});
+        handshake_patience,
+        std::chrono::milliseconds(static_cast<int>(1e3 * server_.options().silence_seconds)),
+        true});
     socket_.read_message_max(server_.options().most_message_bytes);
     socket_.auto_fragment(false);
     socket_.async_accept(request, [self = shared_from_this()](beast::error_code error) {
@@ -208,7 +215,8 @@ class Server::State::Client : public std::enable_shared_from_this<Client> {
 
   void send(std::shared_ptr<const std::string> message, bool binary) {
     waiting_bytes_ += message->size();
-    if (waiting_bytes_ > server_.options().most_waiting_bytes) return drop();  // it reads nothing, not even a reason
+    if (waiting_bytes_ > server_.options().most_waiting_bytes)
+      return drop();  // it reads nothing, not even a reason
     waiting_.push_back({std::move(message), binary});
     go_on();
   }
@@ -228,11 +236,12 @@ class Server::State::Client : public std::enable_shared_from_this<Client> {
     if (!now_) return;
     writing_ = true;
     socket_.binary(binary);
-    socket_.async_write(asio::buffer(*now_), [self = shared_from_this()](beast::error_code error, std::size_t) {
-      self->writing_ = false;
-      if (error) return self->drop();
-      self->go_on();
-    });
+    socket_.async_write(asio::buffer(*now_),
+                        [self = shared_from_this()](beast::error_code error, std::size_t) {
+                          self->writing_ = false;
+                          if (error) return self->drop();
+                          self->go_on();
+                        });
   }
 
  private:
@@ -294,14 +303,18 @@ class Server::State::Connection : public std::enable_shared_from_this<Connection
     parser_->header_limit(most_header_bytes);
     parser_->body_limit(0);
     stream_.expires_after(is_known_ ? request_patience : server_.stranger_patience());
-    http::async_read(stream_, buffer_, *parser_, [self = shared_from_this()](beast::error_code error, std::size_t) {
-      if (error == http::error::end_of_stream) return self->close();
-      if (error == http::error::header_limit) return self->answer(http::status::request_header_fields_too_large, {}, false);
-      if (error == http::error::body_limit) return self->answer(http::status::payload_too_large, {}, false);
-      if (error.category() == http::make_error_code(http::error::end_of_stream).category())
-        return self->answer(http::status::bad_request, {}, false);
-      if (!error) self->respond();
-    });
+    http::async_read(
+        stream_, buffer_, *parser_,
+        [self = shared_from_this()](beast::error_code error, std::size_t) {
+          if (error == http::error::end_of_stream) return self->close();
+          if (error == http::error::header_limit)
+            return self->answer(http::status::request_header_fields_too_large, {}, false);
+          if (error == http::error::body_limit)
+            return self->answer(http::status::payload_too_large, {}, false);
+          if (error.category() == http::make_error_code(http::error::end_of_stream).category())
+            return self->answer(http::status::bad_request, {}, false);
+          if (!error) self->respond();
+        });
   }
 
  private:
@@ -315,9 +328,10 @@ class Server::State::Connection : public std::enable_shared_from_this<Connection
     std::string_view path = view_of(request.target());
     path = path.substr(0, path.find('?'));
     const std::size_t slash = path.find('/', 1);
-    const std::string_view token =
-        path.substr(std::min<std::size_t>(1, path.size()), slash == std::string_view::npos ? slash : slash - 1);
-    if (!path.starts_with('/') || slash == std::string_view::npos || !equal_in_constant_time(token, server_.options().token))
+    const std::string_view token = path.substr(std::min<std::size_t>(1, path.size()),
+                                               slash == std::string_view::npos ? slash : slash - 1);
+    if (!path.starts_with('/') || slash == std::string_view::npos ||
+        !equal_in_constant_time(token, server_.options().token))
       return answer(http::status::forbidden, {}, false);
     if (!become_known()) return answer(http::status::service_unavailable, {}, false);
     path.remove_prefix(slash + 1);
@@ -344,9 +358,10 @@ class Server::State::Connection : public std::enable_shared_from_this<Connection
     // Pages of other sites can open sockets here; the browser sends the site in Origin.
     if (only(request, http::field::origin).value_or("") != fmt::format("http://{}", host))
       return answer(http::status::forbidden, {}, false);
-    const auto joined = static_cast<std::size_t>(
-        std::ranges::count_if(server_.clients(), [](const auto& client) { return !client.second.expired(); }));
-    if (joined >= server_.options().most_clients) return answer(http::status::service_unavailable, {}, false);
+    const auto joined = static_cast<std::size_t>(std::ranges::count_if(
+        server_.clients(), [](const auto& client) { return !client.second.expired(); }));
+    if (joined >= server_.options().most_clients)
+      return answer(http::status::service_unavailable, {}, false);
     const Request asked = parser_->release();
     stream_.expires_never();
     std::make_shared<Client>(server_, std::move(stream_))->run(asked);
@@ -357,25 +372,30 @@ class Server::State::Connection : public std::enable_shared_from_this<Connection
     response_->result(status);
     response_->version(11);
     response_->keep_alive(keep);
-    response_->set(http::field::content_type, status == http::status::ok ? std::string(file.type) : "text/plain; charset=utf-8");
+    response_->set(http::field::content_type, status == http::status::ok
+                                                  ? std::string(file.type)
+                                                  : "text/plain; charset=utf-8");
     response_->set(http::field::cache_control, "no-store");
     response_->set("X-Content-Type-Options", "nosniff");
     response_->set("X-Frame-Options", "DENY");
     response_->set("Referrer-Policy", "no-referrer");
     response_->set("Cross-Origin-Resource-Policy", "same-origin");
     response_->set("Content-Security-Policy",
-                   "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data: blob:; connect-src 'self'; "
+                   "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data: "
+                   "blob:; connect-src 'self'; "
                    "base-uri 'none'; "
                    "form-action 'none'; frame-ancestors 'none'");
-    response_->body() =
-        status == http::status::ok ? std::string(file.text) : std::string(view_of(http::obsolete_reason(status))) + "\n";
+    response_->body() = status == http::status::ok
+                            ? std::string(file.text)
+                            : std::string(view_of(http::obsolete_reason(status))) + "\n";
     response_->prepare_payload();
     if (head) response_->body().clear();
     stream_.expires_after(request_patience);
-    http::async_write(stream_, *response_, [self = shared_from_this(), keep](beast::error_code error, std::size_t) {
-      if (error || !keep) return self->close();
-      self->read();
-    });
+    http::async_write(stream_, *response_,
+                      [self = shared_from_this(), keep](beast::error_code error, std::size_t) {
+                        if (error || !keep) return self->close();
+                        self->read();
+                      });
   }
 
   void close() {
@@ -394,11 +414,12 @@ class Server::State::Connection : public std::enable_shared_from_this<Connection
 };
 
 void Server::State::forget_stranger(const Connection* one) {
-  std::erase_if(strangers_, [&](const auto& other) { return other.expired() || other.lock().get() == one; });
+  std::erase_if(strangers_,
+                [&](const auto& other) { return other.expired() || other.lock().get() == one; });
 }
 
-/// Drops the oldest silent connection when a new one needs its place: a browser sends its request at once. So nobody can keep
-/// others out by waiting, not even those from the same address.
+/// Drops the oldest silent connection when a new one needs its place: a browser sends its request
+/// at once. So nobody can keep others out by waiting, not even those from the same address.
 void Server::State::make_room_for(const asio::ip::address& from) {
   std::shared_ptr<Connection> oldest, oldest_from_there;
   std::size_t all = 0, from_there = 0;
@@ -408,9 +429,10 @@ void Server::State::make_room_for(const asio::ip::address& from) {
     if (all++ == 0) oldest = one;
     if (one->from() == from && from_there++ == 0) oldest_from_there = one;
   }
-  const std::shared_ptr<Connection> goes = from_there >= options_.most_strangers_an_address ? oldest_from_there
-                                           : all >= most_strangers                          ? oldest
-                                                                                            : nullptr;
+  const std::shared_ptr<Connection> goes = from_there >= options_.most_strangers_an_address
+                                               ? oldest_from_there
+                                           : all >= most_strangers ? oldest
+                                                                   : nullptr;
   if (!goes) return;
   forget_stranger(goes.get());
   goes->drop();
@@ -433,7 +455,8 @@ void Server::State::accept() {
 
 // --- The public interface ---
 
-Server::Server(const ServerOptions& options, ServerEvents events) : state_(std::make_unique<State>(options, std::move(events))) {}
+Server::Server(const ServerOptions& options, ServerEvents events)
+    : state_(std::make_unique<State>(options, std::move(events))) {}
 Server::~Server() = default;
 std::uint16_t Server::port() const { return state_->port(); }
 std::string Server::address() const { return state_->address(); }
@@ -473,7 +496,8 @@ bool equal_in_constant_time(std::string_view a, std::string_view b) {
   if (a.size() != b.size()) return false;
   unsigned char differ = 0;
   for (std::size_t i = 0; i < a.size(); ++i)
-    differ = static_cast<unsigned char>(differ | (static_cast<unsigned char>(a[i]) ^ static_cast<unsigned char>(b[i])));
+    differ = static_cast<unsigned char>(
+        differ | (static_cast<unsigned char>(a[i]) ^ static_cast<unsigned char>(b[i])));
   return differ == 0;
 }
 

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// A small server for our own page: HTTP for its files, a WebSocket for messages. It does not depend on scenes.
+// A small server for our own page: HTTP for its files, a WebSocket for messages. It does not depend
+// on scenes.
 #pragma once
 
 #include <cstddef>
@@ -18,13 +19,15 @@ namespace caplet::view {
 using ClientId = std::uint64_t;
 
 struct ServerOptions {
-  std::string host = "127.0.0.1";                        // an address of this machine
-  std::uint16_t port = 0;                                // 0: any free port
-  std::string token;                                     // first part of every path; requests without it are refused
-  std::size_t most_clients = 16, most_connections = 64;  // limits for clients that have sent the token
-  std::size_t most_strangers_an_address = 16;            // limit of connections per address without token; the oldest is dropped
-  double stranger_seconds = 5;                           // time limit for sending the token
-  double silence_seconds = 8;                            // time limit for answering a ping
+  std::string host = "127.0.0.1";  // an address of this machine
+  std::uint16_t port = 0;          // 0: any free port
+  std::string token;               // first part of every path; requests without it are refused
+  std::size_t most_clients = 16,
+              most_connections = 64;  // limits for clients that have sent the token
+  std::size_t most_strangers_an_address =
+      16;  // limit of connections per address without token; the oldest is dropped
+  double stranger_seconds = 5;  // time limit for sending the token
+  double silence_seconds = 8;   // time limit for answering a ping
   std::size_t most_message_bytes = std::size_t{1} << 16;
   double messages_a_second = 300, burst = 600;             // limits per client
   std::size_t most_waiting_bytes = std::size_t{32} << 20;  // of messages that a client has not read
@@ -37,18 +40,20 @@ struct PageFile {
 
 /// Callbacks of a server, called on its own thread. None of them may block or throw.
 struct ServerEvents {
-  std::function<std::optional<PageFile>(std::string_view path)> file;  // `path` comes after the token; "" is the page itself
+  std::function<std::optional<PageFile>(std::string_view path)>
+      file;  // `path` comes after the token; "" is the page itself
   std::function<void(ClientId)> joined, left;
   std::function<void(ClientId, std::string)> message;
-  /// Returns the next picture for a client that has read all earlier messages, or null. `shown` is the number of its last picture
-  /// (0: none), and receives that of the new one.
+  /// Returns the next picture for a client that has read all earlier messages, or null. `shown` is
+  /// the number of its last picture (0: none), and receives that of the new one.
   std::function<std::shared_ptr<const std::string>(ClientId, std::uint64_t& shown)> picture;
 };
 
-/// Serves on its own thread for the lifetime of the object. It refuses requests with another token, another Host than this
-/// machine's, or another Origin than the page's. Messages, rates, connections and waiting bytes are limited; a client that
-/// exceeds a limit is closed, and a slow one gets fewer pictures. Connections without the token have few places, for seconds, and
-/// cannot take those of clients.
+/// Serves on its own thread for the lifetime of the object. It refuses requests with another token,
+/// another Host than this machine's, or another Origin than the page's. Messages, rates,
+/// connections and waiting bytes are limited; a client that exceeds a limit is closed, and a slow
+/// one gets fewer pictures. Connections without the token have few places, for seconds, and cannot
+/// take those of clients.
 class Server {
  public:
   /// Throws RunError when it cannot listen there.
@@ -72,7 +77,8 @@ class Server {
   std::unique_ptr<State> state_;
 };
 
-/// Returns 128 random bits as 32 hexadecimal digits. Throws RunError when the machine has no random source.
+/// Returns 128 random bits as 32 hexadecimal digits. Throws RunError when the machine has no random
+/// source.
 std::string random_token();
 
 /// Compares in a time that depends only on the lengths.

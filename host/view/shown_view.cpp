@@ -11,7 +11,8 @@ namespace caplet::view {
 
 namespace {
 
-constexpr double usual_fov = 0.7;  // used if an orthographic or spherical camera becomes a perspective one
+constexpr double usual_fov =
+    0.7;  // used if an orthographic or spherical camera becomes a perspective one
 
 }  // namespace
 
@@ -51,7 +52,8 @@ ViewEdit shown_view(const ViewEdit& own, const ShowView& look, int scale, int ey
   Scene scene;
   scene.camera = view.camera;
   scene.film = view.film;
-  const Stereo stereo{look.separation, look.convergence > 0 ? std::optional(look.convergence) : std::nullopt};
+  const Stereo stereo{look.separation,
+                      look.convergence > 0 ? std::optional(look.convergence) : std::nullopt};
   view.camera = camera_of_eye(scene, stereo, eye == 0 ? Eye::left : Eye::right);
   return view;
 }

@@ -14,14 +14,17 @@ Picture shown_of(const LayeredImage& image, bool ids) {
   Picture out;
   out.width = image.data_width;
   out.height = image.data_height;
-  const std::vector<float>&r = image.find("R")->floats, &g = image.find("G")->floats, &b = image.find("B")->floats;
+  const std::vector<float>&r = image.find("R")->floats, &g = image.find("G")->floats,
+        &b = image.find("B")->floats;
   std::array<double, 9> m{1, 0, 0, 0, 1, 0, 0, 0, 1};
   if (image.space != ColorSpace::srgb)
-    m = product(inverse(xyz_from_rgb(chromaticities_of(ColorSpace::srgb))), xyz_from_rgb(chromaticities_of(image.space)));
+    m = product(inverse(xyz_from_rgb(chromaticities_of(ColorSpace::srgb))),
+                xyz_from_rgb(chromaticities_of(image.space)));
   out.color.resize(3 * r.size());
   for (std::size_t i = 0; i < r.size(); ++i)
     for (std::size_t c = 0; c < 3; ++c)
-      out.color[3 * i + c] = to_half(static_cast<float>(m[3 * c] * r[i] + m[3 * c + 1] * g[i] + m[3 * c + 2] * b[i]));
+      out.color[3 * i + c] =
+          to_half(static_cast<float>(m[3 * c] * r[i] + m[3 * c + 1] * g[i] + m[3 * c + 2] * b[i]));
   if (ids) {
     out.objects = image.find("object.id")->uints;
     out.primitives = image.find("primitive.id")->uints;

@@ -23,10 +23,12 @@
 
 namespace caplet::view {
 
-/// The parts of a viewer, and what the server's thread does with them. The owner's thread calls the public functions.
+/// The parts of a viewer, and what the server's thread does with them. The owner's thread calls the
+/// public functions.
 class Viewer::State {
  public:
-  State(LiveScene scene, const Device& device, const ViewerOptions& options, std::unique_ptr<Keeper> keeper)
+  State(LiveScene scene, const Device& device, const ViewerOptions& options,
+        std::unique_ptr<Keeper> keeper)
       : live_(std::move(scene)),
         editor_(live_),
         keeping_(live_, editor_, std::move(keeper)),
@@ -100,7 +102,8 @@ class Viewer::State {
   std::optional<RenderLoop> loop_;
 };
 
-Viewer::Viewer(LiveScene scene, const Device& device, const ViewerOptions& options, std::unique_ptr<Keeper> keeper)
+Viewer::Viewer(LiveScene scene, const Device& device, const ViewerOptions& options,
+               std::unique_ptr<Keeper> keeper)
     : state_(std::make_unique<State>(std::move(scene), device, options, std::move(keeper))) {}
 Viewer::~Viewer() = default;
 std::string Viewer::address() const { return state_->address(); }

@@ -16,13 +16,16 @@
 
 namespace caplet::view {
 
-/// Renders the latest requested view on its own thread: coarsely at first, then in full, then with more samples until it is done
-/// or no page is visible. Queries are answered between batches of paths. A new view ends the picture in progress.
+/// Renders the latest requested view on its own thread: coarsely at first, then in full, then with
+/// more samples until it is done or no page is visible. Queries are answered between batches of
+/// paths. A new view ends the picture in progress.
 class Viewer {
  public:
-  /// `keeper` belongs to the scene's file, and `scene` was read from its base(); null: nothing is saved or kept. Changes that it
-  /// has from an earlier session are replayed. Throws RunError when the device or the address cannot be used.
-  Viewer(LiveScene scene, const Device& device, const ViewerOptions& options, std::unique_ptr<Keeper> keeper = {});
+  /// `keeper` belongs to the scene's file, and `scene` was read from its base(); null: nothing is
+  /// saved or kept. Changes that it has from an earlier session are replayed. Throws RunError when
+  /// the device or the address cannot be used.
+  Viewer(LiveScene scene, const Device& device, const ViewerOptions& options,
+         std::unique_ptr<Keeper> keeper = {});
   ~Viewer();
   Viewer(const Viewer&) = delete;
   Viewer& operator=(const Viewer&) = delete;

@@ -23,9 +23,9 @@ struct DeviceInfo {
   bool bundled = false;            // belongs to the driver that came with this library
 };
 
-/// Throws RunError in a forked process: OpenCL does not work if the process that was forked had used it. Every call that needs a
-/// device does this check, and destructors then return nothing to OpenCL. A program with locks around such calls should check
-/// before it waits for them.
+/// Throws RunError in a forked process: OpenCL does not work if the process that was forked had
+/// used it. Every call that needs a device does this check, and destructors then return nothing to
+/// OpenCL. A program with locks around such calls should check before it waits for them.
 CAPLET_API void check_process();
 
 /// Lists all devices; empty when there are none.
@@ -49,10 +49,10 @@ class CAPLET_API Device {
   std::shared_ptr<const Data> data_;
 };
 
-/// `choice`: an index, "cpu", "gpu", "bundled" or part of a name; empty: a GPU if there is one, else the first device. Throws
-/// InputError that lists the devices when none or several match, and RunError when there is no device. Before its first render
-/// or query a device is tested once on known answers, which includes the compilation of its kernels; a wrong device throws
-/// RunError.
+/// `choice`: an index, "cpu", "gpu", "bundled" or part of a name; empty: a GPU if there is one,
+/// else the first device. Throws InputError that lists the devices when none or several match, and
+/// RunError when there is no device. Before its first render or query a device is tested once on
+/// known answers, which includes the compilation of its kernels; a wrong device throws RunError.
 CAPLET_API Device choose_device(const std::string& choice = {});
 /// Chooses several: "all", or such choices separated by commas, all different.
 CAPLET_API std::vector<Device> choose_devices(const std::string& choice);

@@ -12,8 +12,8 @@
 
 namespace caplet {
 
-/// A place in the input. Lines and columns count from 1; 0: unknown. `file` may also name another source of the error: an option
-/// or a device.
+/// A place in the input. Lines and columns count from 1; 0: unknown. `file` may also name another
+/// source of the error: an option or a device.
 struct CAPLET_API SourceLocation {
   std::string file;
   int line = 0;

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// A film: the exact sums of a picture's samples, and the picture with its layers that is computed from them.
+// A film: the exact sums of a picture's samples, and the picture with its layers that is computed
+// from them.
 #pragma once
 
 #include <cstdint>
@@ -28,11 +29,13 @@ struct Overlay {
 };
 CAPLET_API std::vector<Overlay> overlays();
 
-/// Values of overlays by name, as for `render --NAME` of the program; an empty value is the default: {{"scale-bar", "50 um"},
+/// Values of overlays by name, as for `render --NAME` of the program; an empty value is the
+/// default: {{"scale-bar", "50 um"},
 /// {"outline", ""}}.
 using OverlayOptions = std::map<std::string, std::string>;
 
-/// The same samples give the same film bit for bit, in any order and split over any number of runs and devices of one kind.
+/// The same samples give the same film bit for bit, in any order and split over any number of runs
+/// and devices of one kind.
 class CAPLET_API Film {
  public:
   Film(const Film&);
@@ -41,7 +44,8 @@ class CAPLET_API Film {
   Film& operator=(Film&&) noexcept;
   ~Film();
 
-  /// The size and place of the rendered part: of the crop, if there is one; x and y are its corner in the whole picture.
+  /// The size and place of the rendered part: of the crop, if there is one; x and y are its corner
+  /// in the whole picture.
   int width() const;
   int height() const;
   int x() const;
@@ -51,27 +55,29 @@ class CAPLET_API Film {
   /// Returns the finished samples.
   std::vector<SampleRange> samples() const;
 
-  /// Adds the samples of another film of the same scene, view and layers. Throws InputError, and changes nothing, when it differs
-  /// in these or has samples that this film already has.
+  /// Adds the samples of another film of the same scene, view and layers. Throws InputError, and
+  /// changes nothing, when it differs in these or has samples that this film already has.
   void add(const Film& other);
   /// Saves the sums as an EXR file for `load`. The file is replaced atomically. Throws RunError.
   void save(const std::filesystem::path& file) const;
-  /// `scene`: the scene of the film, which gives the picture's exposure and colours. Throws InputError when the file is missing,
-  /// broken or no film.
+  /// `scene`: the scene of the film, which gives the picture's exposure and colours. Throws
+  /// InputError when the file is missing, broken or no film.
   static Film load(const std::filesystem::path& file, const Scene& scene);
 
-  /// Returns "R", "G", "B", "A", "Z", "albedo.R", "N.X", "P.X", "variance.R", ... and "object.id", "primitive.id".
+  /// Returns "R", "G", "B", "A", "Z", "albedo.R", "N.X", "P.X", "variance.R", ... and "object.id",
+  /// "primitive.id".
   std::vector<std::string> channels() const;
-  /// Returns the values of one channel, row by row from the top, scene-linear in the film's colour space. Throws InputError when
-  /// the channel does not exist or contains ids.
+  /// Returns the values of one channel, row by row from the top, scene-linear in the film's colour
+  /// space. Throws InputError when the channel does not exist or contains ids.
   std::vector<float> values(const std::string& channel) const;
   /// Returns the values of a channel of ids; 2^32 - 1 where there is nothing.
   std::vector<std::uint32_t> ids(const std::string& channel) const;
 
   /// Writes all channels as OpenEXR. The file is replaced atomically. Throws RunError.
   void write_exr(const std::filesystem::path& file) const;
-  /// Writes a tone-mapped picture, 8 bits per channel, in the format of the extension, with overlays. Throws InputError for an
-  /// unknown extension or overlay, a wrong value, or a layer that the film lacks; and RunError.
+  /// Writes a tone-mapped picture, 8 bits per channel, in the format of the extension, with
+  /// overlays. Throws InputError for an unknown extension or overlay, a wrong value, or a layer
+  /// that the film lacks; and RunError.
   void write_preview(const std::filesystem::path& file, const OverlayOptions& drawn = {}) const;
 
  private:

@@ -21,7 +21,7 @@ CAPLET_BEGIN
 
 struct Ray {
   std::array<float, 3> origin{};
-  std::array<float, 3> direction{0, 0, 1};                          // of any length, which is the unit of t
+  std::array<float, 3> direction{0, 0, 1};  // of any length, which is the unit of t
   float t_min = 0, t_max = std::numeric_limits<float>::infinity();  // hits are strictly between
 };
 
@@ -64,8 +64,8 @@ class CAPLET_API Picker {
   Picker& operator=(Picker&&) noexcept;
   ~Picker();
 
-  /// Queries the centre of a pixel of the whole picture, counted from the top left. Throws InputError when the pixel is outside
-  /// the picture or its crop.
+  /// Queries the centre of a pixel of the whole picture, counted from the top left. Throws
+  /// InputError when the pixel is outside the picture or its crop.
   std::optional<Hit> pixel(int x, int y);
   std::optional<Hit> nearest(const Ray& ray);
   std::vector<std::optional<Hit>> nearest(std::span<const Ray> rays);

@@ -23,8 +23,8 @@ struct RenderOptions {
   std::function<void(const RenderProgress&)> progress;
 };
 
-/// Renders the scene's picture with its number of samples, and blocks until it is done. Throws RunError, and InputError when the
-/// scene exceeds a limit.
+/// Renders the scene's picture with its number of samples, and blocks until it is done. Throws
+/// RunError, and InputError when the scene exceeds a limit.
 CAPLET_API Film render(const Scene& scene, const Device& device, const RenderOptions& options = {});
 
 CAPLET_END

@@ -49,9 +49,11 @@ class CAPLET_API Scene {
   // The picture. Setters throw InputError for values that cannot be rendered.
   int width() const;
   int height() const;
-  /// Sets at most 2^28 pixels in all. A crop keeps its place, and an automatic camera frames the scene again.
+  /// Sets at most 2^28 pixels in all. A crop keeps its place, and an automatic camera frames the
+  /// scene again.
   void set_size(int width, int height);
-  /// Restricts rendering to the pixels from (x0, y0), counted from the top left, to before (x1, y1).
+  /// Restricts rendering to the pixels from (x0, y0), counted from the top left, to before (x1,
+  /// y1).
   void set_crop(int x0, int y0, int x1, int y1);
   int samples_per_pixel() const;
   void set_samples_per_pixel(int samples);  // 1 to 2^24
@@ -65,14 +67,15 @@ class CAPLET_API Scene {
   /// The unit of lengths, as people write it: "um"; empty: unknown. Scale bars show it.
   std::string unit() const;
   void set_unit(const std::string& unit);
-  /// Sets the colour bar of a scene that is coloured by color_map: `low` and `high` are the values at 0 and 1. Throws InputError
-  /// when a number is not finite or low is above high.
+  /// Sets the colour bar of a scene that is coloured by color_map: `low` and `high` are the values
+  /// at 0 and 1. Throws InputError when a number is not finite or low is above high.
   void set_color_bar(const std::string& title, const std::string& unit, double low, double high);
 
-  // Edits change the scene's parts but not their number. They throw InputError, and change nothing, for numbers that do not exist
-  // and for values that cannot be rendered. A Session that shows the scene applies them in place.
-  /// Returns names by shape number: first the shapes of the world, then those of each object definition. A name is empty where
-  /// the file gives none.
+  // Edits change the scene's parts but not their number. They throw InputError, and change nothing,
+  // for numbers that do not exist and for values that cannot be rendered. A Session that shows the
+  // scene applies them in place.
+  /// Returns names by shape number: first the shapes of the world, then those of each object
+  /// definition. A name is empty where the file gives none.
   std::vector<std::string> shapes() const;
   /// Returns the number of the shape with this name, which must be unique.
   std::uint32_t shape(const std::string& name) const;
@@ -86,7 +89,8 @@ class CAPLET_API Scene {
   Transform instance(std::uint32_t instance) const;
   void set_instance(std::uint32_t instance, const Transform& to);
   void set_material(std::uint32_t material, const Material& to);
-  /// Add one and return its number; a texture may use only earlier ones. A session then takes the whole scene again.
+  /// Add one and return its number; a texture may use only earlier ones. A session then takes the
+  /// whole scene again.
   std::uint32_t add_material(const std::string& name, const Material& material);
   TextureNumber add_texture(const NamedTexture& texture);
   /// Counts lights other than emissive shapes.
@@ -95,20 +99,25 @@ class CAPLET_API Scene {
   void set_light(std::uint32_t light, const Spectrum& color, double scale);
   /// Sets the emission of a shape that emits.
   void set_emission(std::uint32_t shape, const Spectrum& radiance, double scale);
-  /// Sets the camera, which is then no longer automatic. A right-handed world is not mirrored in the picture, unless the former
-  /// camera mirrored it, as pbrt's LookAt does.
-  void look_at(const std::array<double, 3>& eye, const std::array<double, 3>& target, const std::array<double, 3>& up);
+  /// Sets the camera, which is then no longer automatic. A right-handed world is not mirrored in
+  /// the picture, unless the former camera mirrored it, as pbrt's LookAt does.
+  void look_at(const std::array<double, 3>& eye, const std::array<double, 3>& target,
+               const std::array<double, 3>& up);
   double fov() const;  // degrees, of the picture's shorter side
   void set_fov(double degrees);
 
-  // Building adds to the scene. These throw InputError, and change nothing, for what cannot be rendered and for unknown names. A
-  // Session takes the whole scene again afterwards.
-  /// Adds a shape of one of statement_types(Statement::shape). Returns its number, as all of these do.
-  std::uint32_t add_shape(const std::string& type, const Parameters& parameters, const ShapeOptions& options = {});
-  /// Adds `count` shapes of one type. `each` has the values of all of them concatenated, equally many per shape; `transforms` and
-  /// `materials`, if not empty, have one each. Returns the first's number; the others follow.
-  std::uint32_t add_shapes(const std::string& type, std::size_t count, const Parameters& shared, const Parameters& each,
-                           std::span<const Transform> transforms, std::span<const std::uint32_t> materials = {},
+  // Building adds to the scene. These throw InputError, and change nothing, for what cannot be
+  // rendered and for unknown names. A Session takes the whole scene again afterwards.
+  /// Adds a shape of one of statement_types(Statement::shape). Returns its number, as all of these
+  /// do.
+  std::uint32_t add_shape(const std::string& type, const Parameters& parameters,
+                          const ShapeOptions& options = {});
+  /// Adds `count` shapes of one type. `each` has the values of all of them concatenated, equally
+  /// many per shape; `transforms` and `materials`, if not empty, have one each. Returns the first's
+  /// number; the others follow.
+  std::uint32_t add_shapes(const std::string& type, std::size_t count, const Parameters& shared,
+                           const Parameters& each, std::span<const Transform> transforms,
+                           std::span<const std::uint32_t> materials = {},
                            const ShapeOptions& options = {});
   /// Adds one shape of many capsules.
   std::uint32_t add_capsules(const CapsuleArrays& capsules, const ShapeOptions& options = {});
@@ -117,7 +126,8 @@ class CAPLET_API Scene {
   /// Get and set all capsules of a shape; set_capsules may change their number.
   CapsuleArrays capsule_arrays(std::uint32_t shape) const;
   void set_capsules(std::uint32_t shape, const CapsuleArrays& capsules);
-  /// Returns the number of shape `index` of an object definition, or of the world where `object` is empty.
+  /// Returns the number of shape `index` of an object definition, or of the world where `object` is
+  /// empty.
   std::uint32_t shape_in(const std::string& object, std::size_t index) const;
   /// Does the inverse of shape_in.
   std::pair<std::string, std::size_t> place(std::uint32_t shape) const;
@@ -127,25 +137,28 @@ class CAPLET_API Scene {
   /// Places an object definition, and returns the first instance's number.
   std::uint32_t add_instances(const std::string& object, std::span<const Transform> transforms);
   /// Adds a light of one of statement_types(Statement::light), in the space of `transform`.
-  std::uint32_t add_light(const std::string& type, const Parameters& parameters, const Transform& transform = identity);
+  std::uint32_t add_light(const std::string& type, const Parameters& parameters,
+                          const Transform& transform = identity);
   /// Removes all lights but emissive shapes.
   void remove_lights();
-  std::uint32_t add_medium(const std::string& name, const std::string& type, const Parameters& parameters,
-                           const Transform& transform = identity);
+  std::uint32_t add_medium(const std::string& name, const std::string& type,
+                           const Parameters& parameters, const Transform& transform = identity);
   std::vector<std::string> media() const;
   /// `transform` maps camera space (+x right, +y up, +z forward) to world space.
-  void set_camera(const std::string& type, const Parameters& parameters, const Transform& transform);
+  void set_camera(const std::string& type, const Parameters& parameters,
+                  const Transform& transform);
   Transform camera() const;
   /// Sets the medium at a camera that is outside all solids.
   void set_camera_medium(std::optional<std::uint32_t> medium);
   /// Sets film, filter, sampler or integrator; missing parameters have the defaults of scene files.
   void set_option(Statement statement, const std::string& type, const Parameters& parameters);
-  /// Adds what is missing: a camera that frames the shapes, and studio light. They are updated when this is called again after
-  /// shapes were added, and removed when a camera or light is given. Throws InputError for what cannot be rendered, and for a
-  /// scene without shapes, lights and camera.
+  /// Adds what is missing: a camera that frames the shapes, and studio light. They are updated when
+  /// this is called again after shapes were added, and removed when a camera or light is given.
+  /// Throws InputError for what cannot be rendered, and for a scene without shapes, lights and
+  /// camera.
   void present();
-  /// Widens capsules and spheres to the film's "leastwidth", in pixels of its size and camera, as render() does with a copy. Does
-  /// nothing for a scene without one.
+  /// Widens capsules and spheres to the film's "leastwidth", in pixels of its size and camera, as
+  /// render() does with a copy. Does nothing for a scene without one.
   void widen_to_least();
 
  private:

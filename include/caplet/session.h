@@ -21,28 +21,32 @@ CAPLET_BEGIN
 /// Members throw RunError. Only one thread at a time may call them, except cancel().
 class CAPLET_API Session {
  public:
-  /// Copies the scene to the devices. Several devices share the samples; the result does not depend on the division of work as
-  /// long as they are of one kind. A device that fails or hangs is dropped with a warning, and the others repeat its work; a
-  /// session fails with its last device. Throws InputError when the scene exceeds a limit.
+  /// Copies the scene to the devices. Several devices share the samples; the result does not depend
+  /// on the division of work as long as they are of one kind. A device that fails or hangs is
+  /// dropped with a warning, and the others repeat its work; a session fails with its last device.
+  /// Throws InputError when the scene exceeds a limit.
   Session(const Scene& scene, const Device& device);
   Session(const Scene& scene, std::span<const Device> devices);
   Session(Session&&) noexcept;
   Session& operator=(Session&&) noexcept;
   ~Session();
 
-  /// Takes the scene's present state, and empties the film. For the same scene or a copy with edits since, only differences are
-  /// sent; any other scene is sent as a whole. Throws InputError when it exceeds a limit; the session then keeps its former
-  /// state, with the edits that were made before.
+  /// Takes the scene's present state, and empties the film. For the same scene or a copy with edits
+  /// since, only differences are sent; any other scene is sent as a whole. Throws InputError when
+  /// it exceeds a limit; the session then keeps its former state, with the edits that were made
+  /// before.
   void update(const Scene& scene);
 
-  /// Adds the next `samples` samples of every pixel to the film, and returns how many were finished. Blocks.
+  /// Adds the next `samples` samples of every pixel to the film, and returns how many were
+  /// finished. Blocks.
   int render(int samples, const RenderOptions& options = {});
-  /// May be called from any thread: the render in progress, or else the next one, finishes its passes and starts no more.
+  /// May be called from any thread: the render in progress, or else the next one, finishes its
+  /// passes and starts no more.
   void cancel();
   /// Returns the film so far.
   Film film() const;
-  /// Starts from this film's samples: renders add the samples after them. Throws InputError when it belongs to another scene,
-  /// view or layers.
+  /// Starts from this film's samples: renders add the samples after them. Throws InputError when it
+  /// belongs to another scene, view or layers.
   void resume(const Film& film);
 
   /// These are queries as in Picker, for the session's scene.

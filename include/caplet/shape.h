@@ -26,8 +26,9 @@ struct Capsule {
   float radius0 = 0, radius1 = 0;
 };
 
-/// Arrays with one entry per capsule; spheres have p0 = p1. `radius1` is empty when none is tapered; `materials`, by number, are
-/// empty where all have the shape's. `u` is empty, or u at p0 and at p1 of the capsules of a chain (docs/shapes.md, "Chains").
+/// Arrays with one entry per capsule; spheres have p0 = p1. `radius1` is empty when none is
+/// tapered; `materials`, by number, are empty where all have the shape's. `u` is empty, or u at p0
+/// and at p1 of the capsules of a chain (docs/shapes.md, "Chains").
 struct CapsuleArrays {
   std::vector<std::array<float, 3>> p0, p1;
   std::vector<float> radius0, radius1;
@@ -35,7 +36,8 @@ struct CapsuleArrays {
   std::vector<std::array<float, 2>> u = {};
 };
 
-/// Triangles by corner indices, counter-clockwise from outside. Normals (any length) and uvs: empty or one per vertex.
+/// Triangles by corner indices, counter-clockwise from outside. Normals (any length) and uvs: empty
+/// or one per vertex.
 struct MeshArrays {
   std::vector<std::array<float, 3>> positions;
   std::vector<std::array<std::uint32_t, 3>> triangles;
@@ -47,26 +49,41 @@ struct MeshArrays {
 struct ShapeOptions {
   std::string name = {};
   Transform transform = identity;
-  std::vector<std::uint32_t> materials = {};               // numbers: none (a grey diffuse one), one, or one per surface
-  std::optional<Parameters> emission = {};                 // makes it a light: parameters of Statement::emission
+  std::vector<std::uint32_t> materials =
+      {};  // numbers: none (a grey diffuse one), one, or one per surface
+  std::optional<Parameters> emission = {};  // makes it a light: parameters of Statement::emission
   std::optional<std::uint32_t> inside = {}, outside = {};  // media by number
   bool reverse_orientation = false;
   std::string object = {};  // the object definition that it is added to; empty: the world
 };
 
 /// The kinds of statements that scene files define by a type and parameters.
-enum class Statement { shape, light, emission, medium, camera, film, filter, sampler, integrator, material, texture };
+enum class Statement {
+  shape,
+  light,
+  emission,
+  medium,
+  camera,
+  film,
+  filter,
+  sampler,
+  integrator,
+  material,
+  texture
+};
 
 /// Lists the types in scene files (docs/formats/pbrt.md).
 CAPLET_API std::vector<std::string> statement_types(Statement statement);
 
 struct KnownParameter {
   std::string name;
-  std::vector<std::string> types;  // pbrt's names: "float", "point3", "rgb", ...; none of what scene files lack
-  std::string doc = {};            // description
-  std::string fallback = {};       // the default as scene files would write it; empty: none
+  std::vector<std::string>
+      types;  // pbrt's names: "float", "point3", "rgb", ...; none of what scene files lack
+  std::string doc = {};       // description
+  std::string fallback = {};  // the default as scene files would write it; empty: none
   // The range of numbers includes both ends, except `low` where above_low is set.
-  double low = -std::numeric_limits<double>::infinity(), high = std::numeric_limits<double>::infinity();
+  double low = -std::numeric_limits<double>::infinity(),
+         high = std::numeric_limits<double>::infinity();
   bool above_low = false;
   std::string unit = {};
   std::vector<std::string> choices = {};   // all allowed values; empty: any
@@ -74,6 +91,7 @@ struct KnownParameter {
   bool has_effect = true;                  // false: it is read and ignored
 };
 /// Throws InputError for an unknown type.
-CAPLET_API std::vector<KnownParameter> statement_parameters(Statement statement, const std::string& type);
+CAPLET_API std::vector<KnownParameter> statement_parameters(Statement statement,
+                                                            const std::string& type);
 
 CAPLET_END

@@ -40,7 +40,8 @@ struct VerifyReport {
 };
 
 /// Throws RunError, InputError.
-CAPLET_API VerifyReport verify(const Scene& scene, std::span<const Device> devices, const VerifyOptions& options = {});
+CAPLET_API VerifyReport verify(const Scene& scene, std::span<const Device> devices,
+                               const VerifyOptions& options = {});
 /// Verifies on difficult scenes with all kinds of shapes.
 CAPLET_API VerifyReport verify(std::span<const Device> devices, const VerifyOptions& options = {});
 

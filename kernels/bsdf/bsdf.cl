@@ -28,9 +28,12 @@
 
 // Returns the BSDF of material number `material`, which bsdf_chosen returned, at a place of a
 // surface, at four wavelengths (nm).
-static inline Bsdf bsdf_make(const Materials* materials, const Spectra* spectra, uint material, const TexturePlace* place, float4 lambda) {
+static inline Bsdf bsdf_make(const Materials* materials, const Spectra* spectra, uint material,
+                             const TexturePlace* place, float4 lambda) {
   __global const MaterialRecord* record = materials->materials + material;
-  const MaterialPoint m = {materials->material_data + record->data, record->textured, {materials, spectra, *place, lambda}};
+  const MaterialPoint m = {materials->material_data + record->data,
+                           record->textured,
+                           {materials, spectra, *place, lambda}};
   Bsdf b;
   b.kind = record->kind;
   b.flags = record->flags;
@@ -52,15 +55,18 @@ static inline Bsdf bsdf_make(const Materials* materials, const Spectra* spectra,
 
 // Returns the material to use where a surface has `material`: that material, or a part of a mix. u
 // in [0, 1).
-static inline uint bsdf_chosen(const Materials* materials, const Spectra* spectra, uint material, const TexturePlace* place, float4 lambda, float u) {
+static inline uint bsdf_chosen(const Materials* materials, const Spectra* spectra, uint material,
+                               const TexturePlace* place, float4 lambda, float u) {
   for (;;) {
     __global const MaterialRecord* record = materials->materials + material;
-    const MaterialPoint m = {materials->material_data + record->data, record->textured, {materials, spectra, *place, lambda}};
+    const MaterialPoint m = {materials->material_data + record->data,
+                             record->textured,
+                             {materials, spectra, *place, lambda}};
     switch (record->kind) {
 #define MATERIAL(name, traits)
-#define CHOICE(name, traits)           \
-  case material_##name:                \
-    material = name##_part(&m, &u);    \
+#define CHOICE(name, traits)        \
+  case material_##name:             \
+    material = name##_part(&m, &u); \
     break;
 #include "rows/materials.def"
 #undef MATERIAL
@@ -71,7 +77,8 @@ static inline uint bsdf_chosen(const Materials* materials, const Spectra* spectr
 
 // Returns the tangent for the local frame's x. It is dpdu, except for hair on a chain (along_u):
 // hair lies along y, so there it is a tangent across the fibre.
-static inline float3 bsdf_tangent(const Materials* materials, uint material, float3 dpdu, float3 ns, int along_u) {
+static inline float3 bsdf_tangent(const Materials* materials, uint material, float3 dpdu, float3 ns,
+                                  int along_u) {
   return along_u && materials->materials[material].kind == material_hair ? cross(dpdu, ns) : dpdu;
 }
 
@@ -79,7 +86,8 @@ static inline float3 bsdf_tangent(const Materials* materials, uint material, flo
 static inline int bsdf_is_specular(const Bsdf* b) {
   switch (b->kind) {
 #define MATERIAL(name, traits) \
-  case material_##name: return name##_is_specular(b);
+  case material_##name:        \
+    return name##_is_specular(b);
 #define CHOICE(name, traits)
 #include "rows/materials.def"
 #undef MATERIAL
@@ -90,8 +98,10 @@ static inline int bsdf_is_specular(const Bsdf* b) {
 // Returns 1 if the BSDF scatters light only to the side that it comes from.
 static inline int bsdf_is_opaque(const Bsdf* b) {
   switch (b->kind) {
-#define MATERIAL(name, traits) \
-  case material_##name: return ((traits)&trait_opaque) != 0 || (((traits)&trait_sheer) != 0 && !(max4(b->transmittance) > 0.0f));
+#define MATERIAL(name, traits)             \
+  case material_##name:                    \
+    return ((traits)&trait_opaque) != 0 || \
+           (((traits)&trait_sheer) != 0 && !(max4(b->transmittance) > 0.0f));
 #define CHOICE(name, traits)
 #include "rows/materials.def"
 #undef MATERIAL
@@ -111,7 +121,8 @@ static inline float4 bsdf_eval(const Bsdf* b, float3 wo, float3 wi, float* pdf) 
   }
   switch (b->kind) {
 #define MATERIAL(name, traits) \
-  case material_##name: return name##_eval(b, inside, wo, wi, pdf);
+  case material_##name:        \
+    return name##_eval(b, inside, wo, wi, pdf);
 #define CHOICE(name, traits)
 #include "rows/materials.def"
 #undef MATERIAL
@@ -121,14 +132,15 @@ static inline float4 bsdf_eval(const Bsdf* b, float3 wo, float3 wi, float* pdf) 
 
 // Samples a direction wi for wo. u_component chooses between reflection and refraction; all u in
 // [0, 1). Returns 0 if the light is absorbed; *s must not be used then.
-static inline int bsdf_sample(const Bsdf* b, float3 wo, float u_component, float2 u, BsdfSample* s) {
+static inline int bsdf_sample(const Bsdf* b, float3 wo, float u_component, float2 u,
+                              BsdfSample* s) {
   if (wo.z == 0.0f) return 0;
   const int inside = wo.z < 0.0f, smooth = bsdf_is_specular(b);
   int scattered = 0;
   if (inside) wo.z = -wo.z;
   switch (b->kind) {
-#define MATERIAL(name, traits)                                               \
-  case material_##name:                                                      \
+#define MATERIAL(name, traits)                                           \
+  case material_##name:                                                  \
     scattered = name##_sample(b, inside, smooth, wo, u_component, u, s); \
     break;
 #define CHOICE(name, traits)
@@ -147,7 +159,8 @@ static inline int bsdf_sample(const Bsdf* b, float3 wo, float u_component, float
 static inline float4 bsdf_albedo(const Bsdf* b, float3 wo) {
   switch (b->kind) {
 #define MATERIAL(name, traits) \
-  case material_##name: return name##_directional_albedo(b, wo);
+  case material_##name:        \
+    return name##_directional_albedo(b, wo);
 #define CHOICE(name, traits)
 #include "rows/materials.def"
 #undef MATERIAL

@@ -92,7 +92,9 @@ typedef struct {
 } MaterialPoint;
 
 // Returns 1 if float `at` of the data is a texture.
-static inline int material_is_textured(const MaterialPoint* m, int at) { return any_texture && (m->textured >> at & 1u) != 0; }
+static inline int material_is_textured(const MaterialPoint* m, int at) {
+  return any_texture && (m->textured >> at & 1u) != 0;
+}
 static inline float4 material_texture(const MaterialPoint* m, int at) {
   return texture_eval(as_uint(m->data[at]), &m->point);
 }
@@ -125,10 +127,14 @@ static inline void bsdf_roughness(Bsdf* b, float alpha_u, float alpha_v) {
     b->alpha_v = fmax(alpha_v, CAPLET_ALPHA_MIN);
   }
 }
-static inline int bsdf_is_smooth(const Bsdf* b) { return b->alpha_u < CAPLET_ALPHA_SMOOTH && b->alpha_v < CAPLET_ALPHA_SMOOTH; }
+static inline int bsdf_is_smooth(const Bsdf* b) {
+  return b->alpha_u < CAPLET_ALPHA_SMOOTH && b->alpha_v < CAPLET_ALPHA_SMOOTH;
+}
 
 // Returns 1 if refraction depends on the wavelength: see the head of bsdf.cl.
-static inline int bsdf_is_dispersive(const Bsdf* b) { return any_dispersive_material && (b->flags & CAPLET_MATERIAL_DISPERSIVE) != 0; }
+static inline int bsdf_is_dispersive(const Bsdf* b) {
+  return any_dispersive_material && (b->flags & CAPLET_MATERIAL_DISPERSIVE) != 0;
+}
 
 // Returns the scalar value of a dispersive material at the four wavelengths.
 static inline float4 bsdf_all_wavelengths(const Bsdf* b, float4 value) {

@@ -25,14 +25,16 @@ enum {
 // Returns the shading normal of material number `material` at a place whose own normal is ns, of
 // unit length, on the side of the geometric normal of the place. dpdu, dpdv, dndu, dndv:
 // derivatives of the point and of ns, the latter for displacements.
-static inline float3 bump_normal(const Materials* materials, const Spectra* spectra, uint material, const TexturePlace* place, float3 ns, float3 dpdu,
-                                 float3 dpdv, float3 dndu, float3 dndv) {
+static inline float3 bump_normal(const Materials* materials, const Spectra* spectra, uint material,
+                                 const TexturePlace* place, float3 ns, float3 dpdu, float3 dpdv,
+                                 float3 dndu, float3 dndv) {
   const uint bump = materials->materials[material].bump;
   if (bump == CAPLET_NONE) return ns;
   TexturePoint at = {materials, spectra, *place, (float4)(550.0f)};
   float3 n = ns;
   int is_map = any_normalmap;
-  if (any_displacement != 0) is_map &= materials->materials[material].bump_kind == texture_normalmap;
+  if (any_displacement != 0)
+    is_map &= materials->materials[material].bump_kind == texture_normalmap;
   if (is_map) {
     const Frame frame = frame_from_tangent(ns, dpdu);
     const float4 turned = texture_eval(bump, &at);

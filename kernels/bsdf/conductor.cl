@@ -12,7 +12,8 @@
 #include "bsdf/multiscatter.cl"
 
 static inline void conductor_make(const MaterialPoint* m, Bsdf* b) {
-  bsdf_roughness(b, material_number(m, conductor_at_alpha_u), material_number(m, conductor_at_alpha_v));
+  bsdf_roughness(b, material_number(m, conductor_at_alpha_u),
+                 material_number(m, conductor_at_alpha_v));
   // Beyond 1e4 the reflectance is 1 to 4e-4, and fourth powers stay finite.
   b->eta = clamp(material_spectrum(m, conductor_at_eta), 0.0f, 1e4f);
   b->k = clamp(material_spectrum(m, conductor_at_k), 0.0f, 1e4f);
@@ -27,14 +28,16 @@ static inline float4 conductor_eval(const Bsdf* b, int inside, float3 wo, float3
   const float cos_m = dot(wo, m);
   if (!(cos_m > 0.0f)) return (float4)(0.0f);
   *pdf = 0.25f * ggx_visible_over_cos(wo, m, b->alpha_u, b->alpha_v);
-  const float4 value = fresnel_conductor(cos_m, b->eta, b->k) * (*pdf * ggx_masking(wo, wi, b->alpha_u, b->alpha_v));
+  const float4 value =
+      fresnel_conductor(cos_m, b->eta, b->k) * (*pdf * ggx_masking(wo, wi, b->alpha_u, b->alpha_v));
 #ifdef CAPLET_MULTISCATTER
   if (bsdf_multiscatters(b)) return value + metal_multiscattered(b, wo, wi, pdf);
 #endif
   return value;
 }
 
-static inline int conductor_sample(const Bsdf* b, int inside, int smooth, float3 wo, float u_component, float2 u, BsdfSample* s) {
+static inline int conductor_sample(const Bsdf* b, int inside, int smooth, float3 wo,
+                                   float u_component, float2 u, BsdfSample* s) {
   (void)inside, (void)u_component;
   s->specular = smooth;
   s->transmitted = 0;
@@ -59,10 +62,13 @@ static inline int conductor_sample(const Bsdf* b, int inside, int smooth, float3
 #endif
   if (!(cos_m > 0.0f) || !(s->wi.z > 0.0f)) return 0;
   s->pdf = 0.25f * ggx_visible_over_cos(wo, m, b->alpha_u, b->alpha_v);
-  s->weight = fresnel_conductor(cos_m, b->eta, b->k) * ggx_masking(wo, s->wi, b->alpha_u, b->alpha_v);
+  s->weight =
+      fresnel_conductor(cos_m, b->eta, b->k) * ggx_masking(wo, s->wi, b->alpha_u, b->alpha_v);
   return s->pdf > 0.0f;
 }
 
-static inline float4 conductor_directional_albedo(const Bsdf* b, float3 wo) { return fresnel_conductor(fabs(wo.z), b->eta, b->k); }
+static inline float4 conductor_directional_albedo(const Bsdf* b, float3 wo) {
+  return fresnel_conductor(fabs(wo.z), b->eta, b->k);
+}
 
 #endif

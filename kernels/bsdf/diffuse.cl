@@ -23,7 +23,8 @@ static inline float4 diffuse_eval(const Bsdf* b, int inside, float3 wo, float3 w
   return b->reflectance * *pdf;
 }
 
-static inline int diffuse_sample(const Bsdf* b, int inside, int smooth, float3 wo, float u_component, float2 u, BsdfSample* s) {
+static inline int diffuse_sample(const Bsdf* b, int inside, int smooth, float3 wo,
+                                 float u_component, float2 u, BsdfSample* s) {
   (void)inside, (void)smooth, (void)wo, (void)u_component;
   s->wi = sample_cosine_hemisphere(u);
   s->pdf = s->wi.z * CAPLET_INV_PI;

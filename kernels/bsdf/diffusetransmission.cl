@@ -25,15 +25,16 @@ static inline float diffusetransmission_reflected(const Bsdf* b) {
   return r + t > 0.0f ? r / (r + t) : 1.0f;
 }
 
-static inline float4 diffusetransmission_eval(const Bsdf* b, int inside, float3 wo, float3 wi, float* pdf) {
+static inline float4 diffusetransmission_eval(const Bsdf* b, int inside, float3 wo, float3 wi,
+                                              float* pdf) {
   (void)inside, (void)wo;
   const float cosine = fabs(wi.z) * CAPLET_INV_PI, probability = diffusetransmission_reflected(b);
   *pdf = cosine * (wi.z > 0.0f ? probability : 1.0f - probability);
   return cosine * (wi.z > 0.0f ? b->reflectance : b->transmittance);
 }
 
-static inline int diffusetransmission_sample(const Bsdf* b, int inside, int smooth, float3 wo, float u_component, float2 u,
-                                             BsdfSample* s) {
+static inline int diffusetransmission_sample(const Bsdf* b, int inside, int smooth, float3 wo,
+                                             float u_component, float2 u, BsdfSample* s) {
   (void)inside, (void)smooth, (void)wo;
   const float reflected = diffusetransmission_reflected(b);
   s->transmitted = u_component >= reflected;

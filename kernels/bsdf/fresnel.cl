@@ -30,14 +30,17 @@ static inline float4 fresnel_conductor(float cos_i, float4 eta, float4 k) {
   const float c = clamp(cos_i, 0.0f, 1.0f);
   const float c2 = c * c, s2 = 1.0f - c2;
   const float4 e = eta * eta - k * k - s2;
-  const float4 squared = sqrt(e * e + 4.0f * eta * eta * k * k);  // a^2 + b^2, where a + i b = sqrt((eta + i k)^2 - sin^2)
+  const float4 squared = sqrt(
+      e * e + 4.0f * eta * eta * k * k);  // a^2 + b^2, where a + i b = sqrt((eta + i k)^2 - sin^2)
   const float4 a = sqrt(fmax(0.5f * (squared + e), 0.0f));
   // The ratios below are 0/0 only at grazing incidence (reflectance 1) or where the other
   // polarisation determines the value.
   const float4 t1 = squared + c2, t2 = 2.0f * c * a;
-  const float4 rs = select((float4)(1.0f), (t1 - t2) / (t1 + t2), isgreater(t1 + t2, (float4)(0.0f)));
+  const float4 rs =
+      select((float4)(1.0f), (t1 - t2) / (t1 + t2), isgreater(t1 + t2, (float4)(0.0f)));
   const float4 t3 = c2 * squared + s2 * s2, t4 = t2 * s2;
-  const float4 ratio = select((float4)(1.0f), (t3 - t4) / (t3 + t4), isgreater(t3 + t4, (float4)(0.0f)));
+  const float4 ratio =
+      select((float4)(1.0f), (t3 - t4) / (t3 + t4), isgreater(t3 + t4, (float4)(0.0f)));
   return clamp(0.5f * (rs + rs * ratio), 0.0f, 1.0f);
 }
 

@@ -27,7 +27,8 @@ static inline void hair_make(const MaterialPoint* m, Bsdf* b) {
     // The absorption gives this colour after many fibres: it is the fit of Chiang et al. 2016,
     // equation 9.
     const float n = b->alpha_v, n2 = n * n;
-    const float fit = 5.969f - 0.215f * n + 2.532f * n2 - 10.73f * n * n2 + 5.574f * n2 * n2 + 0.245f * n * n2 * n2;
+    const float fit = 5.969f - 0.215f * n + 2.532f * n2 - 10.73f * n * n2 + 5.574f * n2 * n2 +
+                      0.245f * n * n2 * n2;
     const float4 root = log(clamp(material_albedo(m, hair_at_pigment), 1e-5f, 1.0f)) / fit;
     b->k = root * root;
   } else {
@@ -42,12 +43,12 @@ static inline int hair_is_specular(const Bsdf* b) {
 
 // HairLobes holds, for a direction wo, the values of each lobe that are the same for all wi.
 typedef struct {
-  float4 share[HAIR_LOBES];        // of the light
+  float4 share[HAIR_LOBES];  // of the light
   float probability[HAIR_LOBES];
-  float variance[HAIR_LOBES];      // along the fibre
+  float variance[HAIR_LOBES];                  // along the fibre
   float sin_o[HAIR_LOBES], cos_o[HAIR_LOBES];  // of wo's inclination, turned by the scales
-  float turn[HAIR_LOBES - 1];      // azimuth from wo
-  float width;                     // of the logistic distribution around it
+  float turn[HAIR_LOBES - 1];                  // azimuth from wo
+  float width;                                 // of the logistic distribution around it
 } HairLobes;
 
 static inline float hair_azimuth(float3 w) { return atan2(w.z, -w.x); }
@@ -73,7 +74,8 @@ static inline HairLobes hair_lobes(const Bsdf* b, float3 wo) {
   const float inclined = sqrt(fmax(0.0f, 1.0f - sqr(sin_o / eta)));
   const float4 through = exp(-b->k * (2.0f * sqrt(1.0f - sin_t * sin_t) / fmax(inclined, 1e-6f)));
   float cos_beyond;
-  const float fresnel = fresnel_dielectric(cos_o * sqrt(fmax(0.0f, 1.0f - h * h)), eta, &cos_beyond);
+  const float fresnel =
+      fresnel_dielectric(cos_o * sqrt(fmax(0.0f, 1.0f - h * h)), eta, &cos_beyond);
   lobes.share[0] = (float4)(fresnel);
   lobes.share[1] = sqr(1.0f - fresnel) * through;
   lobes.share[2] = lobes.share[1] * through * fresnel;
@@ -87,7 +89,8 @@ static inline HairLobes hair_lobes(const Bsdf* b, float3 wo) {
     lobes.cos_o[p] = fabs(cos_o * c + sin_o * s);
     lobes.probability[p] = sum > 0.0f ? mean4(lobes.share[p]) / sum : 0.25f;
   }
-  for (int p = 0; p < HAIR_LOBES - 1; ++p) lobes.turn[p] = 2.0f * (float)p * gamma_t - 2.0f * gamma_o + (float)p * CAPLET_PI;
+  for (int p = 0; p < HAIR_LOBES - 1; ++p)
+    lobes.turn[p] = 2.0f * (float)p * gamma_t - 2.0f * gamma_o + (float)p * CAPLET_PI;
   return lobes;
 }
 
@@ -96,23 +99,36 @@ static inline HairLobes hair_lobes(const Bsdf* b, float3 wo) {
 static inline float log_bessel(float x) {
   if (x < 3.75f) {
     const float t = sqr(x / 3.75f);
-    return log(1.0f + t * (3.5156229f + t * (3.0899424f + t * (1.2067492f + t * (0.2659732f + t * (0.0360768f + t * 0.0045813f))))));
+    return log(1.0f +
+               t * (3.5156229f +
+                    t * (3.0899424f +
+                         t * (1.2067492f + t * (0.2659732f + t * (0.0360768f + t * 0.0045813f))))));
   }
   const float t = 3.75f / x;
-  const float p = 0.39894228f + t * (0.01328592f + t * (0.00225319f + t * (-0.00157565f + t * (0.00916281f + t * (-0.02057706f +
-                  t * (0.02635537f + t * (-0.01647633f + t * 0.00392377f)))))));
+  const float p =
+      0.39894228f +
+      t * (0.01328592f +
+           t * (0.00225319f +
+                t * (-0.00157565f +
+                     t * (0.00916281f +
+                          t * (-0.02057706f +
+                               t * (0.02635537f + t * (-0.01647633f + t * 0.00392377f)))))));
   return x + log(p) - 0.5f * log(x);
 }
 
 // Returns the longitudinal density (d'Eon et al. 2011, equation 7) of wi's inclination, which peaks
 // at minus the inclination of wo.
-static inline float hair_longitudinal(float sin_i, float cos_i, float sin_o, float cos_o, float variance) {
+static inline float hair_longitudinal(float sin_i, float cos_i, float sin_o, float cos_o,
+                                      float variance) {
   const float inverse = 1.0f / variance;
-  return exp(log_bessel(cos_i * cos_o * inverse) - (sin_i * sin_o + 1.0f) * inverse) / (variance * (1.0f - exp(-2.0f * inverse)));
+  return exp(log_bessel(cos_i * cos_o * inverse) - (sin_i * sin_o + 1.0f) * inverse) /
+         (variance * (1.0f - exp(-2.0f * inverse)));
 }
 
 // The azimuthal density is a logistic distribution over [-pi, pi].
-static inline float hair_logistic_end(float width) { return 1.0f / (1.0f + exp(CAPLET_PI / width)); }
+static inline float hair_logistic_end(float width) {
+  return 1.0f / (1.0f + exp(CAPLET_PI / width));
+}
 static inline float hair_azimuthal(float angle, float width) {
   angle -= 2.0f * CAPLET_PI * floor(angle / (2.0f * CAPLET_PI) + 0.5f);
   const float e = exp(-fabs(angle) / width);
@@ -126,8 +142,10 @@ static inline float4 hair_value(const HairLobes* lobes, float3 wo, float3 wi, fl
   float4 sum = (float4)(0.0f);
   *pdf = 0.0f;
   for (int p = 0; p < HAIR_LOBES; ++p) {
-    const float around = p < HAIR_LOBES - 1 ? hair_azimuthal(azimuth - lobes->turn[p], lobes->width) : 0.5f * CAPLET_INV_PI;
-    const float density = around * hair_longitudinal(sin_i, cos_i, lobes->sin_o[p], lobes->cos_o[p], lobes->variance[p]);
+    const float around = p < HAIR_LOBES - 1 ? hair_azimuthal(azimuth - lobes->turn[p], lobes->width)
+                                            : 0.5f * CAPLET_INV_PI;
+    const float density = around * hair_longitudinal(sin_i, cos_i, lobes->sin_o[p], lobes->cos_o[p],
+                                                     lobes->variance[p]);
     sum += density * lobes->share[p];
     *pdf += density * lobes->probability[p];
   }
@@ -140,16 +158,20 @@ static inline float4 hair_eval(const Bsdf* b, int inside, float3 wo, float3 wi, 
   return hair_value(&lobes, wo, wi, pdf);
 }
 
-static inline int hair_sample(const Bsdf* b, int inside, int smooth, float3 wo, float u_component, float2 u, BsdfSample* s) {
+static inline int hair_sample(const Bsdf* b, int inside, int smooth, float3 wo, float u_component,
+                              float2 u, BsdfSample* s) {
   (void)inside, (void)smooth;
   const HairLobes lobes = hair_lobes(b, wo);
   int p = 0;
   float before = 0.0f;
-  while (p < HAIR_LOBES - 1 && u_component >= before + lobes.probability[p]) before += lobes.probability[p++];
-  const float chosen = clamp((u_component - before) / fmax(lobes.probability[p], 1e-12f), 1e-6f, 1.0f - 1e-6f);
+  while (p < HAIR_LOBES - 1 && u_component >= before + lobes.probability[p])
+    before += lobes.probability[p++];
+  const float chosen =
+      clamp((u_component - before) / fmax(lobes.probability[p], 1e-12f), 1e-6f, 1.0f - 1e-6f);
 
   const float v = lobes.variance[p];
-  const float along = clamp(1.0f + v * log(fmax(u.x, 1e-7f) + (1.0f - u.x) * exp(-2.0f / v)), -1.0f, 1.0f);
+  const float along =
+      clamp(1.0f + v * log(fmax(u.x, 1e-7f) + (1.0f - u.x) * exp(-2.0f / v)), -1.0f, 1.0f);
   const float beside = sqrt(fmax(0.0f, 1.0f - along * along)) * cos(2.0f * CAPLET_PI * u.y);
   const float sin_i = clamp(-along * lobes.sin_o[p] + beside * lobes.cos_o[p], -1.0f, 1.0f);
   const float cos_i = sqrt(fmax(0.0f, 1.0f - sin_i * sin_i));

@@ -20,7 +20,8 @@ static inline float4 interface_eval(const Bsdf* b, int inside, float3 wo, float3
   return (float4)(0.0f);
 }
 
-static inline int interface_sample(const Bsdf* b, int inside, int smooth, float3 wo, float u_component, float2 u, BsdfSample* s) {
+static inline int interface_sample(const Bsdf* b, int inside, int smooth, float3 wo,
+                                   float u_component, float2 u, BsdfSample* s) {
   (void)b, (void)inside, (void)smooth, (void)u_component, (void)u;
   s->wi = -wo;
   s->pdf = 1.0f;

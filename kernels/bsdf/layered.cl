@@ -23,7 +23,9 @@ typedef struct {
   uint key, next;
 } WalkNumbers;
 
-static inline float walk_1d(WalkNumbers* numbers) { return unit_float(hash_combine(numbers->key, numbers->next++)); }
+static inline float walk_1d(WalkNumbers* numbers) {
+  return unit_float(hash_combine(numbers->key, numbers->next++));
+}
 static inline float2 walk_2d(WalkNumbers* numbers) {
   const float x = walk_1d(numbers);
   return (float2)(x, walk_1d(numbers));
@@ -32,8 +34,9 @@ static inline float2 walk_2d(WalkNumbers* numbers) {
 // --- The interface ---
 
 // The parameters at_... are places in the material's data.
-static inline void coat_make(const MaterialPoint* m, Bsdf* b, int at_eta, int at_alpha_u, int at_alpha_v, int at_thickness,
-                             int at_albedo, int at_g, int at_max_depth, int at_samples) {
+static inline void coat_make(const MaterialPoint* m, Bsdf* b, int at_eta, int at_alpha_u,
+                             int at_alpha_v, int at_thickness, int at_albedo, int at_g,
+                             int at_max_depth, int at_samples) {
   bsdf_roughness(b, material_number(m, at_alpha_u), material_number(m, at_alpha_v));
   b->coat.alpha_u = b->alpha_u;
   b->coat.alpha_v = b->alpha_v;
@@ -46,7 +49,8 @@ static inline void coat_make(const MaterialPoint* m, Bsdf* b, int at_eta, int at
 }
 
 static inline int coat_is_smooth(const BsdfCoat* coat) {
-  return (coat->alpha_u < CAPLET_ALPHA_SMOOTH && coat->alpha_v < CAPLET_ALPHA_SMOOTH) || fabs(coat->eta - 1.0f) < CAPLET_ETA_MATCHED;
+  return (coat->alpha_u < CAPLET_ALPHA_SMOOTH && coat->alpha_v < CAPLET_ALPHA_SMOOTH) ||
+         fabs(coat->eta - 1.0f) < CAPLET_ETA_MATCHED;
 }
 
 #define COAT_REFLECTS 1
@@ -62,11 +66,13 @@ typedef struct {
 
 // Samples a direction wi for wo, which is above or below. `ways` names what is allowed; u_component
 // chooses where both reflection and transmission are.
-static inline int coat_sample(const BsdfCoat* coat, float3 wo, int ways, float u_component, float2 u, CoatSample* s) {
+static inline int coat_sample(const BsdfCoat* coat, float3 wo, int ways, float u_component,
+                              float2 u, CoatSample* s) {
   const int below = wo.z < 0.0f, smooth = coat_is_smooth(coat);
   const float eta = below ? 1.0f / coat->eta : coat->eta;
   if (below) wo.z = -wo.z;
-  const float3 m = smooth ? (float3)(0.0f, 0.0f, 1.0f) : ggx_sample_visible(wo, coat->alpha_u, coat->alpha_v, u);
+  const float3 m =
+      smooth ? (float3)(0.0f, 0.0f, 1.0f) : ggx_sample_visible(wo, coat->alpha_u, coat->alpha_v, u);
   const float cos_o = dot(wo, m);
   if (!(cos_o > 0.0f)) return 0;
   float cos_t;
@@ -95,7 +101,8 @@ static inline int coat_sample(const BsdfCoat* coat, float3 wo, int ways, float u
 static inline float coat_reflected(const BsdfCoat* coat, float3 wo, float3 wi) {
   const float3 m = normalize(wo + wi);
   float cos_t;
-  return 0.25f * fresnel_dielectric(dot(wo, m), coat->eta, &cos_t) * ggx_visible_over_cos(wo, m, coat->alpha_u, coat->alpha_v) *
+  return 0.25f * fresnel_dielectric(dot(wo, m), coat->eta, &cos_t) *
+         ggx_visible_over_cos(wo, m, coat->alpha_u, coat->alpha_v) *
          ggx_masking(wo, wi, coat->alpha_u, coat->alpha_v);
 }
 
@@ -110,14 +117,18 @@ static inline float coat_transmitted(const BsdfCoat* coat, float3 outer, float3 
   const float cos_o = dot(outer, m), cos_i = dot(inner, m);
   if (!(cos_o > 0.0f) || !(cos_i < 0.0f) || !(m.z > 0.0f)) return 0.0f;
   const float denominator = cos_i + cos_o / coat->eta;
-  *pdf = ggx_visible_over_cos(outer, m, coat->alpha_u, coat->alpha_v) * cos_o * -cos_i / (denominator * denominator);
+  *pdf = ggx_visible_over_cos(outer, m, coat->alpha_u, coat->alpha_v) * cos_o * -cos_i /
+         (denominator * denominator);
   float cos_t;
-  return (1.0f - fresnel_dielectric(cos_o, coat->eta, &cos_t)) * ggx_masking(outer, inner, coat->alpha_u, coat->alpha_v);
+  return (1.0f - fresnel_dielectric(cos_o, coat->eta, &cos_t)) *
+         ggx_masking(outer, inner, coat->alpha_u, coat->alpha_v);
 }
 
 // --- The base, seen from within: wo.z > 0 ---
 
-static inline int base_is_metal(const Bsdf* b) { return any_metal_base && b->kind == material_coatedconductor; }
+static inline int base_is_metal(const Bsdf* b) {
+  return any_metal_base && b->kind == material_coatedconductor;
+}
 static inline int base_is_specular(const Bsdf* b) { return base_is_metal(b) && bsdf_is_smooth(b); }
 
 // Returns f |cos wi| and its density.
@@ -131,11 +142,13 @@ static inline float4 base_eval(const Bsdf* b, float3 wo, float3 wi, float* pdf) 
   if (bsdf_is_smooth(b)) return (float4)(0.0f);
   const float3 m = normalize(wo + wi);
   *pdf = 0.25f * ggx_visible_over_cos(wo, m, b->alpha_u, b->alpha_v);
-  return fresnel_conductor(dot(wo, m), b->eta, b->k) * (*pdf * ggx_masking(wo, wi, b->alpha_u, b->alpha_v));
+  return fresnel_conductor(dot(wo, m), b->eta, b->k) *
+         (*pdf * ggx_masking(wo, wi, b->alpha_u, b->alpha_v));
 }
 
 // Samples a direction; *weight is multiplied by f |cos wi| / pdf.
-static inline int base_sample(const Bsdf* b, float3 wo, float2 u, float3* wi, float4* weight, float* pdf) {
+static inline int base_sample(const Bsdf* b, float3 wo, float2 u, float3* wi, float4* weight,
+                              float* pdf) {
   if (!base_is_metal(b)) {
     *wi = sample_cosine_hemisphere(u);
     *weight *= b->reflectance;
@@ -143,7 +156,8 @@ static inline int base_sample(const Bsdf* b, float3 wo, float2 u, float3* wi, fl
     return wi->z > 0.0f;
   }
   const int smooth = bsdf_is_smooth(b);
-  const float3 m = smooth ? (float3)(0.0f, 0.0f, 1.0f) : ggx_sample_visible(wo, b->alpha_u, b->alpha_v, u);
+  const float3 m =
+      smooth ? (float3)(0.0f, 0.0f, 1.0f) : ggx_sample_visible(wo, b->alpha_u, b->alpha_v, u);
   const float cos_m = dot(wo, m);
   *wi = normalize(2.0f * cos_m * m - wo);
   if (!(cos_m > 0.0f) || !(wi->z > 0.0f)) return 0;
@@ -173,7 +187,8 @@ static inline int walk_goes_on(int depth, float4* weight, WalkNumbers* numbers) 
 
 // Moves *z by a free flight in the direction w. Returns 1 if the walk comes to a side, 0 if it
 // comes to a scattering, -1 if it does not move.
-static inline int walk_advance(const BsdfCoat* coat, float3 w, float* z, float4* weight, WalkNumbers* numbers) {
+static inline int walk_advance(const BsdfCoat* coat, float3 w, float* z, float4* weight,
+                               WalkNumbers* numbers) {
   if (!coat_scatters(coat)) {
     *z = w.z > 0.0f ? coat->thickness : 0.0f;
     *weight *= coat_passes(coat->thickness, w);
@@ -237,7 +252,8 @@ static inline float4 layered_walk(const Bsdf* b, float3 wo, float3 wi, WalkNumbe
     float leave_pdf;
     const float value = coat_transmitted(coat, wi, -w, &leave_pdf);
     const float weight = base_specular && came > 0 ? 1.0f : power_heuristic(pdf, leave_pdf);
-    sum += beta * (weight * value * leave_pdf * coat_passes(coat->thickness - z, w) * inside_out / w.z);
+    sum += beta *
+           (weight * value * leave_pdf * coat_passes(coat->thickness - z, w) * inside_out / w.z);
   }
   return sum;
 }
@@ -252,15 +268,18 @@ static inline float layered_pdf(const Bsdf* b, float3 wo, float3 wi) {
   float cos_t;
   const float fresnel = fresnel_dielectric(wo.z, coat->eta, &cos_t);
   float own = 0.0f, base = diffuse;
-  if (!coat_is_smooth(coat)) own = 0.25f * ggx_visible_over_cos(wo, normalize(wo + wi), coat->alpha_u, coat->alpha_v);
+  if (!coat_is_smooth(coat))
+    own = 0.25f * ggx_visible_over_cos(wo, normalize(wo + wi), coat->alpha_u, coat->alpha_v);
   if (base_is_metal(b)) {
     const float2 o = wo.xy / coat->eta, i = wi.xy / coat->eta;
     const float zo2 = 1.0f - dot(o, o), zi2 = 1.0f - dot(i, i);
     const float wider = 0.5f * sqr(1.0f - 1.0f / coat->eta);
-    const float alpha_u = sqrt(sqr(b->alpha_u) + wider * sqr(coat->alpha_u)), alpha_v = sqrt(sqr(b->alpha_v) + wider * sqr(coat->alpha_v));
+    const float alpha_u = sqrt(sqr(b->alpha_u) + wider * sqr(coat->alpha_u)),
+                alpha_v = sqrt(sqr(b->alpha_v) + wider * sqr(coat->alpha_v));
     if (zo2 > 0.0f && zi2 > 0.0f && fmin(alpha_u, alpha_v) > CAPLET_ALPHA_MIN) {
       const float3 from = (float3)(o.x, o.y, sqrt(zo2)), to = (float3)(i.x, i.y, sqrt(zi2));
-      base = 0.25f * ggx_visible_over_cos(from, normalize(from + to), alpha_u, alpha_v) * wi.z / (coat->eta * coat->eta * to.z);
+      base = 0.25f * ggx_visible_over_cos(from, normalize(from + to), alpha_u, alpha_v) * wi.z /
+             (coat->eta * coat->eta * to.z);
     }
   }
   if (coat_scatters(coat)) base = mix(diffuse, base, exp(-2.0f * coat->thickness));
@@ -278,7 +297,8 @@ static inline float4 layered_eval(const Bsdf* b, float3 wo, float3 wi, float* pd
   return bsdf_all_wavelengths(b, sum);
 }
 
-static inline int layered_sample(const Bsdf* b, float3 wo, float u_component, float2 u, BsdfSample* s) {
+static inline int layered_sample(const Bsdf* b, float3 wo, float u_component, float2 u,
+                                 BsdfSample* s) {
   const BsdfCoat* coat = &b->coat;
   const int coat_specular = coat_is_smooth(coat);
   CoatSample step;
@@ -300,7 +320,8 @@ static inline int layered_sample(const Bsdf* b, float3 wo, float u_component, fl
       specular = 0;
     } else if (z > 0.0f) {
       const float choice = walk_1d(&numbers);
-      if (!coat_sample(coat, -w, COAT_REFLECTS | COAT_TRANSMITS, choice, walk_2d(&numbers), &step)) return 0;
+      if (!coat_sample(coat, -w, COAT_REFLECTS | COAT_TRANSMITS, choice, walk_2d(&numbers), &step))
+        return 0;
       weight *= step.weight;
       w = step.wi;
       out = step.transmitted;
@@ -326,9 +347,12 @@ static inline float4 layered_albedo(const Bsdf* b, float3 wo) {
   const float eta = b->coat.eta;
   float cos_t;
   const float fresnel = fresnel_dielectric(fabs(wo.z), eta, &cos_t);
-  if (base_is_metal(b)) return fresnel + sqr(1.0f - fresnel) * fresnel_conductor(cos_t, b->eta, b->k);
-  const float within = clamp(-1.440f / (eta * eta) + 0.710f / eta + 0.668f + 0.0636f * eta, 0.0f, 0.99f);
-  return fresnel + (1.0f - fresnel) * b->reflectance * (1.0f - within) / (1.0f - within * b->reflectance);
+  if (base_is_metal(b))
+    return fresnel + sqr(1.0f - fresnel) * fresnel_conductor(cos_t, b->eta, b->k);
+  const float within =
+      clamp(-1.440f / (eta * eta) + 0.710f / eta + 0.668f + 0.0636f * eta, 0.0f, 0.99f);
+  return fresnel +
+         (1.0f - fresnel) * b->reflectance * (1.0f - within) / (1.0f - within * b->reflectance);
 }
 
 #endif

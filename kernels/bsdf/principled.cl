@@ -37,7 +37,8 @@ static inline void principled_make(const MaterialPoint* m, Bsdf* b) {
   b->transmittance = (float4)(p->transmission);
   p->roughness = fmin(material_number(m, principled_at_roughness), 1.0f);
   // Burley 2012 squares the roughness and stretches it by the aspect.
-  const float aspect = sqrt(1.0f - 0.9f * fmin(material_number(m, principled_at_anisotropic), 1.0f));
+  const float aspect =
+      sqrt(1.0f - 0.9f * fmin(material_number(m, principled_at_anisotropic), 1.0f));
   b->alpha_u = fmax(sqr(p->roughness) / aspect, CAPLET_ALPHA_SMOOTH);
   b->alpha_v = fmax(sqr(p->roughness) * aspect, CAPLET_ALPHA_SMOOTH);
   // An interface of index 1 does not bend light and has no half vector.
@@ -56,7 +57,8 @@ static inline void principled_make(const MaterialPoint* m, Bsdf* b) {
   b->k = sheen * mix((float4)(1.0f), hue, sheen_tint);
 
   p->coat = fmin(material_number(m, principled_at_coat), 1.0f);
-  b->coat.alpha_u = fmax(sqr(fmin(material_number(m, principled_at_coat_roughness), 1.0f)), CAPLET_ALPHA_SMOOTH);
+  b->coat.alpha_u =
+      fmax(sqr(fmin(material_number(m, principled_at_coat_roughness), 1.0f)), CAPLET_ALPHA_SMOOTH);
   b->coat.eta = clamp(material_number(m, principled_at_coat_eta), 1.0f, 100.0f);
   b->coat.albedo = mix((float4)(1.0f), material_albedo(m, principled_at_coat_color), p->coat);
 }
@@ -71,7 +73,8 @@ static inline int principled_is_specular(const Bsdf* b) {
 // Returns the cosine at which a smooth interface reflects no less than the total reflection of
 // facets of roughness alpha: a fit for indices of 1.05 to 3, to 1e-3.
 static inline float principled_seen_cosine(float cosine, float alpha) {
-  return sqrt(cosine * cosine + fmax(alpha * (0.227f - 0.062f * alpha) - 0.006f, 0.0f) * sqr(1.0f - cosine));
+  return sqrt(cosine * cosine +
+              fmax(alpha * (0.227f - 0.062f * alpha) - 0.006f, 0.0f) * sqr(1.0f - cosine));
 }
 
 static inline float principled_interface_albedo(float cosine, float eta, float alpha) {
@@ -83,15 +86,19 @@ static inline float principled_interface_albedo(float cosine, float eta, float a
 // angle to the half vector is 1 + dot(wo, wi), and the rest are powers of cosines.
 static inline float principled_diffuse_albedo(float c, float roughness) {
   const float f = principled_schlick(c), r = roughness, r2 = r * r;
-  const float m0 = 1.0f / 21.0f, m1 = 1.0f / 84.0f, m2 = 1.0f / 252.0f;  // 2 mu^(1 + k) (1 - mu)^5, integrated
+  const float m0 = 1.0f / 21.0f, m1 = 1.0f / 84.0f,
+              m2 = 1.0f / 252.0f;  // 2 mu^(1 + k) (1 - mu)^5, integrated
   const float diffuse = (1.0f - 0.5f * m0) * (1.0f - 0.5f * f);
   const float back = r * (f * (1.0f + 2.0f / 3.0f * c) + m0 + c * m1);
-  const float both = r2 * (m0 + 2.0f * c * m1 + c * c * m2 + 0.5f * (1.0f - c * c) * (m0 - m2)) - r * (m0 + c * m1);
+  const float both = r2 * (m0 + 2.0f * c * m1 + c * c * m2 + 0.5f * (1.0f - c * c) * (m0 - m2)) -
+                     r * (m0 + c * m1);
   return diffuse + back + f * both;
 }
 
 // Returns the albedo of the sheen, (1 - cos)^5 of the angle to the half vector: a fit to 2.5e-5.
-static inline float principled_sheen_albedo(float c) { return 0.088479f + c * (-0.250838f + c * (0.271506f + c * (-0.137031f + c * 0.028142f))); }
+static inline float principled_sheen_albedo(float c) {
+  return 0.088479f + c * (-0.250838f + c * (0.271506f + c * (-0.137031f + c * 0.028142f)));
+}
 
 // Returns the reflectance of the interface over the diffuse base, for light at that cosine to a
 // facet. (The tinted part is Schlick's approximation, from the index's reflectance at normal
@@ -105,18 +112,22 @@ static inline float4 principled_interface(const Bsdf* b, float cosine) {
 
 // Returns the albedo of the diffuse lobe and the sheen.
 static inline float4 principled_soft_albedo(const Bsdf* b, float cosine) {
-  return b->reflectance * principled_diffuse_albedo(cosine, b->principled.roughness) + b->k * principled_sheen_albedo(cosine);
+  return b->reflectance * principled_diffuse_albedo(cosine, b->principled.roughness) +
+         b->k * principled_sheen_albedo(cosine);
 }
 
 // Returns the factor on it that leaves room for what the interface reflects.
 static inline float4 principled_soft_room(const Bsdf* b, float cosine) {
   const float seen = principled_seen_cosine(cosine, fmin(b->alpha_u, b->alpha_v));
-  return fmin((1.0f - principled_interface(b, seen)) / fmax(principled_soft_albedo(b, cosine), 1e-6f), 1.0f);
+  return fmin(
+      (1.0f - principled_interface(b, seen)) / fmax(principled_soft_albedo(b, cosine), 1e-6f),
+      1.0f);
 }
 
 // Returns the transmittance of the coat at a cosine.
 static inline float principled_through_coat(const Bsdf* b, float cosine) {
-  return 1.0f - b->principled.coat * principled_interface_albedo(cosine, b->coat.eta, b->coat.alpha_u);
+  return 1.0f -
+         b->principled.coat * principled_interface_albedo(cosine, b->coat.eta, b->coat.alpha_u);
 }
 
 // --- Values ---
@@ -131,12 +142,14 @@ typedef struct {
 static inline float4 principled_facet(const Bsdf* b, float cosine) {
   const BsdfPrincipled* p = &b->principled;
   const float4 metal = b->reflectance + (1.0f - b->reflectance) * principled_schlick(cosine);
-  return p->metallic * metal + (1.0f - p->metallic - p->transmission) * principled_interface(b, cosine);
+  return p->metallic * metal +
+         (1.0f - p->metallic - p->transmission) * principled_interface(b, cosine);
 }
 
 static inline PrincipledShares principled_shares(const Bsdf* b, int inside, float3 wo) {
   const BsdfPrincipled* p = &b->principled;
-  const float soft = 1.0f - p->metallic - p->transmission, through = principled_through_coat(b, wo.z);
+  const float soft = 1.0f - p->metallic - p->transmission,
+              through = principled_through_coat(b, wo.z);
   float cos_t;
   const float fresnel = fresnel_dielectric(wo.z, inside ? 1.0f / b->eta.x : b->eta.x, &cos_t);
   PrincipledShares s;
@@ -155,7 +168,8 @@ static inline PrincipledShares principled_shares(const Bsdf* b, int inside, floa
 
 // Returns f |cos wi| and its density. From inside glass there is no coat, and what is not glass is
 // as from outside.
-static inline float4 principled_value(const Bsdf* b, int inside, const PrincipledShares* shares, float3 wo, float3 wi, float* pdf) {
+static inline float4 principled_value(const Bsdf* b, int inside, const PrincipledShares* shares,
+                                      float3 wo, float3 wi, float* pdf) {
   const BsdfPrincipled* p = &b->principled;
   const int reflected = wi.z > 0.0f;
   const float eta = inside ? 1.0f / b->eta.x : b->eta.x;
@@ -167,15 +181,18 @@ static inline float4 principled_value(const Bsdf* b, int inside, const Principle
   const float cos_o = dot(wo, m), cos_i = dot(wi, m);
   const int is_facet = cos_o > 0.0f && (reflected ? cos_i > 0.0f : cos_i < 0.0f) && m.z > 0.0f;
   if (!is_facet) return (float4)(0.0f);
-  const float visible = ggx_visible_over_cos(wo, m, b->alpha_u, b->alpha_v), masking = ggx_masking(wo, wi, b->alpha_u, b->alpha_v);
+  const float visible = ggx_visible_over_cos(wo, m, b->alpha_u, b->alpha_v),
+              masking = ggx_masking(wo, wi, b->alpha_u, b->alpha_v);
   float cos_t;
   const float fresnel = fresnel_dielectric(cos_o, eta, &cos_t);
-  const float through_o = principled_through_coat(b, wo.z), through_i = principled_through_coat(b, fabs(wi.z));
+  const float through_o = principled_through_coat(b, wo.z),
+              through_i = principled_through_coat(b, fabs(wi.z));
   if (!reflected) {
     const float denominator = cos_i + cos_o / eta;
     const float lobe = (1.0f - fresnel) * visible * cos_o * -cos_i / (denominator * denominator);
     *pdf = shares->glass * lobe;
-    return sqrt(b->reflectance * b->coat.albedo) * (p->transmission * (inside ? through_i : through_o) * lobe * masking / (eta * eta));
+    return sqrt(b->reflectance * b->coat.albedo) *
+           (p->transmission * (inside ? through_i : through_o) * lobe * masking / (eta * eta));
   }
   const float lobe = 0.25f * visible;
   float4 below = principled_facet(b, cos_o) * (lobe * masking);
@@ -191,16 +208,23 @@ static inline float4 principled_value(const Bsdf* b, int inside, const Principle
   const float soft = 1.0f - p->metallic - p->transmission;
   if (soft > 0.0f) {
     // The diffuse lobe and the sheen are those of Burley 2012, 5.3 and 5.4.
-    const float fo = principled_schlick(wo.z), fi = principled_schlick(wi.z), back = p->roughness * (1.0f + dot(wo, wi));
-    const float diffuse = (1.0f - 0.5f * fo) * (1.0f - 0.5f * fi) + back * (fo + fi + fo * fi * (back - 1.0f));
+    const float fo = principled_schlick(wo.z), fi = principled_schlick(wi.z),
+                back = p->roughness * (1.0f + dot(wo, wi));
+    const float diffuse =
+        (1.0f - 0.5f * fo) * (1.0f - 0.5f * fi) + back * (fo + fi + fo * fi * (back - 1.0f));
     const float4 room = fmin(principled_soft_room(b, wo.z), principled_soft_room(b, wi.z));
-    below += room * (b->reflectance * (diffuse * CAPLET_INV_PI) + b->k * principled_schlick(cos_o)) * (soft * wi.z);
+    below += room *
+             (b->reflectance * (diffuse * CAPLET_INV_PI) + b->k * principled_schlick(cos_o)) *
+             (soft * wi.z);
   }
   value += below * b->coat.albedo * fmin(through_o, through_i);
   if (p->coat > 0.0f) {
-    const float alpha = b->coat.alpha_u, coat_lobe = 0.25f * ggx_visible_over_cos(wo, m, alpha, alpha);
+    const float alpha = b->coat.alpha_u,
+                coat_lobe = 0.25f * ggx_visible_over_cos(wo, m, alpha, alpha);
     *pdf += shares->coat * coat_lobe;
-    value += p->coat * (inside ? 1.0f - p->transmission : 1.0f) * fresnel_dielectric(cos_o, b->coat.eta, &cos_t) * coat_lobe * ggx_masking(wo, wi, alpha, alpha);
+    value += p->coat * (inside ? 1.0f - p->transmission : 1.0f) *
+             fresnel_dielectric(cos_o, b->coat.eta, &cos_t) * coat_lobe *
+             ggx_masking(wo, wi, alpha, alpha);
   }
   return value;
 }
@@ -210,7 +234,8 @@ static inline float4 principled_eval(const Bsdf* b, int inside, float3 wo, float
   return principled_value(b, inside, &shares, wo, wi, pdf);
 }
 
-static inline int principled_sample(const Bsdf* b, int inside, int smooth, float3 wo, float u_component, float2 u, BsdfSample* s) {
+static inline int principled_sample(const Bsdf* b, int inside, int smooth, float3 wo,
+                                    float u_component, float2 u, BsdfSample* s) {
   (void)smooth;
   const PrincipledShares shares = principled_shares(b, inside, wo);
   const float eta = inside ? 1.0f / b->eta.x : b->eta.x;
@@ -220,12 +245,14 @@ static inline int principled_sample(const Bsdf* b, int inside, int smooth, float
     s->wi = sample_cosine_hemisphere(u);
   } else {
     const int coat = u_component < shares.soft + shares.coat;
-    const float3 m = ggx_sample_visible(wo, coat ? b->coat.alpha_u : b->alpha_u, coat ? b->coat.alpha_u : b->alpha_v, u);
+    const float3 m = ggx_sample_visible(wo, coat ? b->coat.alpha_u : b->alpha_u,
+                                        coat ? b->coat.alpha_u : b->alpha_v, u);
     const float cos_o = dot(wo, m);
     if (!(cos_o > 0.0f)) return 0;
     const float of_glass = u_component - shares.soft - shares.coat - shares.interface;
     float cos_t;
-    s->transmitted = shares.glass > 0.0f && of_glass >= shares.glass * fresnel_dielectric(cos_o, eta, &cos_t);
+    s->transmitted =
+        shares.glass > 0.0f && of_glass >= shares.glass * fresnel_dielectric(cos_o, eta, &cos_t);
     if (s->transmitted) {
       // Rounding may lead here where nothing is refracted.
       if (!(fresnel_dielectric(cos_o, eta, &cos_t) < 1.0f)) return 0;
@@ -244,8 +271,11 @@ static inline int principled_sample(const Bsdf* b, int inside, int smooth, float
 
 static inline float4 principled_directional_albedo(const Bsdf* b, float3 wo) {
   const BsdfPrincipled* p = &b->principled;
-  const float cosine = fabs(wo.z), soft = 1.0f - p->metallic - p->transmission, through = principled_through_coat(b, cosine);
-  const float4 below = principled_facet(b, cosine) + soft * principled_soft_room(b, cosine) * principled_soft_albedo(b, cosine) + (float4)(p->transmission);
+  const float cosine = fabs(wo.z), soft = 1.0f - p->metallic - p->transmission,
+              through = principled_through_coat(b, cosine);
+  const float4 below = principled_facet(b, cosine) +
+                       soft * principled_soft_room(b, cosine) * principled_soft_albedo(b, cosine) +
+                       (float4)(p->transmission);
   return fmin(below * b->coat.albedo * through + (1.0f - through), 1.0f);
 }
 

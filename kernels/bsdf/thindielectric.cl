@@ -27,17 +27,19 @@ static inline float thin_reflectance(float cos_o, float eta) {
 }
 
 static inline float4 thin_reflectances(const Bsdf* b, float cos_o) {
-  return (float4)(thin_reflectance(cos_o, b->eta.x), thin_reflectance(cos_o, b->eta.y), thin_reflectance(cos_o, b->eta.z),
-                  thin_reflectance(cos_o, b->eta.w));
+  return (float4)(thin_reflectance(cos_o, b->eta.x), thin_reflectance(cos_o, b->eta.y),
+                  thin_reflectance(cos_o, b->eta.z), thin_reflectance(cos_o, b->eta.w));
 }
 
-static inline float4 thindielectric_eval(const Bsdf* b, int inside, float3 wo, float3 wi, float* pdf) {
+static inline float4 thindielectric_eval(const Bsdf* b, int inside, float3 wo, float3 wi,
+                                         float* pdf) {
   (void)b, (void)inside, (void)wo, (void)wi, (void)pdf;
   return (float4)(0.0f);
 }
 
 // Directions are the same at all wavelengths: one choice, by the mean reflectance, serves all four.
-static inline int thindielectric_sample(const Bsdf* b, int inside, int smooth, float3 wo, float u_component, float2 u, BsdfSample* s) {
+static inline int thindielectric_sample(const Bsdf* b, int inside, int smooth, float3 wo,
+                                        float u_component, float2 u, BsdfSample* s) {
   (void)inside, (void)smooth, (void)u;
   const float4 reflectance = thin_reflectances(b, wo.z);
   const float mean = mean4(reflectance);

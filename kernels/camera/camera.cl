@@ -18,11 +18,14 @@
 // Returns the ray of `camera` through `raster` (pixels of the full image, (0, 0) the top left
 // corner) from the lens point at u_lens in [0, 1)^2. World space, unit direction, t in [0,
 // INFINITY).
-static inline RayRecord camera_ray(__global const CameraRecord* camera, float2 raster, float2 u_lens) {
+static inline RayRecord camera_ray(__global const CameraRecord* camera, float2 raster,
+                                   float2 u_lens) {
   float3 origin = (float3)(0.0f), direction = (float3)(0.0f, 0.0f, 1.0f);
   switch (camera->kind) {
-#define CAMERA(name) \
-  case camera_##name: name##_ray(camera, raster, u_lens, &origin, &direction); break;
+#define CAMERA(name)                                         \
+  case camera_##name:                                        \
+    name##_ray(camera, raster, u_lens, &origin, &direction); \
+    break;
 #include "rows/cameras.def"
 #undef CAMERA
     default: break;
@@ -43,8 +46,9 @@ static inline RayRecord camera_ray(__global const CameraRecord* camera, float2 r
 
 static inline float2 camera_spread(__global const CameraRecord* camera, float2 raster) {
   switch (camera->kind) {
-#define CAMERA(name) \
-  case camera_##name: return name##_spread(camera, raster);
+#define CAMERA(name)  \
+  case camera_##name: \
+    return name##_spread(camera, raster);
 #include "rows/cameras.def"
 #undef CAMERA
     default: return (float2)(0.0f);

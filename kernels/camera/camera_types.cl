@@ -11,7 +11,8 @@
 
 // Returns the place of `raster` on the image plane, in camera units.
 static inline float2 plane_place(__global const CameraRecord* camera, float2 raster) {
-  return (float2)(camera->plane_x + raster.x * camera->per_pixel_x, camera->plane_y + raster.y * camera->per_pixel_y);
+  return (float2)(camera->plane_x + raster.x * camera->per_pixel_x,
+                  camera->plane_y + raster.y * camera->per_pixel_y);
 }
 
 // Returns the mean width and height of a pixel on the image plane.
@@ -21,7 +22,8 @@ static inline float plane_spread(__global const CameraRecord* camera) {
 
 // Moves a ray, whose direction has z = 1, to a point of the lens: what lies at the focal distance
 // stays where it is.
-static inline void through_lens(__global const CameraRecord* camera, float2 u_lens, float3* origin, float3* direction) {
+static inline void through_lens(__global const CameraRecord* camera, float2 u_lens, float3* origin,
+                                float3* direction) {
   if (!(camera->lens_radius > 0.0f)) return;
   const float2 lens = camera->lens_radius * sample_disk(u_lens);
   const float3 aside = (float3)(lens.x, lens.y, 0.0f);

@@ -8,8 +8,8 @@
 
 #include "camera/camera_types.cl"
 
-static inline void equal_area_ray(__global const CameraRecord* camera, float2 raster, float2 u_lens, float3* origin,
-                                  float3* direction) {
+static inline void equal_area_ray(__global const CameraRecord* camera, float2 raster, float2 u_lens,
+                                  float3* origin, float3* direction) {
   (void)u_lens, (void)origin;
   float2 uv = (float2)(raster.x * camera->per_pixel_x, raster.y * camera->per_pixel_y);
   // The pixel filter reaches beyond the image: over an edge of the square lies the other half of

@@ -7,8 +7,8 @@
 
 #include "camera/camera_types.cl"
 
-static inline void orthographic_ray(__global const CameraRecord* camera, float2 raster, float2 u_lens, float3* origin,
-                                    float3* direction) {
+static inline void orthographic_ray(__global const CameraRecord* camera, float2 raster,
+                                    float2 u_lens, float3* origin, float3* direction) {
   *origin = (float3)(plane_place(camera, raster), 0.0f);
   through_lens(camera, u_lens, origin, direction);
 }

@@ -7,8 +7,8 @@
 
 #include "camera/camera_types.cl"
 
-static inline void perspective_ray(__global const CameraRecord* camera, float2 raster, float2 u_lens, float3* origin,
-                                   float3* direction) {
+static inline void perspective_ray(__global const CameraRecord* camera, float2 raster,
+                                   float2 u_lens, float3* origin, float3* direction) {
   *direction = (float3)(plane_place(camera, raster), 1.0f);
   through_lens(camera, u_lens, origin, direction);
 }

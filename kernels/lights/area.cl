@@ -22,14 +22,15 @@
 
 // AreaSample is a point of the light in world space.
 typedef struct {
-  float3 p, n;  // n: unit, on the emitting side of a one-sided light
-  float error;  // how far p and what a ray meets may lie apart, along n
-  float pdf;    // solid angle
-  uint surface; // HitRecord.surface
+  float3 p, n;   // n: unit, on the emitting side of a one-sided light
+  float error;   // how far p and what a ray meets may lie apart, along n
+  float pdf;     // solid angle
+  uint surface;  // HitRecord.surface
 } AreaSample;
 
 // Returns the ball by which the light is sampled, or 0.
-static inline __global const float* area_ball(const Lights* lights, __global const LightRecord* light) {
+static inline __global const float* area_ball(const Lights* lights,
+                                              __global const LightRecord* light) {
   if (!any_ball_light || light->data == CAPLET_NONE) return 0;
   __global const float* data = lights->light_data + light->data;
   return area_ball_radius(data) > 0.0f ? data : 0;
@@ -44,22 +45,28 @@ static inline __global const float* area_data(const Tree* tree, __global const L
 // the world.
 static inline float area_scale(__global const InstanceRecord* instance, float3 n) {
   __global const float* m = instance->world_from_object;
-  const float3 r0 = (float3)(m[0], m[1], m[2]), r1 = (float3)(m[4], m[5], m[6]), r2 = (float3)(m[8], m[9], m[10]);
-  return length(transform_transposed(instance->object_from_world, n)) * fabs(dot(r0, cross(r1, r2)));
+  const float3 r0 = (float3)(m[0], m[1], m[2]), r1 = (float3)(m[4], m[5], m[6]),
+               r2 = (float3)(m[8], m[9], m[10]);
+  return length(transform_transposed(instance->object_from_world, n)) *
+         fabs(dot(r0, cross(r1, r2)));
 }
 
-static inline RoundCone area_round_cone(uint shape, __global const LightRecord* light, __global const float* data) {
+static inline RoundCone area_round_cone(uint shape, __global const LightRecord* light,
+                                        __global const float* data) {
   if (shape == shape_sphere) return round_cone_of_sphere(sphere_c(data), sphere_r(data));
-  RoundCone k = shape == shape_capsule
-                    ? round_cone_make(capsule_p0(data), capsule_p1(data), capsule_r(data), capsule_r(data))
-                    : round_cone_make(tapered_capsule_p0(data), tapered_capsule_p1(data), tapered_capsule_r0(data), tapered_capsule_r1(data));
-  round_cone_cover(&k, light->flags >> CAPLET_LIGHT_COVER_0 & 255u, light->flags >> CAPLET_LIGHT_COVER_1 & 255u);
+  RoundCone k =
+      shape == shape_capsule
+          ? round_cone_make(capsule_p0(data), capsule_p1(data), capsule_r(data), capsule_r(data))
+          : round_cone_make(tapered_capsule_p0(data), tapered_capsule_p1(data),
+                            tapered_capsule_r0(data), tapered_capsule_r1(data));
+  round_cone_cover(&k, light->flags >> CAPLET_LIGHT_COVER_0 & 255u,
+                   light->flags >> CAPLET_LIGHT_COVER_1 & 255u);
   return k;
 }
 
 // Returns the world-space corners of a triangle light, as seen from p.
-static inline TriangleView area_triangle(const Tree* tree, __global const LightRecord* light, __global const float* data,
-                                         float3 p) {
+static inline TriangleView area_triangle(const Tree* tree, __global const LightRecord* light,
+                                         __global const float* data, float3 p) {
   float3 v0 = triangle_v0(data), v1 = triangle_v1(data), v2 = triangle_v2(data);
   if (light->instance != CAPLET_NONE) {
     __global const float* m = tree->instances[light->instance].world_from_object;
@@ -72,7 +79,8 @@ static inline TriangleView area_triangle(const Tree* tree, __global const LightR
 
 // A sphere is sampled by solid angle if it is not within an instance and not around (or touching)
 // p.
-static inline float area_sphere_cone(__global const LightRecord* light, uint shape, __global const float* data, float3 p) {
+static inline float area_sphere_cone(__global const LightRecord* light, uint shape,
+                                     __global const float* data, float3 p) {
   if (shape != shape_sphere || light->instance != CAPLET_NONE) return 0.0f;
   const float3 axis = sphere_c(data) - p;
   return sphere_cone(dot(axis, axis), sphere_r(data));
@@ -85,8 +93,10 @@ static inline float area_magnitude(uint shape, __global const float* data) {
   if (shape == shape_disk) return norm1(disk_c(data)) + disk_r(data);
   if (shape == shape_triangle)
     return fmax(fmax(norm1(triangle_v0(data)), norm1(triangle_v1(data))), norm1(triangle_v2(data)));
-  if (shape == shape_cylinder) return fmax(norm1(cylinder_p0(data)), norm1(cylinder_p1(data))) + cylinder_r(data);
-  if (shape == shape_capsule) return fmax(norm1(capsule_p0(data)), norm1(capsule_p1(data))) + capsule_r(data);
+  if (shape == shape_cylinder)
+    return fmax(norm1(cylinder_p0(data)), norm1(cylinder_p1(data))) + cylinder_r(data);
+  if (shape == shape_capsule)
+    return fmax(norm1(capsule_p0(data)), norm1(capsule_p1(data))) + capsule_r(data);
   return fmax(norm1(tapered_capsule_p0(data)), norm1(tapered_capsule_p1(data))) +
          fmax(tapered_capsule_r0(data), tapered_capsule_r1(data));
 }
@@ -94,7 +104,8 @@ static inline float area_magnitude(uint shape, __global const float* data) {
 // Returns a bound on the distance along the normal between a sampled point and the surface as a
 // shadow ray from p meets it: some eight roundings each of the sampling and of the traversal, of
 // the numbers they use.
-static inline float area_error(const Tree* tree, __global const LightRecord* light, float magnitude, float3 x, float3 p) {
+static inline float area_error(const Tree* tree, __global const LightRecord* light, float magnitude,
+                               float3 x, float3 p) {
   float world = magnitude;
   if (light->instance != CAPLET_NONE) {
     __global const float* to_world = tree->instances[light->instance].world_from_object;
@@ -112,20 +123,26 @@ typedef struct {
   __global const GeometryRecord* geometry;
   __global const float* data;
   uint shape;
-  int both, flip, placed;  // it emits on both sides; its normal is turned round; it is within an instance
+  int both, flip,
+      placed;  // it emits on both sides; its normal is turned round; it is within an instance
 } AreaLight;
 
 // These sample a light as area_sample does. Those that do not set s->pdf return a density by area.
 
 // A light that has a ball around it: directions towards the ball.
-static inline int area_sample_ball(const Scene* scene, const AreaLight* of, __global const float* ball, float3 p, float2 u, AreaSample* s) {
+static inline int area_sample_ball(const Scene* scene, const AreaLight* of,
+                                   __global const float* ball, float3 p, float2 u, AreaSample* s) {
   __global const LightRecord* light = of->light;
   const float3 wi = ball_sample(ball, p, u);
   HitRecord hit;
-  if (!primitive_crossing(&scene->tree, &scene->surfaces, light->slot, light->instance, p, wi, 0.0f, &hit)) return 0;
+  if (!primitive_crossing(&scene->tree, &scene->surfaces, light->slot, light->instance, p, wi, 0.0f,
+                          &hit))
+    return 0;
   // Rays do not stop at an unseen light, so light from its far side passes through its near side.
-  const uint crossings =
-      light->flags & CAPLET_LIGHT_UNSEEN ? choose_crossing(&scene->tree, &scene->surfaces, light->slot, light->instance, p, wi, &hit) : 1u;
+  const uint crossings = light->flags & CAPLET_LIGHT_UNSEEN
+                             ? choose_crossing(&scene->tree, &scene->surfaces, light->slot,
+                                               light->instance, p, wi, &hit)
+                             : 1u;
   const RayRecord ray = {p.x, p.y, p.z, 0.0f, wi.x, wi.y, wi.z, INFINITY};
   const Surface found = surface_at(&scene->tree, &scene->surfaces, &ray, &hit);
   if (found.light == CAPLET_NONE || (!of->both && !(dot(found.ng, wi) < 0.0f))) return 0;
@@ -138,7 +155,8 @@ static inline int area_sample_ball(const Scene* scene, const AreaLight* of, __gl
 }
 
 // A sphere outside: the cone that it fills, of 2 pi `cone` steradians.
-static inline int area_sample_sphere(const AreaLight* of, float cone, float3 p, float2 u, AreaSample* s) {
+static inline int area_sample_sphere(const AreaLight* of, float cone, float3 p, float2 u,
+                                     AreaSample* s) {
   if (of->flip && !of->both) return 0;
   const float3 axis = sphere_c(of->data) - p;
   const float distance = sqrt(dot(axis, axis));
@@ -149,10 +167,12 @@ static inline int area_sample_sphere(const AreaLight* of, float cone, float3 p, 
 }
 
 // A triangle: by solid angle, or by area where that is too small or too large.
-static inline int area_sample_triangle(const Scene* scene, const AreaLight* of, float3 p, float2 u, AreaSample* s, float* per_area) {
+static inline int area_sample_triangle(const Scene* scene, const AreaLight* of, float3 p, float2 u,
+                                       AreaSample* s, float* per_area) {
   const TriangleView view = area_triangle(&scene->tree, of->light, of->data, p);
   if (!(view.area > 0.0f)) return 0;
-  const int mirrored = of->placed && (scene->tree.instances[of->light->instance].flags & CAPLET_INSTANCE_MIRRORED) != 0;
+  const int mirrored = of->placed && (scene->tree.instances[of->light->instance].flags &
+                                      CAPLET_INSTANCE_MIRRORED) != 0;
   s->n = view.cross / (2.0f * view.area);
   if (of->flip != mirrored) s->n = -s->n;
   if (!of->both && !(dot(s->n, view.v0) < 0.0f)) return 0;
@@ -167,10 +187,13 @@ static inline int area_sample_triangle(const Scene* scene, const AreaLight* of, 
 }
 
 // Disks, cylinders, spheres and capsules: by area, in the light's own space.
-static inline int area_sample_by_area(const Scene* scene, const AreaLight* of, float3 p, float2 u, AreaSample* s, float* per_area) {
+static inline int area_sample_by_area(const Scene* scene, const AreaLight* of, float3 p, float2 u,
+                                      AreaSample* s, float* per_area) {
   __global const float* data = of->data;
   float3 x, n;
-  const float3 q = of->placed ? transform_point(scene->tree.instances[of->light->instance].object_from_world, p) : p;
+  const float3 q =
+      of->placed ? transform_point(scene->tree.instances[of->light->instance].object_from_world, p)
+                 : p;
   if (of->shape == shape_disk) {
     const float3 center = disk_c(data);
     n = disk_n(data);
@@ -181,7 +204,8 @@ static inline int area_sample_by_area(const Scene* scene, const AreaLight* of, f
     if (!of->both && !(dot(q - center, n) > 0.0f)) return 0;
     *per_area = CAPLET_INV_PI / sqr(disk_r(data));
   } else if (CAPLET_HAS_SHAPE(shape_cylinder) && of->shape == shape_cylinder) {
-    *per_area = cylinder_sample(data, cylinder_areas(&scene->surfaces, of->geometry, data), u, &x, &n, &s->surface);
+    *per_area = cylinder_sample(data, cylinder_areas(&scene->surfaces, of->geometry, data), u, &x,
+                                &n, &s->surface);
     if (!(*per_area > 0.0f)) return 0;
     if (of->flip) n = -n;
   } else {
@@ -205,19 +229,26 @@ static inline int area_sample_by_area(const Scene* scene, const AreaLight* of, f
 
 // Samples primitive light `light` as seen from p. Returns 0 when no part of it that emits and that
 // rays see ("onesided") faces p.
-static inline int area_sample(const Scene* scene, __global const LightRecord* light, float3 p, float2 u, AreaSample* s) {
+static inline int area_sample(const Scene* scene, __global const LightRecord* light, float3 p,
+                              float2 u, AreaSample* s) {
   __global const GeometryRecord* geometry = scene->surfaces.geometries + light->geometry;
-  const AreaLight of = {light, geometry, area_data(&scene->tree, light), geometry->shape, (light->flags & CAPLET_LIGHT_BOTH_SIDES) != 0,
-                        (geometry->flags & CAPLET_GEOMETRY_FLIP_NORMAL) != 0, light->instance != CAPLET_NONE};
+  const AreaLight of = {light,
+                        geometry,
+                        area_data(&scene->tree, light),
+                        geometry->shape,
+                        (light->flags & CAPLET_LIGHT_BOTH_SIDES) != 0,
+                        (geometry->flags & CAPLET_GEOMETRY_FLIP_NORMAL) != 0,
+                        light->instance != CAPLET_NONE};
   float per_area = 0.0f;
   s->pdf = 0.0f;
   s->surface = 0u;
   __global const float* ball = area_ball(&scene->lights, light);
   if (ball) return area_sample_ball(scene, &of, ball, p, u, s);
   const float cone = area_sphere_cone(light, of.shape, of.data, p);
-  const int sampled = cone > 0.0f                  ? area_sample_sphere(&of, cone, p, u, s)
-                      : of.shape == shape_triangle ? area_sample_triangle(scene, &of, p, u, s, &per_area)
-                                                   : area_sample_by_area(scene, &of, p, u, s, &per_area);
+  const int sampled = cone > 0.0f ? area_sample_sphere(&of, cone, p, u, s)
+                      : of.shape == shape_triangle
+                          ? area_sample_triangle(scene, &of, p, u, s, &per_area)
+                          : area_sample_by_area(scene, &of, p, u, s, &per_area);
   if (!sampled) return 0;
 
   const float3 away = s->p - p;
@@ -228,7 +259,8 @@ static inline int area_sample(const Scene* scene, __global const LightRecord* li
   // This is before ReverseOrientation, when a ray enters against the normal.
   if ((facing > 0.0f) == of.flip) s->surface |= CAPLET_LEAVING;
   if (of.placed) {
-    const uint unseen = (facing > 0.0f) != of.flip ? CAPLET_INSTANCE_NO_ENTERING : CAPLET_INSTANCE_NO_LEAVING;
+    const uint unseen =
+        (facing > 0.0f) != of.flip ? CAPLET_INSTANCE_NO_ENTERING : CAPLET_INSTANCE_NO_LEAVING;
     if (scene->tree.instances[light->instance].flags & unseen) return 0;
   }
   if (per_area > 0.0f) s->pdf = per_area * distance_squared / fabs(facing);
@@ -239,7 +271,8 @@ static inline int area_sample(const Scene* scene, __global const LightRecord* li
 
 // Returns the solid-angle density of area_sample from p for the direction wi, which meets the light
 // at x with world normal n.
-static inline float area_pdf(const Scene* scene, __global const LightRecord* light, float3 p, float3 x, float3 n, float3 wi) {
+static inline float area_pdf(const Scene* scene, __global const LightRecord* light, float3 p,
+                             float3 x, float3 n, float3 wi) {
   const uint shape = scene->surfaces.geometries[light->geometry].shape;
   __global const float* data = area_data(&scene->tree, light);
   __global const float* ball = area_ball(&scene->lights, light);
@@ -266,7 +299,8 @@ static inline float area_pdf(const Scene* scene, __global const LightRecord* lig
     if (shape == shape_disk) {
       per_area = CAPLET_INV_PI / sqr(disk_r(data));
     } else if (CAPLET_HAS_SHAPE(shape_cylinder) && shape == shape_cylinder) {
-      per_area = cylinder_density(cylinder_areas(&scene->surfaces, scene->surfaces.geometries + light->geometry, data));
+      per_area = cylinder_density(
+          cylinder_areas(&scene->surfaces, scene->surfaces.geometries + light->geometry, data));
     } else {
       const RoundCone k = area_round_cone(shape, light, data);
       const RoundConeView view = round_cone_view(&k, q);
@@ -278,7 +312,8 @@ static inline float area_pdf(const Scene* scene, __global const LightRecord* lig
 }
 
 // Fills all of a light sample but its radiance, and the point.
-static inline int area_sample_towards(const Scene* scene, __global const LightRecord* light, float3 p, float2 u, AreaSample* point, LightSample* s) {
+static inline int area_sample_towards(const Scene* scene, __global const LightRecord* light,
+                                      float3 p, float2 u, AreaSample* point, LightSample* s) {
   if (!area_sample(scene, light, p, u, point)) return 0;
   const float3 away = point->p - p;
   s->wi = unit_or(away, (float3)(0.0f));
@@ -292,18 +327,22 @@ static inline int area_sample_towards(const Scene* scene, __global const LightRe
   return 1;
 }
 
-static inline int area_light_sample(const Scene* scene, __global const LightRecord* light, float3 p, float4 lambda, float2 u, LightSample* s) {
+static inline int area_light_sample(const Scene* scene, __global const LightRecord* light, float3 p,
+                                    float4 lambda, float2 u, LightSample* s) {
   AreaSample point;
   if (!area_sample_towards(scene, light, p, u, &point, s)) return 0;
   s->radiance = light_spectrum(&scene->spectra, light, lambda, 1.0f);
   return 1;
 }
 
-static inline float area_light_pdf(const Scene* scene, __global const LightRecord* light, float3 p, const Surface* hit, float3 wi) {
+static inline float area_light_pdf(const Scene* scene, __global const LightRecord* light, float3 p,
+                                   const Surface* hit, float3 wi) {
   return area_pdf(scene, light, p, hit->p, hit->ng, wi);
 }
 
-static inline float4 area_light_emitted(const Spectra* spectra, const Lights* lights, __global const LightRecord* light, float2 uv, float4 lambda) {
+static inline float4 area_light_emitted(const Spectra* spectra, const Lights* lights,
+                                        __global const LightRecord* light, float2 uv,
+                                        float4 lambda) {
   (void)lights, (void)uv;
   return spectrum_eval(spectra, light->spectrum, lambda) * light->scale;
 }

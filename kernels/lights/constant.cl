@@ -7,8 +7,9 @@
 
 #include "lights/light_types.cl"
 
-static inline float4 constant_light_radiance(const Spectra* spectra, const Lights* lights, __global const LightRecord* light, float3 p,
-                                             float3 wi, float4 lambda, float* pdf) {
+static inline float4 constant_light_radiance(const Spectra* spectra, const Lights* lights,
+                                             __global const LightRecord* light, float3 p, float3 wi,
+                                             float4 lambda, float* pdf) {
   (void)lights, (void)p, (void)wi, (void)pdf;
   return spectrum_eval(spectra, light->spectrum, lambda) * light->scale;
 }

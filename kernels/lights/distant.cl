@@ -7,8 +7,8 @@
 
 #include "lights/light_types.cl"
 
-static inline int distant_light_sample(const Scene* scene, __global const LightRecord* light, float3 p, float4 lambda, float2 u,
-                                       LightSample* s) {
+static inline int distant_light_sample(const Scene* scene, __global const LightRecord* light,
+                                       float3 p, float4 lambda, float2 u, LightSample* s) {
   (void)u;
   s->wi = load3(distant_direction(light_data_of(&scene->lights, light)));
   s->target = p + s->wi;

@@ -28,14 +28,16 @@ static inline float4 environment_texel(const Picture* picture, int x, int y) {
 // Returns the radiance (before the light's scale) at uv of the image, whose colours are under
 // `illuminant` (a table). It is bilinear between the radiances of texels, which stand at their
 // centres.
-static inline float4 environment_radiance(const Picture* picture, __global const float* illuminant, float2 uv, float4 lambda) {
+static inline float4 environment_radiance(const Picture* picture, __global const float* illuminant,
+                                          float2 uv, float4 lambda) {
   const float2 at = uv * (float2)((float)picture->width, (float)picture->height) - 0.5f;
   const float2 low = floor(at), t = at - low;
   const int x = (int)low.x, y = (int)low.y;
   const float4 r00 = sigmoid_illuminant(illuminant, environment_texel(picture, x, y), lambda);
   const float4 r10 = sigmoid_illuminant(illuminant, environment_texel(picture, x + 1, y), lambda);
   const float4 r01 = sigmoid_illuminant(illuminant, environment_texel(picture, x, y + 1), lambda);
-  const float4 r11 = sigmoid_illuminant(illuminant, environment_texel(picture, x + 1, y + 1), lambda);
+  const float4 r11 =
+      sigmoid_illuminant(illuminant, environment_texel(picture, x + 1, y + 1), lambda);
   return mix(mix(r00, r10, t.x), mix(r01, r11, t.x), t.y);
 }
 
@@ -60,18 +62,21 @@ static inline __global const float* environment_row(const Picture* picture, uint
 // Returns the density over the unit square of the image at cell (column, row).
 static inline float environment_density(const Picture* picture, uint column, uint row) {
   __global const float* conditional = environment_row(picture, row);
-  return (picture->cdf[row + 1] - picture->cdf[row]) * (conditional[column + 1] - conditional[column]) *
+  return (picture->cdf[row + 1] - picture->cdf[row]) *
+         (conditional[column + 1] - conditional[column]) *
          ((float)picture->width * (float)picture->height);
 }
 
-static inline float environment_solid_angle_density(const Picture* picture, float per_square, float sine) {
+static inline float environment_solid_angle_density(const Picture* picture, float per_square,
+                                                    float sine) {
   if (picture->square) return per_square * (0.25f * CAPLET_INV_PI);
   return sine > 0.0f ? per_square * (0.5f * CAPLET_INV_PI * CAPLET_INV_PI) / sine : 0.0f;
 }
 
 // Samples a direction in the light's space, its place in the image, and returns its solid-angle
 // density (0: nothing).
-static inline float environment_sample(const Picture* picture, float2 u, float3* direction, float2* uv) {
+static inline float environment_sample(const Picture* picture, float2 u, float3* direction,
+                                       float2* uv) {
   const uint width = picture->width, height = picture->height;
   const uint row = cdf_cell(picture->cdf, height, u.y);
   __global const float* conditional = environment_row(picture, row);
@@ -91,8 +96,10 @@ static inline float environment_sample(const Picture* picture, float2 u, float3*
 static inline float2 environment_locate(const Picture* picture, float3 direction, float* pdf) {
   const uint width = picture->width, height = picture->height;
   float sine = 1.0f;
-  const float2 uv = picture->square ? sphere_to_square(direction) : sphere_to_latlong(direction, &sine);
-  const uint column = min((uint)(uv.x * (float)width), width - 1u), row = min((uint)(uv.y * (float)height), height - 1u);
+  const float2 uv =
+      picture->square ? sphere_to_square(direction) : sphere_to_latlong(direction, &sine);
+  const uint column = min((uint)(uv.x * (float)width), width - 1u),
+             row = min((uint)(uv.y * (float)height), height - 1u);
   *pdf = environment_solid_angle_density(picture, environment_density(picture, column, row), sine);
   return uv;
 }

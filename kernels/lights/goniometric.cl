@@ -9,14 +9,17 @@
 #include "lights/environment.cl"
 #include "lights/point.cl"
 
-static inline int goniometric_light_sample(const Scene* scene, __global const LightRecord* light, float3 p, float4 lambda, float2 u, LightSample* s) {
+static inline int goniometric_light_sample(const Scene* scene, __global const LightRecord* light,
+                                           float3 p, float4 lambda, float2 u, LightSample* s) {
   (void)u;
   __global const float* data = light_data_of(&scene->lights, light);
   float3 w;
-  const float weight = lamp_weight(goniometric_position(data), goniometric_light_from_world(data), p, &w, s);
+  const float weight =
+      lamp_weight(goniometric_position(data), goniometric_light_from_world(data), p, &w, s);
   if (!(weight > 0.0f)) return 0;
   const Picture picture = picture_of(&scene->lights, goniometric_picture(data));
-  return lamp_shines(scene, light, lambda, weight * picture.texels[picture_nearest(&picture, sphere_to_square(w))], s);
+  return lamp_shines(scene, light, lambda,
+                     weight * picture.texels[picture_nearest(&picture, sphere_to_square(w))], s);
 }
 
 #endif

@@ -20,7 +20,8 @@ static inline uint ies_cell(__global const float* angles, uint count, float angl
 
 static inline float ies_intensity(const Picture* profile, float3 w) {
   const uint polar_count = profile->height, azimuth_count = profile->width;
-  __global const float *polar = profile->texels, *azimuths = polar + polar_count, *values = azimuths + azimuth_count;
+  __global const float *polar = profile->texels, *azimuths = polar + polar_count,
+                       *values = azimuths + azimuth_count;
   const float theta = atan2(sqrt(w.x * w.x + w.y * w.y), -w.z);
   if (theta < polar[0] || theta > polar[polar_count - 1u]) return 0.0f;
   float down;
@@ -33,7 +34,8 @@ static inline float ies_intensity(const Picture* profile, float3 w) {
   return mix(mix(low[0], low[1], down), mix(high[0], high[1], down), around);
 }
 
-static inline int ies_light_sample(const Scene* scene, __global const LightRecord* light, float3 p, float4 lambda, float2 u, LightSample* s) {
+static inline int ies_light_sample(const Scene* scene, __global const LightRecord* light, float3 p,
+                                   float4 lambda, float2 u, LightSample* s) {
   (void)u;
   __global const float* data = light_data_of(&scene->lights, light);
   float3 w;

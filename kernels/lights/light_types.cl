@@ -43,12 +43,19 @@ static inline RayRecord shadow_ray(const LightSample* s, float3 origin, ShadowTa
   target->enough = surface ? distance - s->slack : INFINITY;
   target->pad0 = 0u;
   RayRecord ray;
-  ray.ox = origin.x; ray.oy = origin.y; ray.oz = origin.z; ray.t_min = 0.0f;
-  ray.dx = d.x; ray.dy = d.y; ray.dz = d.z; ray.t_max = surface ? distance + s->slack : distance - s->slack;
+  ray.ox = origin.x;
+  ray.oy = origin.y;
+  ray.oz = origin.z;
+  ray.t_min = 0.0f;
+  ray.dx = d.x;
+  ray.dy = d.y;
+  ray.dz = d.z;
+  ray.t_max = surface ? distance + s->slack : distance - s->slack;
   return ray;
 }
 
-static inline __global const float* light_data_of(const Lights* lights, __global const LightRecord* light) {
+static inline __global const float* light_data_of(const Lights* lights,
+                                                  __global const LightRecord* light) {
   return lights->light_data + light->data;
 }
 
@@ -59,18 +66,22 @@ typedef struct {
 } Picture;
 
 static inline Picture picture_of(const Lights* lights, __global const float* field) {
-  const Picture picture = {lights->light_texels + as_uint(field[0]), lights->light_cdf + as_uint(field[1]), as_uint(field[2]), as_uint(field[3]), as_uint(field[4])};
+  const Picture picture = {lights->light_texels + as_uint(field[0]),
+                           lights->light_cdf + as_uint(field[1]), as_uint(field[2]),
+                           as_uint(field[3]), as_uint(field[4])};
   return picture;
 }
 
 // Returns the number of the texel that holds uv, which are within 0 and 1.
 static inline size_t picture_nearest(const Picture* picture, float2 uv) {
-  const uint x = min((uint)(uv.x * (float)picture->width), picture->width - 1u), y = min((uint)(uv.y * (float)picture->height), picture->height - 1u);
+  const uint x = min((uint)(uv.x * (float)picture->width), picture->width - 1u),
+             y = min((uint)(uv.y * (float)picture->height), picture->height - 1u);
   return (size_t)y * picture->width + x;
 }
 
 // Returns the table of the illuminant for the colours of a light's picture.
-static inline __global const float* picture_illuminant(const Spectra* spectra, __global const LightRecord* light) {
+static inline __global const float* picture_illuminant(const Spectra* spectra,
+                                                       __global const LightRecord* light) {
   return spectra->spectrum_tables + spectra->spectra[light->spectrum].table;
 }
 
@@ -80,7 +91,8 @@ static inline float3 light_turned(__global const float* turn, float3 v) {
 }
 
 // Returns the light's own spectrum.
-static inline float4 light_spectrum(const Spectra* spectra, __global const LightRecord* light, float4 lambda, float weight) {
+static inline float4 light_spectrum(const Spectra* spectra, __global const LightRecord* light,
+                                    float4 lambda, float weight) {
   return spectrum_eval(spectra, light->spectrum, lambda) * (light->scale * weight);
 }
 

@@ -59,11 +59,13 @@ static inline uint light_select(const Lights* lights, uint u, float* probability
 
 // Chooses one of all lights for the receiver `at`, and its probability; CAPLET_NONE: none. u: 32
 // random bits.
-static inline uint light_choose(const Lights* lights, const LightReceiver* at, uint u, float* chance) {
+static inline uint light_choose(const Lights* lights, const LightReceiver* at, uint u,
+                                float* chance) {
 #ifdef CAPLET_LIGHT_TREE
   const uint share = lights->lighting->tree_share;
   if (u < share || share == CAPLET_NONE) {
-    const uint light = light_of_tree(lights, at, fmin((float)u / (float)share, 0x1.fffffep-1f), u, chance);
+    const uint light =
+        light_of_tree(lights, at, fmin((float)u / (float)share, 0x1.fffffep-1f), u, chance);
     *chance *= (float)share * 0x1p-32f;
     return light;
   }
@@ -81,7 +83,8 @@ static inline uint light_choose(const Lights* lights, const LightReceiver* at, u
 static inline float light_chance(const Lights* lights, uint light, const LightReceiver* at) {
 #ifdef CAPLET_LIGHT_TREE
   const uint share = lights->lighting->tree_share;
-  if (lights->light_places[light] != CAPLET_NONE) return (float)share * 0x1p-32f * light_tree_chance(lights, light, at);
+  if (lights->light_places[light] != CAPLET_NONE)
+    return (float)share * 0x1p-32f * light_tree_chance(lights, light, at);
   const uint begin = light_table_begin(lights);
   if (share == CAPLET_NONE || light < begin) return 0.0f;
   return (float)(0u - share) * 0x1p-32f * lights->light_alias[light - begin].probability;
@@ -91,10 +94,10 @@ static inline float light_chance(const Lights* lights, uint light, const LightRe
 #endif
 }
 
-#define SAMPLE_LIGHT_OF(name, is_infinite, is_delta)                                             \
-  case light_##name:                                                                             \
-    s->infinite = is_infinite;                                                                   \
-    s->delta = is_delta;                                                                         \
+#define SAMPLE_LIGHT_OF(name, is_infinite, is_delta)                   \
+  case light_##name:                                                   \
+    s->infinite = is_infinite;                                         \
+    s->delta = is_delta;                                               \
     if (!name##_light_sample(scene, light, p, lambda, u, s)) return 0; \
     break;
 #define SAMPLE_LIGHT_surface(name) SAMPLE_LIGHT_OF(name, 0, 0)
@@ -105,7 +108,8 @@ static inline float light_chance(const Lights* lights, uint light, const LightRe
 
 // Takes one light sample as seen from at.p. u_select: 32 random bits; u in [0, 1). Returns 0 when
 // there is nothing (the sample counts as black).
-static inline int light_sample(const Scene* scene, LightReceiver at, float4 lambda, uint u_select, float2 u, LightSample* s) {
+static inline int light_sample(const Scene* scene, LightReceiver at, float4 lambda, uint u_select,
+                               float2 u, LightSample* s) {
   const Lights* lights = &scene->lights;
   if (lights->lighting->sampled_light_count == 0u) return 0;
   const float3 p = at.p;
@@ -127,12 +131,14 @@ static inline int light_sample(const Scene* scene, LightReceiver at, float4 lamb
 
 // Returns the radiance of area light `light` at a point with normal ng (Surface.ng) and uv, towards
 // wo; 0 from the dark side.
-static inline float4 light_emitted(const Spectra* spectra, const Lights* lights, uint light, float3 ng, float2 uv, float3 wo, float4 lambda) {
+static inline float4 light_emitted(const Spectra* spectra, const Lights* lights, uint light,
+                                   float3 ng, float2 uv, float3 wo, float4 lambda) {
   __global const LightRecord* record = lights->lights + light;
   if (!(record->flags & CAPLET_LIGHT_BOTH_SIDES) && !(dot(ng, wo) > 0.0f)) return (float4)(0.0f);
   switch (record->kind) {
 #define LIGHT_EMITTED_surface(name) \
-  case light_##name: return name##_light_emitted(spectra, lights, record, uv, lambda);
+  case light_##name:                \
+    return name##_light_emitted(spectra, lights, record, uv, lambda);
 #define LIGHT_EMITTED_delta(name)
 #define LIGHT_EMITTED_far_delta(name)
 #define LIGHT_EMITTED_sky(name)
@@ -146,14 +152,16 @@ static inline float4 light_emitted(const Spectra* spectra, const Lights* lights,
 
 // Returns the density (solid angle times probability of the light) of light_sample at `at` for the
 // unit direction wi, which meets light `light` at `hit`.
-static inline float light_area_pdf(const Scene* scene, uint light, LightReceiver at, const Surface* hit, float3 wi) {
+static inline float light_area_pdf(const Scene* scene, uint light, LightReceiver at,
+                                   const Surface* hit, float3 wi) {
   if (scene->lights.lighting->sampled_light_count == 0u) return 0.0f;
   __global const LightRecord* record = scene->lights.lights + light;
   const float3 p = at.p;
   const float chance = light_chance(&scene->lights, light, &at);
   switch (record->kind) {
 #define LIGHT_PDF_surface(name) \
-  case light_##name: return chance * name##_light_pdf(scene, record, p, hit, wi);
+  case light_##name:            \
+    return chance * name##_light_pdf(scene, record, p, hit, wi);
 #define LIGHT_PDF_delta(name)
 #define LIGHT_PDF_far_delta(name)
 #define LIGHT_PDF_sky(name)
@@ -168,7 +176,8 @@ static inline float light_area_pdf(const Scene* scene, uint light, LightReceiver
 // Returns the sum over infinite lights of radiance times MIS weight, for a ray from p in direction
 // wi (unit) that left the scene. bsdf_pdf: solid-angle density that the ray was made with;
 // `specular`: no light sample could have made it (also camera rays).
-static inline float4 light_infinite(const Spectra* spectra, const Lights* lights, float3 p, float3 wi, float4 lambda, float bsdf_pdf, int specular) {
+static inline float4 light_infinite(const Spectra* spectra, const Lights* lights, float3 p,
+                                    float3 wi, float4 lambda, float bsdf_pdf, int specular) {
   float4 sum = (float4)(0.0f);
   const LightReceiver anywhere = {(float3)(0.0f), CAPLET_NONE};  // no infinite light is in the tree
   for (uint i = lights->lighting->infinite_begin; i < lights->lighting->light_count; ++i) {
@@ -178,15 +187,17 @@ static inline float4 light_infinite(const Spectra* spectra, const Lights* lights
 #define LIGHT_MET_surface(name)
 #define LIGHT_MET_delta(name)
 #define LIGHT_MET_far_delta(name)
-#define LIGHT_MET_sky(name)                                                                                \
-  case light_##name: {                                                                                     \
-    const float4 radiance = name##_light_radiance(spectra, lights, light, p, wi, lambda, &pdf);               \
-    pdf *= lights->lighting->sampled_light_count > 0u ? light_chance(lights, i, &anywhere) : 0.0f;           \
-    sum += radiance * (specular ? 1.0f : power_heuristic(bsdf_pdf, pdf));                                  \
-    break;                                                                                                 \
+#define LIGHT_MET_sky(name)                                                                        \
+  case light_##name: {                                                                             \
+    const float4 radiance = name##_light_radiance(spectra, lights, light, p, wi, lambda, &pdf);    \
+    pdf *= lights->lighting->sampled_light_count > 0u ? light_chance(lights, i, &anywhere) : 0.0f; \
+    sum += radiance * (specular ? 1.0f : power_heuristic(bsdf_pdf, pdf));                          \
+    break;                                                                                         \
   }
-#define LIGHT_MET_glow(name) \
-  case light_##name: sum += name##_light_radiance(spectra, lights, light, p, wi, lambda, &pdf); break;
+#define LIGHT_MET_glow(name)                                                   \
+  case light_##name:                                                           \
+    sum += name##_light_radiance(spectra, lights, light, p, wi, lambda, &pdf); \
+    break;
 #define LIGHT(name, way) LIGHT_MET_##way(name)
 #include "rows/lights.def"
 #undef LIGHT

@@ -16,14 +16,18 @@ static inline float spot_falloff(float cosine, float cos_total, float cos_fallof
   return t * t * (3.0f - 2.0f * t);
 }
 
-static inline int spot_light_sample(const Scene* scene, __global const LightRecord* light, float3 p, float4 lambda, float2 u, LightSample* s) {
+static inline int spot_light_sample(const Scene* scene, __global const LightRecord* light, float3 p,
+                                    float4 lambda, float2 u, LightSample* s) {
   (void)u;
   __global const float* data = light_data_of(&scene->lights, light);
   s->target = load3(spot_position(data));
   s->pdf = 1.0f;
   const float weight = point_weight(s->target, p, &s->wi);
   if (!(weight > 0.0f)) return 0;
-  return lamp_shines(scene, light, lambda, weight * spot_falloff(-dot(s->wi, load3(spot_axis(data))), spot_cos_total(data), spot_cos_falloff_start(data)), s);
+  return lamp_shines(scene, light, lambda,
+                     weight * spot_falloff(-dot(s->wi, load3(spot_axis(data))),
+                                           spot_cos_total(data), spot_cos_falloff_start(data)),
+                     s);
 }
 
 #endif

@@ -11,7 +11,9 @@
 #include "textures/textures.cl"
 
 // The image's bottom row is at v = 0; beyond its edges the edge texels continue.
-static inline float4 textured_area_light_emitted(const Spectra* spectra, const Lights* lights, __global const LightRecord* light, float2 uv, float4 lambda) {
+static inline float4 textured_area_light_emitted(const Spectra* spectra, const Lights* lights,
+                                                 __global const LightRecord* light, float2 uv,
+                                                 float4 lambda) {
   const Picture picture = picture_of(lights, textured_area_picture(light_data_of(lights, light)));
   if (picture.width == 0u) return light_spectrum(spectra, light, lambda, 1.0f);
   const float2 size = (float2)((float)picture.width, (float)picture.height);
@@ -19,7 +21,8 @@ static inline float4 textured_area_light_emitted(const Spectra* spectra, const L
   const float2 low = floor(at), t = at - low;
   const int width = (int)picture.width, height = (int)picture.height;
   const int x0 = clamp((int)low.x, 0, width - 1), x1 = clamp((int)low.x + 1, 0, width - 1);
-  const size_t top = (size_t)clamp((int)low.y, 0, height - 1) * picture.width, bottom = (size_t)clamp((int)low.y + 1, 0, height - 1) * picture.width;
+  const size_t top = (size_t)clamp((int)low.y, 0, height - 1) * picture.width,
+               bottom = (size_t)clamp((int)low.y + 1, 0, height - 1) * picture.width;
   __global const float* illuminant = picture_illuminant(spectra, light);
   const float4 r00 = sigmoid_illuminant(illuminant, vload4(top + x0, picture.texels), lambda);
   const float4 r10 = sigmoid_illuminant(illuminant, vload4(top + x1, picture.texels), lambda);
@@ -28,7 +31,8 @@ static inline float4 textured_area_light_emitted(const Spectra* spectra, const L
   return mix(mix(r00, r10, t.x), mix(r01, r11, t.x), t.y) * light->scale;
 }
 
-static inline int textured_area_light_sample(const Scene* scene, __global const LightRecord* light, float3 p, float4 lambda, float2 u, LightSample* s) {
+static inline int textured_area_light_sample(const Scene* scene, __global const LightRecord* light,
+                                             float3 p, float4 lambda, float2 u, LightSample* s) {
   AreaSample point;
   if (!area_sample_towards(scene, light, p, u, &point, s)) return 0;
   const float3 d = point.p - p;
@@ -44,20 +48,26 @@ static inline int textured_area_light_sample(const Scene* scene, __global const 
   } else if (alpha != CAPLET_NONE)
     stopped = alpha_chance(&scene->materials, &scene->spectra, alpha, found.uv, found.p, found.ng);
   if (!(stopped > 0.0f)) return 0;
-  s->radiance = textured_area_light_emitted(&scene->spectra, &scene->lights, light, found.uv, lambda) * stopped;
+  s->radiance =
+      textured_area_light_emitted(&scene->spectra, &scene->lights, light, found.uv, lambda) *
+      stopped;
   return max4(s->radiance) > 0.0f;
 }
 
-static inline float textured_area_light_pdf(const Scene* scene, __global const LightRecord* light, float3 p, const Surface* hit, float3 wi) {
+static inline float textured_area_light_pdf(const Scene* scene, __global const LightRecord* light,
+                                            float3 p, const Surface* hit, float3 wi) {
   __global const GeometryRecord* geometry = scene->surfaces.geometries + light->geometry;
   const int is_ball = area_ball(&scene->lights, light) != 0;
-  const int by_area = geometry->shape == shape_triangle || geometry->shape == shape_disk || geometry->shape == shape_cylinder;
+  const int by_area = geometry->shape == shape_triangle || geometry->shape == shape_disk ||
+                      geometry->shape == shape_cylinder;
   if (geometry->alpha != CAPLET_NONE && (is_ball || !by_area)) {
     // Light from behind a hole of the primitive's own is not sampled.
     HitRecord first;
     const float3 away = hit->p - p;
     const float distance = sqrt(dot(away, away));
-    if (primitive_crossing(&scene->tree, &scene->surfaces, light->slot, light->instance, p, wi, 0.0f, &first) && first.t < distance * (1.0f - 1e-4f) - hit->error)
+    if (primitive_crossing(&scene->tree, &scene->surfaces, light->slot, light->instance, p, wi,
+                           0.0f, &first) &&
+        first.t < distance * (1.0f - 1e-4f) - hit->error)
       return 0.0f;
   }
   return area_pdf(scene, light, p, hit->p, hit->ng, wi);

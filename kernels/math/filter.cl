@@ -40,7 +40,8 @@ static inline float filter_axis(__global const float* table, uint cells, float u
 // Returns the offset from the pixel's centre, in pixels, for u in [0, 1)^2, by a table of width and
 // height cells an axis. *weight is the weight of the sample: 1 for filters that are nowhere
 // negative, otherwise plus or minus a constant, 1 on average.
-static inline float2 filter_sample(__global const float* table, uint width, uint height, float2 u, float* weight) {
+static inline float2 filter_sample(__global const float* table, uint width, uint height, float2 u,
+                                   float* weight) {
   *weight = 1.0f;
   const float x = filter_axis(table, width, u.x, weight);
   const float y = filter_axis(table + 3 * (width + 1) + 1, height, u.y, weight);

@@ -17,7 +17,8 @@ static inline float phase_density(float cosine, float g) {
 // Samples the new direction of a ray of direction w (unit).
 static inline float3 phase_sample(float3 w, float g, float2 u, float* pdf) {
   const float t = (1.0f - g * g) / (1.0f - g + 2.0f * g * u.x);
-  const float cosine = clamp(fabs(g) < 1e-3f ? 1.0f - 2.0f * u.x : (1.0f + g * g - t * t) / (2.0f * g), -1.0f, 1.0f);
+  const float cosine =
+      clamp(fabs(g) < 1e-3f ? 1.0f - 2.0f * u.x : (1.0f + g * g - t * t) / (2.0f * g), -1.0f, 1.0f);
   const float sine = sqrt(fmax(0.0f, 1.0f - cosine * cosine)), phi = 2.0f * CAPLET_PI * u.y;
   const Frame frame = frame_from_normal(w);
   *pdf = phase_density(cosine, g);

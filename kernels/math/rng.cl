@@ -19,7 +19,9 @@ static inline uint hash_mix(uint x) {
 static inline uint hash_combine(uint a, uint b) { return hash_mix(a + b * 0x9e3779b9u); }
 
 // Returns the seed of all random numbers of a pixel.
-static inline uint pixel_seed(uint x, uint y, uint seed) { return hash_combine(hash_combine(hash_mix(seed), x), y); }
+static inline uint pixel_seed(uint x, uint y, uint seed) {
+  return hash_combine(hash_combine(hash_mix(seed), x), y);
+}
 
 // Returns the top 24 bits as a float in [0, 1 - 2^-24].
 static inline float unit_float(uint x) { return (float)(x >> 8) * 5.9604644775390625e-8f; }

@@ -17,8 +17,8 @@ static inline float3 square_to_sphere(float2 uv) {
   const float r = 1.0f - fabs(fold);
   const float phi = (r == 0.0f ? 1.0f : (a.y - a.x) / r + 1.0f) * (0.25f * CAPLET_PI);
   const float across = r * sqrt(fmax(0.0f, 2.0f - r * r));
-  return (float3)(copysign(cos(phi) * across, signed_uv.x), copysign(sin(phi) * across, signed_uv.y),
-                  copysign(1.0f - r * r, fold));
+  return (float3)(copysign(cos(phi) * across, signed_uv.x),
+                  copysign(sin(phi) * across, signed_uv.y), copysign(1.0f - r * r, fold));
 }
 
 static inline float2 sphere_to_square(float3 d) {

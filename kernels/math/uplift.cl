@@ -32,11 +32,16 @@ static inline float3 uplift_coefficients(__global const float* table, float3 rgb
   const uint column = uplift_node(sqrt(fmin(turned.y / value, 1.0f)), CAPLET_UPLIFT_RATIOS, &x);
   const uint row = uplift_node(sqrt(fmin(turned.z / value, 1.0f)), CAPLET_UPLIFT_RATIOS, &y);
   const uint layer = uplift_node(1.0f - sqrt(1.0f - value), CAPLET_UPLIFT_VALUES, &z);
-  const uint row_floats = 3u * CAPLET_UPLIFT_RATIOS, layer_floats = row_floats * CAPLET_UPLIFT_RATIOS;
-  __global const float* cell = table + (top * CAPLET_UPLIFT_VALUES + layer) * layer_floats + row * row_floats + 3u * column;
-  const float3 near_low = uplift_between(cell, 3u, x), near_high = uplift_between(cell + row_floats, 3u, x);
-  const float3 far_low = uplift_between(cell + layer_floats, 3u, x), far_high = uplift_between(cell + layer_floats + row_floats, 3u, x);
-  const float3 near = near_low + y * (near_high - near_low), far = far_low + y * (far_high - far_low);
+  const uint row_floats = 3u * CAPLET_UPLIFT_RATIOS,
+             layer_floats = row_floats * CAPLET_UPLIFT_RATIOS;
+  __global const float* cell =
+      table + (top * CAPLET_UPLIFT_VALUES + layer) * layer_floats + row * row_floats + 3u * column;
+  const float3 near_low = uplift_between(cell, 3u, x),
+               near_high = uplift_between(cell + row_floats, 3u, x);
+  const float3 far_low = uplift_between(cell + layer_floats, 3u, x),
+               far_high = uplift_between(cell + layer_floats + row_floats, 3u, x);
+  const float3 near = near_low + y * (near_high - near_low),
+               far = far_low + y * (far_high - far_low);
   return (near + z * (far - near)) / sqrt(value);
 }
 

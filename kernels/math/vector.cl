@@ -21,7 +21,8 @@ static inline float mean4(float4 v) { return 0.25f * (v.x + v.y + v.z + v.w); }
 static inline float3 load3(__global const float* p) { return (float3)(p[0], p[1], p[2]); }
 
 static inline float3 transform_point(__global const float* m, float3 p) {
-  return (float3)(m[0] * p.x + m[1] * p.y + m[2] * p.z + m[3], m[4] * p.x + m[5] * p.y + m[6] * p.z + m[7],
+  return (float3)(m[0] * p.x + m[1] * p.y + m[2] * p.z + m[3],
+                  m[4] * p.x + m[5] * p.y + m[6] * p.z + m[7],
                   m[8] * p.x + m[9] * p.y + m[10] * p.z + m[11]);
 }
 static inline float3 transform_vector(__global const float* m, float3 v) {
@@ -46,20 +47,27 @@ static inline Frame frame_from_pole(float3 n, float sign) {
   f.n = n;
   return f;
 }
-static inline Frame frame_from_normal(float3 n) { return frame_from_pole(n, n.z >= 0.0f ? 1.0f : -1.0f); }
+static inline Frame frame_from_normal(float3 n) {
+  return frame_from_pole(n, n.z >= 0.0f ? 1.0f : -1.0f);
+}
 // Returns the frame with normal n whose s lies along dpdu as far as possible.
 static inline Frame frame_from_tangent(float3 n, float3 dpdu) {
   const float3 s = dpdu - n * dot(n, dpdu);
   const float length_squared = dot(s, s);
-  if (!(length_squared > 1e-20f * dot(dpdu, dpdu)) || !(length_squared > 0.0f)) return frame_from_normal(n);
+  if (!(length_squared > 1e-20f * dot(dpdu, dpdu)) || !(length_squared > 0.0f))
+    return frame_from_normal(n);
   Frame f;
   f.s = s * rsqrt(length_squared);
   f.t = cross(n, f.s);
   f.n = n;
   return f;
 }
-static inline float3 to_local(const Frame* f, float3 v) { return (float3)(dot(v, f->s), dot(v, f->t), dot(v, f->n)); }
-static inline float3 to_world(const Frame* f, float3 v) { return f->s * v.x + f->t * v.y + f->n * v.z; }
+static inline float3 to_local(const Frame* f, float3 v) {
+  return (float3)(dot(v, f->s), dot(v, f->t), dot(v, f->n));
+}
+static inline float3 to_world(const Frame* f, float3 v) {
+  return f->s * v.x + f->t * v.y + f->n * v.z;
+}
 
 static inline float power_heuristic(float a, float b) {
   if (isinf(a)) return 1.0f;
@@ -71,7 +79,9 @@ static inline float power_heuristic(float a, float b) {
 // The built-in functions spend most of their time on reducing large arguments.
 static inline float sin_small(float x) {
   const float z = x * x;
-  return x + x * z * (-1.66666667e-1f + z * (8.33333333e-3f + z * (-1.98412698e-4f + z * 2.75573192e-6f)));
+  return x +
+         x * z *
+             (-1.66666667e-1f + z * (8.33333333e-3f + z * (-1.98412698e-4f + z * 2.75573192e-6f)));
 }
 static inline float cos_small(float x) {
   const float z = x * x;

@@ -14,15 +14,20 @@ static inline MediumBox cloud_medium_box(const MediumView* m) {
   box.place = cloud_medium_place(m->data);
   box.majorants = m->grids + cloud_medium_majorants(m->data);
   box.size = 1;
-  box.extinction = cloud_medium_scale(m->data) * (spectrum_eval(m->spectra, cloud_medium_sigma_a(m->data), m->lambda) +
-                                                  spectrum_eval(m->spectra, cloud_medium_sigma_s(m->data), m->lambda));
+  box.extinction = cloud_medium_scale(m->data) *
+                   (spectrum_eval(m->spectra, cloud_medium_sigma_a(m->data), m->lambda) +
+                    spectrum_eval(m->spectra, cloud_medium_sigma_s(m->data), m->lambda));
   return box;
 }
 
 // Returns the gradient of the noise, by differences.
 static inline float3 cloud_slope(float3 p) {
   const float step = 0.01f, here = noise_at(p);
-  return ((float3)(noise_at(p + (float3)(step, 0.0f, 0.0f)), noise_at(p + (float3)(0.0f, step, 0.0f)), noise_at(p + (float3)(0.0f, 0.0f, step))) - here) / step;
+  return ((float3)(noise_at(p + (float3)(step, 0.0f, 0.0f)),
+                   noise_at(p + (float3)(0.0f, step, 0.0f)),
+                   noise_at(p + (float3)(0.0f, 0.0f, step))) -
+          here) /
+         step;
 }
 
 // Returns the density, from 0 to 1, at a point of the medium's space.
@@ -50,7 +55,9 @@ static inline float cloud_density(__global const float* data, float3 p) {
 static inline MediumPoint cloud_medium_at(const MediumView* m, float3 p, float3 q) {
   (void)p;
   __global const float* data = m->data;
-  const float density = cloud_medium_scale(data) * cloud_density(data, load3(cloud_medium_low(data)) + q * load3(cloud_medium_sides(data)));
+  const float density =
+      cloud_medium_scale(data) *
+      cloud_density(data, load3(cloud_medium_low(data)) + q * load3(cloud_medium_sides(data)));
   MediumPoint at;
   at.sigma_a = density * spectrum_eval(m->spectra, cloud_medium_sigma_a(data), m->lambda);
   at.sigma_s = density * spectrum_eval(m->spectra, cloud_medium_sigma_s(data), m->lambda);

@@ -22,9 +22,13 @@ static inline GridCells grid_cells(int3 size, float3 q) {
   GridCells out;
   for (int i = 0; i < 8; ++i) {
     const int3 c = first + (int3)(i & 1, i >> 1 & 1, i >> 2);
-    const int outside = c.x < 0 || c.y < 0 || c.z < 0 || c.x >= size.x || c.y >= size.y || c.z >= size.z;
-    out.cell[i] = outside ? 0 : ((size_t)c.z * (size_t)size.y + (size_t)c.y) * (size_t)size.x + (size_t)c.x;
-    const float x = (i & 1) != 0 ? part.x : 1.0f - part.x, y = (i & 2) != 0 ? part.y : 1.0f - part.y, z = (i & 4) != 0 ? part.z : 1.0f - part.z;
+    const int outside =
+        c.x < 0 || c.y < 0 || c.z < 0 || c.x >= size.x || c.y >= size.y || c.z >= size.z;
+    out.cell[i] =
+        outside ? 0 : ((size_t)c.z * (size_t)size.y + (size_t)c.y) * (size_t)size.x + (size_t)c.x;
+    const float x = (i & 1) != 0 ? part.x : 1.0f - part.x,
+                y = (i & 2) != 0 ? part.y : 1.0f - part.y,
+                z = (i & 4) != 0 ? part.z : 1.0f - part.z;
     out.weight[i] = outside ? 0.0f : x * y * z;
   }
   return out;

@@ -34,8 +34,10 @@ enum {
 #undef MEDIUM
 };
 
-static inline MediumView medium_view(const Media* media, const Spectra* spectra, uint medium, float4 lambda) {
-  const MediumView view = {spectra, media->media_data + media->mediums[medium].data, media->media_grids, lambda};
+static inline MediumView medium_view(const Media* media, const Spectra* spectra, uint medium,
+                                     float4 lambda) {
+  const MediumView view = {spectra, media->media_data + media->mediums[medium].data,
+                           media->media_grids, lambda};
   return view;
 }
 
@@ -44,7 +46,8 @@ static inline int medium_is_uniform(uint kind) {
 #define MEDIUM_IS_SO_uniform 1
 #define MEDIUM_IS_SO_varying 0
 #define MEDIUM(name, way) \
-  case medium_##name: return MEDIUM_IS_SO_##way;
+  case medium_##name:     \
+    return MEDIUM_IS_SO_##way;
 #include "rows/media.def"
 #undef MEDIUM
     default: return 1;
@@ -55,7 +58,8 @@ static inline int medium_is_uniform(uint kind) {
 static inline float medium_g(uint kind, __global const float* data) {
   switch (kind) {
 #define MEDIUM(name, way) \
-  case medium_##name: return name##_medium_g(data);
+  case medium_##name:     \
+    return name##_medium_g(data);
 #include "rows/media.def"
 #undef MEDIUM
     default: return 0.0f;
@@ -66,7 +70,8 @@ static inline float medium_g(uint kind, __global const float* data) {
 static inline MediumPoint medium_everywhere(uint kind, const MediumView* view) {
   switch (kind) {
 #define MEDIUM_EVERYWHERE_uniform(name) \
-  case medium_##name: return name##_medium_at(view);
+  case medium_##name:                   \
+    return name##_medium_at(view);
 #define MEDIUM_EVERYWHERE_varying(name)
 #define MEDIUM(name, way) MEDIUM_EVERYWHERE_##way(name)
 #include "rows/media.def"
@@ -83,7 +88,8 @@ static inline MediumBox medium_box(uint kind, const MediumView* view) {
   switch (kind) {
 #define MEDIUM_BOX_uniform(name)
 #define MEDIUM_BOX_varying(name) \
-  case medium_##name: return name##_medium_box(view);
+  case medium_##name:            \
+    return name##_medium_box(view);
 #define MEDIUM(name, way) MEDIUM_BOX_##way(name)
 #include "rows/media.def"
 #undef MEDIUM
@@ -93,12 +99,14 @@ static inline MediumBox medium_box(uint kind, const MediumView* view) {
     }
   }
 }
-static inline MediumPoint medium_at(uint kind, const MediumView* view, __global const float* place, float3 p) {
+static inline MediumPoint medium_at(uint kind, const MediumView* view, __global const float* place,
+                                    float3 p) {
   const float3 q = transform_point(place, p);
   switch (kind) {
 #define MEDIUM_AT_uniform(name)
 #define MEDIUM_AT_varying(name) \
-  case medium_##name: return name##_medium_at(view, p, q);
+  case medium_##name:           \
+    return name##_medium_at(view, p, q);
 #define MEDIUM(name, way) MEDIUM_AT_##way(name)
 #include "rows/media.def"
 #undef MEDIUM

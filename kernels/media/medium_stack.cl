@@ -3,16 +3,16 @@
 //
 // This file finds the medium at a point of a ray: that within the boundary of the highest number of
 // those whose solids hold the point. A boundary counts once for each such solid (docs/media.md). A
-// ray carries the boundaries that it is within, at most CAPLET_MEDIUM_STACK_SIZE of them; of more, the lowest
-// numbers are forgotten.
+// ray carries the boundaries that it is within, at most CAPLET_MEDIUM_STACK_SIZE of them; of more,
+// the lowest numbers are forgotten.
 #ifndef CAPLET_MEDIA_MEDIUM_STACK_CL
 #define CAPLET_MEDIA_MEDIUM_STACK_CL
 
 #include "groups.cl"
 #include "shared/kinds.h"
 
-// MediumStack is the state of a ray. inside: for each boundary its number + 1 above a count in bits 0..7,
-// 0 where there is none. around: the medium where no solid is.
+// MediumStack is the state of a ray. inside: for each boundary its number + 1 above a count in bits
+// 0..7, 0 where there is none. around: the medium where no solid is.
 typedef struct {
   uint4 inside;
   uint around;
@@ -29,7 +29,8 @@ static inline uint medium_stack_medium(const Media* media, const MediumStack* st
 
 static inline int medium_stack_contains(const MediumStack* stack, uint boundary) {
   const uint key = boundary + 1u;
-  return (stack->inside.x >> 8) == key || (stack->inside.y >> 8) == key || (stack->inside.z >> 8) == key || (stack->inside.w >> 8) == key;
+  return (stack->inside.x >> 8) == key || (stack->inside.y >> 8) == key ||
+         (stack->inside.z >> 8) == key || (stack->inside.w >> 8) == key;
 }
 
 static inline void medium_stack_enter(MediumStack* stack, uint boundary) {
@@ -61,20 +62,25 @@ static inline void medium_stack_leave(const Media* media, MediumStack* stack, ui
 }
 
 // Returns the boundary of a hit, or CAPLET_NONE.
-static inline uint boundary_of(const Tree* tree, const Surfaces* surfaces, const Media* media, const HitRecord* hit) {
+static inline uint boundary_of(const Tree* tree, const Surfaces* surfaces, const Media* media,
+                               const HitRecord* hit) {
   return media->geometry_boundary[surfaces->primitive_geometry[as_uint(tree->leaves[hit->slot])]];
 }
 
 // Returns 1 if a ray that goes through the surface of a hit leaves the boundary.
-static inline int boundary_is_left(const Tree* tree, const Surfaces* surfaces, const Media* media, uint boundary, const HitRecord* hit) {
+static inline int boundary_is_left(const Tree* tree, const Surfaces* surfaces, const Media* media,
+                                   uint boundary, const HitRecord* hit) {
   const int leaving = (hit->surface & CAPLET_LEAVING) != 0;
   if (!(media->boundaries[boundary].flags & CAPLET_BOUNDARY_SHEET)) return leaving;
-  const uint flags = surfaces->geometries[surfaces->primitive_geometry[as_uint(tree->leaves[hit->slot])]].flags;
+  const uint flags =
+      surfaces->geometries[surfaces->primitive_geometry[as_uint(tree->leaves[hit->slot])]].flags;
   return leaving != ((flags & CAPLET_GEOMETRY_FLIP_NORMAL) != 0);
 }
 
 // Updates the boundaries of a ray that went through the surface of a hit.
-static inline void medium_stack_cross(const Tree* tree, const Surfaces* surfaces, const Media* media, const HitRecord* hit, MediumStack* stack) {
+static inline void medium_stack_cross(const Tree* tree, const Surfaces* surfaces,
+                                      const Media* media, const HitRecord* hit,
+                                      MediumStack* stack) {
   const uint boundary = boundary_of(tree, surfaces, media, hit);
   if (boundary == CAPLET_NONE) return;
   if (boundary_is_left(tree, surfaces, media, boundary, hit))
@@ -86,7 +92,9 @@ static inline void medium_stack_cross(const Tree* tree, const Surfaces* surfaces
 // Returns the boundaries of a ray on its way to a hit. A ray meets only one of the solids that
 // touch at a point; when it leaves the other one, that shows that it was inside. endless: the ray
 // goes on for ever where it hits nothing.
-static inline MediumStack medium_stack_before(const Tree* tree, const Surfaces* surfaces, const Media* media, const HitRecord* hit, int endless, MediumStack stack) {
+static inline MediumStack medium_stack_before(const Tree* tree, const Surfaces* surfaces,
+                                              const Media* media, const HitRecord* hit, int endless,
+                                              MediumStack stack) {
   if (hit->slot == CAPLET_NONE && !endless) return stack;
   if (hit->slot == CAPLET_NONE) {
     // No closed solid contains a ray that goes on for ever: the surfaces by which it left were met
@@ -94,7 +102,8 @@ static inline MediumStack medium_stack_before(const Tree* tree, const Surfaces* 
     uint all[CAPLET_MEDIUM_STACK_SIZE];
     vstore4(stack.inside, 0, all);
     for (int i = 0; i < CAPLET_MEDIUM_STACK_SIZE; ++i)
-      if (all[i] != 0u && (media->boundaries[(all[i] >> 8) - 1u].flags & CAPLET_BOUNDARY_CLOSED) != 0) {
+      if (all[i] != 0u &&
+          (media->boundaries[(all[i] >> 8) - 1u].flags & CAPLET_BOUNDARY_CLOSED) != 0) {
         all[i] = 1u | (all[i] & ~255u);
         stack.inside = vload4(0, all);
         medium_stack_leave(media, &stack, (all[i] >> 8) - 1u);
@@ -103,8 +112,11 @@ static inline MediumStack medium_stack_before(const Tree* tree, const Surfaces* 
     return stack;
   }
   const uint boundary = boundary_of(tree, surfaces, media, hit);
-  if (boundary == CAPLET_NONE || (media->boundaries[boundary].flags & CAPLET_BOUNDARY_CLOSED) == 0) return stack;
-  if (!medium_stack_contains(&stack, boundary) && boundary_is_left(tree, surfaces, media, boundary, hit)) medium_stack_enter(&stack, boundary);
+  if (boundary == CAPLET_NONE || (media->boundaries[boundary].flags & CAPLET_BOUNDARY_CLOSED) == 0)
+    return stack;
+  if (!medium_stack_contains(&stack, boundary) &&
+      boundary_is_left(tree, surfaces, media, boundary, hit))
+    medium_stack_enter(&stack, boundary);
   return stack;
 }
 

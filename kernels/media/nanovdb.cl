@@ -13,8 +13,9 @@ static inline MediumBox nanovdb_medium_box(const MediumView* m) {
   box.place = nanovdb_medium_place(m->data);
   box.majorants = m->grids + nanovdb_medium_majorants(m->data);
   box.size = CAPLET_SPARSE_MAJORANT_CELLS;
-  box.extinction = nanovdb_medium_scale(m->data) * (spectrum_eval(m->spectra, nanovdb_medium_sigma_a(m->data), m->lambda) +
-                                                    spectrum_eval(m->spectra, nanovdb_medium_sigma_s(m->data), m->lambda));
+  box.extinction = nanovdb_medium_scale(m->data) *
+                   (spectrum_eval(m->spectra, nanovdb_medium_sigma_a(m->data), m->lambda) +
+                    spectrum_eval(m->spectra, nanovdb_medium_sigma_s(m->data), m->lambda));
   return box;
 }
 
@@ -23,12 +24,18 @@ static inline MediumBox nanovdb_medium_box(const MediumView* m) {
 // coordinates, how many there are along each side, the float where their voxels begin, 0; and for
 // each brick its number or CAPLET_NONE.
 static inline float sparse_voxel(__global const float* grid, int3 at) {
-  const int3 low = (int3)(as_int(grid[12]), as_int(grid[13]), as_int(grid[14])), count = (int3)(as_int(grid[15]), as_int(grid[16]), as_int(grid[17]));
+  const int3 low = (int3)(as_int(grid[12]), as_int(grid[13]), as_int(grid[14])),
+             count = (int3)(as_int(grid[15]), as_int(grid[16]), as_int(grid[17]));
   const int3 brick = (int3)(at.x >> 3, at.y >> 3, at.z >> 3) - low;
-  if (brick.x < 0 || brick.y < 0 || brick.z < 0 || brick.x >= count.x || brick.y >= count.y || brick.z >= count.z) return 0.0f;
-  const uint number = as_uint(grid[20u + (((uint)brick.z * (uint)count.y + (uint)brick.y) * (uint)count.x + (uint)brick.x)]);
+  if (brick.x < 0 || brick.y < 0 || brick.z < 0 || brick.x >= count.x || brick.y >= count.y ||
+      brick.z >= count.z)
+    return 0.0f;
+  const uint number =
+      as_uint(grid[20u + (((uint)brick.z * (uint)count.y + (uint)brick.y) * (uint)count.x +
+                          (uint)brick.x)]);
   if (number == CAPLET_NONE) return 0.0f;
-  return grid[as_uint(grid[18]) + number * 512u + (uint)(((at.z & 7) * 8 + (at.y & 7)) * 8 + (at.x & 7))];
+  return grid[as_uint(grid[18]) + number * 512u +
+              (uint)(((at.z & 7) * 8 + (at.y & 7)) * 8 + (at.x & 7))];
 }
 
 // Values are at whole voxel coordinates, and linear between them.
@@ -38,9 +45,12 @@ static inline float sparse_value(__global const float* grid, float3 p) {
   const int3 first = (int3)((int)low.x, (int)low.y, (int)low.z);
   float sum = 0.0f;
   for (int i = 0; i < 8; ++i) {
-    const float x = (i & 1) != 0 ? part.x : 1.0f - part.x, y = (i & 2) != 0 ? part.y : 1.0f - part.y, z = (i & 4) != 0 ? part.z : 1.0f - part.z;
+    const float x = (i & 1) != 0 ? part.x : 1.0f - part.x,
+                y = (i & 2) != 0 ? part.y : 1.0f - part.y,
+                z = (i & 4) != 0 ? part.z : 1.0f - part.z;
     const float weight = x * y * z;
-    if (weight > 0.0f) sum += weight * sparse_voxel(grid, first + (int3)(i & 1, i >> 1 & 1, i >> 2));
+    if (weight > 0.0f)
+      sum += weight * sparse_voxel(grid, first + (int3)(i & 1, i >> 1 & 1, i >> 2));
   }
   return sum;
 }
@@ -48,7 +58,8 @@ static inline float sparse_value(__global const float* grid, float3 p) {
 static inline MediumPoint nanovdb_medium_at(const MediumView* m, float3 p, float3 q) {
   (void)q;
   __global const float* data = m->data;
-  const float density = nanovdb_medium_scale(data) * sparse_value(m->grids + nanovdb_medium_density(data), p);
+  const float density =
+      nanovdb_medium_scale(data) * sparse_value(m->grids + nanovdb_medium_density(data), p);
   MediumPoint at;
   at.sigma_a = density * spectrum_eval(m->spectra, nanovdb_medium_sigma_a(data), m->lambda);
   at.sigma_s = density * spectrum_eval(m->spectra, nanovdb_medium_sigma_s(data), m->lambda);

@@ -11,7 +11,8 @@
 static inline int material_passes(const Materials* materials, uint material) {
   switch (materials->materials[material].kind) {
 #define MATERIAL(name, traits) \
-  case material_##name: return ((traits)&trait_passes) != 0;
+  case material_##name:        \
+    return ((traits)&trait_passes) != 0;
 #define CHOICE(name, traits)
 #include "rows/materials.def"
 #undef MATERIAL
@@ -20,12 +21,17 @@ static inline int material_passes(const Materials* materials, uint material) {
 }
 
 // Returns whether the surface of a hit lets light pass.
-static inline int surface_passes(const Tree* tree, const Surfaces* surfaces, const Materials* materials, const HitRecord* hit) {
+static inline int surface_passes(const Tree* tree, const Surfaces* surfaces,
+                                 const Materials* materials, const HitRecord* hit) {
   const uint primitive = as_uint(tree->leaves[hit->slot]);
-  __global const GeometryRecord* geometry = surfaces->geometries + surfaces->primitive_geometry[primitive];
+  __global const GeometryRecord* geometry =
+      surfaces->geometries + surfaces->primitive_geometry[primitive];
   uint material = geometry->material;
   if (geometry->surface_begin != CAPLET_NONE)
-    material = surfaces->surface_materials[geometry->surface_begin + (hit->surface & CAPLET_SURFACE_MASK)] & ~CAPLET_SURFACE_DARK;
+    material =
+        surfaces
+            ->surface_materials[geometry->surface_begin + (hit->surface & CAPLET_SURFACE_MASK)] &
+        ~CAPLET_SURFACE_DARK;
   return material_passes(materials, material);
 }
 

@@ -30,16 +30,20 @@ static inline float4 rgbgrid_value(const MediumView* m, const GridCells* cells, 
 static inline MediumPoint rgbgrid_medium_at(const MediumView* m, float3 p, float3 q) {
   (void)p;
   __global const float* data = m->data;
-  const int3 size = (int3)((int)rgbgrid_medium_nx(data), (int)rgbgrid_medium_ny(data), (int)rgbgrid_medium_nz(data));
+  const int3 size = (int3)((int)rgbgrid_medium_nx(data), (int)rgbgrid_medium_ny(data),
+                           (int)rgbgrid_medium_nz(data));
   const GridCells cells = grid_cells(size, q);
   const float scale = rgbgrid_medium_scale(data), glow = rgbgrid_medium_le_scale(data);
-  const uint a = rgbgrid_medium_sigma_a(data), s = rgbgrid_medium_sigma_s(data), le = rgbgrid_medium_le(data);
+  const uint a = rgbgrid_medium_sigma_a(data), s = rgbgrid_medium_sigma_s(data),
+             le = rgbgrid_medium_le(data);
   MediumPoint at;
   at.sigma_a = a == CAPLET_NONE ? (float4)(scale) : scale * rgbgrid_value(m, &cells, a);
   at.sigma_s = s == CAPLET_NONE ? (float4)(scale) : scale * rgbgrid_value(m, &cells, s);
   at.le = (float4)(0.0f);
   if (le != CAPLET_NONE && glow > 0.0f)
-    at.le = glow * rgbgrid_value(m, &cells, le) * spectrum_table_at4(m->spectra->spectrum_tables + rgbgrid_medium_illuminant(data), m->lambda);
+    at.le = glow * rgbgrid_value(m, &cells, le) *
+            spectrum_table_at4(m->spectra->spectrum_tables + rgbgrid_medium_illuminant(data),
+                               m->lambda);
   return at;
 }
 

@@ -22,7 +22,9 @@
 typedef struct {
   uint key, count;
 } MediumNumbers;
-static inline float medium_number(MediumNumbers* n) { return unit_float(hash_combine(n->key, n->count++)); }
+static inline float medium_number(MediumNumbers* n) {
+  return unit_float(hash_combine(n->key, n->count++));
+}
 
 typedef struct {
   float4 throughput, scattering, light;
@@ -54,7 +56,8 @@ static inline float4 uniform_emission(MediumPoint at, float d) {
   return at.sigma_a * at.le * d * select(exact, series, depth < 1e-2f);
 }
 
-static inline int sample_distance_uniform(MediumPoint at, float d, int scatters, float u, MediumWeights* w, float4* emitted, float* length_gone) {
+static inline int sample_distance_uniform(MediumPoint at, float d, int scatters, float u,
+                                          MediumWeights* w, float4* emitted, float* length_gone) {
   d = fmin(d, CAPLET_FARTHEST);
   const float4 sigma_t = at.sigma_a + at.sigma_s;
   if (scatters && max4(at.le) > 0.0f) *emitted += w->throughput * uniform_emission(at, d);
@@ -88,7 +91,8 @@ static inline float4 scattering_share(float4 sigma_s, float4 null) {
 // Samples a step by the random number u where no more than `most` is left of a cell. Returns 0 if
 // the ray goes through, and multiplies the weights by the transmittance. Else there is a collision
 // at *way, and *ratio is the transmittance over the hero's density there.
-static inline int collides(float4 majorant, float most, float u, MediumWeights* w, float* way, float4* ratio) {
+static inline int collides(float4 majorant, float most, float u, MediumWeights* w, float* way,
+                           float4* ratio) {
   const float hero = majorant.x, gone = hero > 0.0f ? -log(1.0f - u) / hero : INFINITY;
   const int stays = gone < most;
   *way = stays ? gone : most;
@@ -103,8 +107,10 @@ static inline int collides(float4 majorant, float most, float u, MediumWeights* 
   return 0;
 }
 
-static inline int sample_distance_varying(uint kind, const MediumView* view, float3 o, float3 d, float t0, float t1, int scatters, float u, MediumNumbers* numbers,
-                                 MediumWeights* w, float4* emitted, float* t_scattered) {
+static inline int sample_distance_varying(uint kind, const MediumView* view, float3 o, float3 d,
+                                          float t0, float t1, int scatters, float u,
+                                          MediumNumbers* numbers, MediumWeights* w, float4* emitted,
+                                          float* t_scattered) {
   const MediumBox box = medium_box(kind, view);
   MajorantWalk walk;
   if (!majorants_begin(&box, o, d, t0, t1, &walk)) return medium_passed;
@@ -153,15 +159,19 @@ static inline int sample_distance_varying(uint kind, const MediumView* view, flo
 // Travels from t0 to t1 (which may be infinite) along o + t d. scatters: scattered paths go on, and
 // emission counts. u: for the first length. Adds the medium's emission to *emitted; *t_scattered:
 // where a ray is scattered.
-static inline int medium_sample_distance(const Media* media, const Spectra* spectra, uint medium, float4 lambda, float3 o, float3 d, float t0, float t1, int scatters,
-                                float u, MediumNumbers* numbers, MediumWeights* w, float4* emitted, float* t_scattered) {
+static inline int medium_sample_distance(const Media* media, const Spectra* spectra, uint medium,
+                                         float4 lambda, float3 o, float3 d, float t0, float t1,
+                                         int scatters, float u, MediumNumbers* numbers,
+                                         MediumWeights* w, float4* emitted, float* t_scattered) {
   const uint kind = media->mediums[medium].kind;
   const MediumView view = medium_view(media, spectra, medium, lambda);
   if (any_varying_medium && !medium_is_uniform(kind))
-    return sample_distance_varying(kind, &view, o, d, t0, t1, scatters, u, numbers, w, emitted, t_scattered);
+    return sample_distance_varying(kind, &view, o, d, t0, t1, scatters, u, numbers, w, emitted,
+                                   t_scattered);
   const float unit = length(d);
   float gone = 0.0f;
-  const int end = sample_distance_uniform(medium_everywhere(kind, &view), (t1 - t0) * unit, scatters, u, w, emitted, &gone);
+  const int end = sample_distance_uniform(medium_everywhere(kind, &view), (t1 - t0) * unit,
+                                          scatters, u, w, emitted, &gone);
   *t_scattered = t0 + gone / unit;
   return end;
 }
@@ -170,7 +180,8 @@ static inline int medium_sample_distance(const Media* media, const Spectra* spec
 // scatters it. Where the medium varies, this is ratio tracking (Novak, Selle and Jarosz, "Residual
 // ratio tracking for estimating attenuation in participating media", 2014). Returns 0 if nothing is
 // left.
-static inline int medium_dims(const Media* media, const Spectra* spectra, uint medium, float4 lambda, float3 o, float3 d, float t0, float t1,
+static inline int medium_dims(const Media* media, const Spectra* spectra, uint medium,
+                              float4 lambda, float3 o, float3 d, float t0, float t1,
                               MediumNumbers* numbers, MediumWeights* w) {
   const uint kind = media->mediums[medium].kind;
   const MediumView view = medium_view(media, spectra, medium, lambda);
@@ -192,7 +203,9 @@ static inline int medium_dims(const Media* media, const Spectra* spectra, uint m
     for (;;) {
       float way;
       float4 ratio;
-      if (!collides(majorant, (end - t) * unit, hero > 0.0f ? medium_number(numbers) : 0.0f, w, &way, &ratio)) break;
+      if (!collides(majorant, (end - t) * unit, hero > 0.0f ? medium_number(numbers) : 0.0f, w,
+                    &way, &ratio))
+        break;
       t += way / unit;
       const MediumPoint at = medium_at(kind, &view, box.place, o + t * d);
       const float4 null = fmax(majorant - at.sigma_a - at.sigma_s, 0.0f);

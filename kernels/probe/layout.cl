@@ -7,11 +7,11 @@
 #include "shared/records.h"
 
 // Word i of `words` holds 0x40000000 + 4 i: an ordinary float that tells its offset in bytes.
-#define PUT(value)                       \
-  {                                      \
-    const uint value_ = (uint)(value);   \
-    if (n < capacity) out[n] = value_;   \
-    ++n;                                 \
+#define PUT(value)                     \
+  {                                    \
+    const uint value_ = (uint)(value); \
+    if (n < capacity) out[n] = value_; \
+    ++n;                               \
   }
 #define PUT_FIELD(field, first)                                              \
   PUT((__global const uchar*)&record->field - (__global const uchar*)record) \
@@ -20,9 +20,9 @@
 
 __kernel void layout(__global uint* out, uint capacity, __global const uint* words) {
   uint n = 1;
-#define RECORD_BEGIN(name)                                           \
-  {                                                                  \
-    __global const name* record = (__global const name*)words;       \
+#define RECORD_BEGIN(name)                                     \
+  {                                                            \
+    __global const name* record = (__global const name*)words; \
     PUT((__global const uchar*)(record + 1) - (__global const uchar*)record)
 #define FIELD(type, name) PUT_FIELD(name, record->name)
 #define ARRAY(type, name, count) PUT_FIELD(name, record->name[0])

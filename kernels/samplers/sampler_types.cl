@@ -13,7 +13,8 @@ typedef struct {
   uint x, y;  // pixel of the full image
   uint sample;
   uint seed;  // of the pixel
-  uint number, key;  // of the Sobol samplers: the point's number within the sequence that the key names
+  uint number,
+      key;  // of the Sobol samplers: the point's number within the sequence that the key names
   __global const ViewRecord* view;
 } PathSample;
 

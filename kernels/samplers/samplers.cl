@@ -17,13 +17,13 @@
 // Programs with only one sampler do not test which it is.
 enum {
   sampler_rows = 0
-#define SAMPLER(name) + 1
+#define SAMPLER(name) +1
 #include "rows/samplers.def"
 #undef SAMPLER
 };
 enum {
   sampler_sum = 0
-#define SAMPLER(name) + sampler_##name
+#define SAMPLER(name) +sampler_##name
 #include "rows/samplers.def"
 #undef SAMPLER
 };
@@ -31,7 +31,8 @@ static inline uint sampler_of(__global const ViewRecord* view) {
   return sampler_rows == 1 ? (uint)sampler_sum : view->sampler;
 }
 
-static inline PathSample sample_of_pixel(__global const ViewRecord* view, uint x, uint y, uint sample) {
+static inline PathSample sample_of_pixel(__global const ViewRecord* view, uint x, uint y,
+                                         uint sample) {
   const uint seed = pixel_seed(x, y, view->seed);
   PathSample at = {x, y, sample, seed, sample, seed, view};
   if (sampler_of(view) == sampler_zsobol) zsobol_address(&at);
@@ -42,8 +43,10 @@ static inline PathSample sample_of_pixel(__global const ViewRecord* view, uint x
 static inline float2 sampler_2d(PathSample at, uint dimension) {
   uint2 pair = (uint2)(0u);
   switch (sampler_of(at.view)) {
-#define SAMPLER(name) \
-  case sampler_##name: pair = name##_pair(at, dimension); break;
+#define SAMPLER(name)                  \
+  case sampler_##name:                 \
+    pair = name##_pair(at, dimension); \
+    break;
 #include "rows/samplers.def"
 #undef SAMPLER
     default: break;
@@ -55,8 +58,9 @@ static inline float2 sampler_2d(PathSample at, uint dimension) {
 // stratifies.
 static inline uint sampler_bits(PathSample at, uint dimension) {
   switch (sampler_of(at.view)) {
-#define SAMPLER(name) \
-  case sampler_##name: return name##_bits(at, dimension);
+#define SAMPLER(name)  \
+  case sampler_##name: \
+    return name##_bits(at, dimension);
 #include "rows/samplers.def"
 #undef SAMPLER
     default: return 0u;
@@ -64,6 +68,8 @@ static inline uint sampler_bits(PathSample at, uint dimension) {
 }
 
 // Returns sampler_bits as a number in [0, 1).
-static inline float sampler_1d(PathSample at, uint dimension) { return unit_float(sampler_bits(at, dimension)); }
+static inline float sampler_1d(PathSample at, uint dimension) {
+  return unit_float(sampler_bits(at, dimension));
+}
 
 #endif

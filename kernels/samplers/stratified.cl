@@ -41,8 +41,10 @@ static inline uint stratified_part(PathSample at, uint seed) {
 static inline uint2 stratified_pair(PathSample at, uint dimension) {
   const uint seed = hash_combine(at.seed, dimension);
   const uint across = at.view->sampler_x, part = stratified_part(at, seed), row = part / across;
-  return (uint2)(within_part(at, part - row * across, across, hash_combine(seed ^ 0x68bc21ebu, at.sample)),
-                 within_part(at, row, at.view->sampler_y, hash_combine(seed ^ 0x02e5be93u, at.sample)));
+  return (
+      uint2)(within_part(at, part - row * across, across,
+                         hash_combine(seed ^ 0x68bc21ebu, at.sample)),
+             within_part(at, row, at.view->sampler_y, hash_combine(seed ^ 0x02e5be93u, at.sample)));
 }
 
 static inline uint stratified_bits(PathSample at, uint dimension) {

@@ -28,7 +28,8 @@ static inline void zsobol_address(PathSample* at) {
   const ulong pixel = (ulong)(spread_bits(at->x) | (spread_bits(at->y) << 1));
   const ulong index = (pixel << bits) | (at->sample & ((1u << bits) - 1u));
   at->number = (uint)index;
-  at->key = hash_combine(hash_combine(hash_mix(at->view->seed), (uint)(index >> 32)), at->sample >> bits);
+  at->key =
+      hash_combine(hash_combine(hash_mix(at->view->seed), (uint)(index >> 32)), at->sample >> bits);
 }
 
 static inline uint2 zsobol_pair(PathSample at, uint dimension) { return sobol_pair(at, dimension); }

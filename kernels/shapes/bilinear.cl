@@ -34,11 +34,14 @@ typedef struct {
   real x, y, z, ux, uy, uz, vx, vy, vz, wx, wy, wz;
 } BilinearImage;
 
-static inline real unit_clamp(real x) { return real_max(real_min(x, real_of(1.0f)), real_of(0.0f)); }
+static inline real unit_clamp(real x) {
+  return real_max(real_min(x, real_of(1.0f)), real_of(0.0f));
+}
 
 // Tests the crossing at u = num : rest, of one sign, where the Jacobian has that of `turn`. Returns
 // the lanes in which it is on the patch, and its depth.
-static inline real_mask bilinear_crossing(const BilinearImage* b, real num, real rest, real turn, real* depth) {
+static inline real_mask bilinear_crossing(const BilinearImage* b, real num, real rest, real turn,
+                                          real* depth) {
   real u = unit_clamp(num / (num + rest));
   real lx = b->vx + u * b->wx, ly = b->vy + u * b->wy;
   real px = b->x + u * b->ux, py = b->y + u * b->uy;
@@ -82,11 +85,13 @@ static inline Span bilinear_span(const ShapeRay* ray, __global const float* bloc
   __global const float* rx = p00 + axes.row_x;
   __global const float* ry = p00 + axes.row_y;
   __global const float* rz = p00 + axes.row_z;
-  const int p10 = 8 * (bilinear_at_p10 - bilinear_at_p00), p01 = 8 * (bilinear_at_p01 - bilinear_at_p00),
+  const int p10 = 8 * (bilinear_at_p10 - bilinear_at_p00),
+            p01 = 8 * (bilinear_at_p01 - bilinear_at_p00),
             p11 = 8 * (bilinear_at_p11 - bilinear_at_p00);
   const real z00 = real_load(rz, lane) - axes.koz, z10 = real_load(rz + p10, lane) - axes.koz;
   const real z01 = real_load(rz + p01, lane) - axes.koz, z11 = real_load(rz + p11, lane) - axes.koz;
-  real x00 = (real_load(rx, lane) - axes.kox) - axes.shear_x * z00, y00 = (real_load(ry, lane) - axes.koy) - axes.shear_y * z00;
+  real x00 = (real_load(rx, lane) - axes.kox) - axes.shear_x * z00,
+       y00 = (real_load(ry, lane) - axes.koy) - axes.shear_y * z00;
   real x10 = (real_load(rx + p10, lane) - axes.kox) - axes.shear_x * z10,
        y10 = (real_load(ry + p10, lane) - axes.koy) - axes.shear_y * z10;
   real x01 = (real_load(rx + p01, lane) - axes.kox) - axes.shear_x * z01,
@@ -96,11 +101,14 @@ static inline Span bilinear_span(const ShapeRay* ray, __global const float* bloc
   const real zero = real_of(0.0f);
   Span span = span_of(int_of(0), zero, zero);
   // The ray must pass the box of the corners' images.
-  const real low_x = real_min(real_min(x00, x10), real_min(x01, x11)), high_x = real_max(real_max(x00, x10), real_max(x01, x11));
-  const real low_y = real_min(real_min(y00, y10), real_min(y01, y11)), high_y = real_max(real_max(y00, y10), real_max(y01, y11));
+  const real low_x = real_min(real_min(x00, x10), real_min(x01, x11)),
+             high_x = real_max(real_max(x00, x10), real_max(x01, x11));
+  const real low_y = real_min(real_min(y00, y10), real_min(y01, y11)),
+             high_y = real_max(real_max(y00, y10), real_max(y01, y11));
   const real extent = real_max(real_max(-low_x, high_x), real_max(-low_y, high_y));
   const real room = extent * 0x1p-20f;
-  const real_mask near = (low_x <= room) & (high_x >= -room) & (low_y <= room) & (high_y >= -room) & (extent > 0.0f);
+  const real_mask near =
+      (low_x <= room) & (high_x >= -room) & (low_y <= room) & (high_y >= -room) & (extent > 0.0f);
   if (mask_bits(near) == 0) return span;
 
   const real scale = real_power_of_two_below_inverse(extent);
@@ -135,20 +143,25 @@ static inline Span bilinear_span(const ShapeRay* ray, __global const float* bloc
   b.wx = (x11 - bx) - b.ux, b.wy = (y11 - by) - b.uy, b.wz = (z11 - bz) - b.uz;
   // The normal points along the ray where the Jacobian (turned by the swap) and the ray's z have
   // one sign; at k : f1 it has the sign of k.
-  const real sense = (negative ? real_of(axes.inv_dz) : real_of(-axes.inv_dz)) * (swap ? real_of(-1.0f) : real_of(1.0f));
+  const real sense = (negative ? real_of(axes.inv_dz) : real_of(-axes.inv_dz)) *
+                     (swap ? real_of(-1.0f) : real_of(1.0f));
   const real_mask first_leaves = sense > 0.0f;
-  const real_mask first = k >= 0.0f ? f1 >= 0.0f : f1 <= 0.0f, second = k >= 0.0f ? f0 >= 0.0f : f0 <= 0.0f;
+  const real_mask first = k >= 0.0f ? f1 >= 0.0f : f1 <= 0.0f,
+                  second = k >= 0.0f ? f0 >= 0.0f : f0 <= 0.0f;
   real depth;
   span.enter = meets & (first_leaves ? second : first);
-  span.enter &= bilinear_crossing(&b, first_leaves ? f0 : k, first_leaves ? k : f1, first_leaves ? -k : k, &depth);
+  span.enter &= bilinear_crossing(&b, first_leaves ? f0 : k, first_leaves ? k : f1,
+                                  first_leaves ? -k : k, &depth);
   span.t_enter = depth * axes.inv_dz;
   span.exit = meets & (first_leaves ? first : second);
-  span.exit &= bilinear_crossing(&b, first_leaves ? k : f0, first_leaves ? f1 : k, first_leaves ? k : -k, &depth);
+  span.exit &= bilinear_crossing(&b, first_leaves ? k : f0, first_leaves ? f1 : k,
+                                 first_leaves ? k : -k, &depth);
   span.t_exit = depth * axes.inv_dz;
   return span;
 }
 
-static inline real_mask bilinear_hit(const ShapeRay* ray, __global const float* block, uint lane, real* t, real_mask* side) {
+static inline real_mask bilinear_hit(const ShapeRay* ray, __global const float* block, uint lane,
+                                     real* t, real_mask* side) {
   const Span span = bilinear_span(ray, block, lane);
   const real_mask enter = span.enter & (span.t_enter > ray->t_min) & int_of(ray->sees_entering);
   const real_mask exit = span.exit & (span.t_exit > ray->t_min) & int_of(ray->sees_leaving);

@@ -29,11 +29,14 @@ static inline void box_slab(real low, real high, float o, float inv, real* near,
 
 // Returns 1 / d. A component below 2^-50 of the largest counts as zero: along the box it moves the
 // ray by less than its size's rounding.
-static inline float box_inverse(float d, float largest) { return fabs(d) < 0x1p-50f * largest ? 0.0f : 1.0f / d; }
+static inline float box_inverse(float d, float largest) {
+  return fabs(d) < 0x1p-50f * largest ? 0.0f : 1.0f / d;
+}
 
 static inline Span box_span(const ShapeRay* ray, __global const float* block, uint lane) {
   const float largest = fmax(fmax(fabs(ray->dx), fabs(ray->dy)), fabs(ray->dz));
-  const float ix = box_inverse(ray->dx, largest), iy = box_inverse(ray->dy, largest), iz = box_inverse(ray->dz, largest);
+  const float ix = box_inverse(ray->dx, largest), iy = box_inverse(ray->dy, largest),
+              iz = box_inverse(ray->dz, largest);
   real near_x, near_y, near_z, far_x, far_y, far_z;
   const RealVector low = box_low_lanes(block, lane), high = box_high_lanes(block, lane);
   box_slab(low.x, high.x, ray->ox, ix, &near_x, &far_x);

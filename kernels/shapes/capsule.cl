@@ -20,21 +20,24 @@
 #include "shapes/lanes.cl"
 
 typedef struct {
-  real px, py, pz;     // the ray's point nearest to p0, relative to p0
-  real bx, by, bz;     // axis
-  real u, v, t0, h;    // position on the axis (0..1) is u + v t; the tube is crossed at t0 -+ h (capsule_line leaves h squared)
-  real r, ff;          // ff: f.f
+  real px, py, pz;   // the ray's point nearest to p0, relative to p0
+  real bx, by, bz;   // axis
+  real u, v, t0, h;  // position on the axis (0..1) is u + v t; the tube is crossed at t0 -+ h
+                     // (capsule_line leaves h squared)
+  real r, ff;        // ff: f.f
 } CapsuleLine;
 
 // Returns the crossing on the entering (sign -1) or leaving (+1) side, as an offset from the moved
 // origin; lanes without one leave `hit`.
-static inline real capsule_end(const ShapeRay* ray, const CapsuleLine* c, float sign, real_mask* hit) {
+static inline real capsule_end(const ShapeRay* ray, const CapsuleLine* c, float sign,
+                               real_mask* hit) {
   const real side = c->t0 + sign * c->h;
   const real y = c->u + c->v * side;
   const real_mask body = (y >= 0.0f) & (y <= 1.0f);
   const real_mask beyond = y > 0.5f;
   const real zero = real_of(0.0f);
-  const real cx = c->px - (beyond ? c->bx : zero), cy = c->py - (beyond ? c->by : zero), cz = c->pz - (beyond ? c->bz : zero);
+  const real cx = c->px - (beyond ? c->bx : zero), cy = c->py - (beyond ? c->by : zero),
+             cz = c->pz - (beyond ? c->bz : zero);
   const real tc = -real_dot(cx, cy, cz, ray->dx, ray->dy, ray->dz) * ray->inv_dd;
   const real qx = cx + tc * ray->dx, qy = cy + tc * ray->dy, qz = cz + tc * ray->dz;
   const real qq = real_dot(qx, qy, qz, qx, qy, qz), disc = c->r * c->r - qq;
@@ -46,8 +49,8 @@ static inline real capsule_end(const ShapeRay* ray, const CapsuleLine* c, float 
 }
 
 // Fills `c` and returns the lanes whose tube the line meets. `shift`: the moved origin.
-static inline real_mask capsule_line(const ShapeRay* ray, RealVector p0, RealVector p1, real r, CapsuleLine* line,
-                                     real* shifted) {
+static inline real_mask capsule_line(const ShapeRay* ray, RealVector p0, RealVector p1, real r,
+                                     CapsuleLine* line, real* shifted) {
   CapsuleLine c;
   const real wx = ray->ox - p0.x, wy = ray->oy - p0.y, wz = ray->oz - p0.z;
   c.bx = p1.x - p0.x;
@@ -88,28 +91,35 @@ static inline real_mask capsule_line(const ShapeRay* ray, RealVector p0, RealVec
 // is off by 16 eps of it. Together 82 eps D + 16 eps r; 96 eps (D + r) are allowed, with D as a sum
 // of components, and 1e-18 for segments seen end-on, whose direction has no digits.
 #define CAPLET_CAPSULE_NEAR 1
-static inline real_mask capsule_near(const NearRay* ray, __global const float* block, uint lane, float t_min, float t_max) {
+static inline real_mask capsule_near(const NearRay* ray, __global const float* block, uint lane,
+                                     float t_min, float t_max) {
   const RealVector p0 = capsule_p0_lanes(block, lane), p1 = capsule_p1_lanes(block, lane);
   const real ax = p0.x - ray->ox, ay = p0.y - ray->oy, az = p0.z - ray->oz;
   const real bx = p1.x - ray->ox, by = p1.y - ray->oy, bz = p1.z - ray->oz;
-  const real au = real_dot(ax, ay, az, ray->ux, ray->uy, ray->uz), bu = real_dot(bx, by, bz, ray->ux, ray->uy, ray->uz);
-  const real av = real_dot(ax, ay, az, ray->vx, ray->vy, ray->vz), bv = real_dot(bx, by, bz, ray->vx, ray->vy, ray->vz);
-  const real aw = real_dot(ax, ay, az, ray->wx, ray->wy, ray->wz), bw = real_dot(bx, by, bz, ray->wx, ray->wy, ray->wz);
+  const real au = real_dot(ax, ay, az, ray->ux, ray->uy, ray->uz),
+             bu = real_dot(bx, by, bz, ray->ux, ray->uy, ray->uz);
+  const real av = real_dot(ax, ay, az, ray->vx, ray->vy, ray->vz),
+             bv = real_dot(bx, by, bz, ray->vx, ray->vy, ray->vz);
+  const real aw = real_dot(ax, ay, az, ray->wx, ray->wy, ray->wz),
+             bw = real_dot(bx, by, bz, ray->wx, ray->wy, ray->wz);
   const real eu = bu - au, ev = bv - av;
   const real along = -(au * eu + av * ev) / real_max(eu * eu + ev * ev, real_of(1e-37f));
   const real at = real_max(real_min(along, real_of(1.0f)), real_of(0.0f));
   const real qu = au + at * eu, qv = av + at * ev;
-  const real reach = real_max(fabs(au), fabs(bu)) + real_max(fabs(av), fabs(bv)) + real_max(fabs(aw), fabs(bw));
+  const real reach =
+      real_max(fabs(au), fabs(bu)) + real_max(fabs(av), fabs(bv)) + real_max(fabs(aw), fabs(bw));
   const real r = capsule_r_lanes(block, lane), outer = r + (0x1.8p-18f * (reach + r) + 1e-18f);
   const real begin = real_min(aw, bw) - outer, end = real_max(aw, bw) + outer;
-  return (qu * qu + qv * qv <= outer * outer) & (begin <= t_max * ray->length) & (end >= t_min * ray->length);
+  return (qu * qu + qv * qv <= outer * outer) & (begin <= t_max * ray->length) &
+         (end >= t_min * ray->length);
 }
 
-static inline real_mask capsule_hit(const ShapeRay* ray, __global const float* block, uint lane, real* t, real_mask* side) {
+static inline real_mask capsule_hit(const ShapeRay* ray, __global const float* block, uint lane,
+                                    real* t, real_mask* side) {
   CapsuleLine c;
   real shift;
-  real_mask hit = capsule_line(ray, capsule_p0_lanes(block, lane), capsule_p1_lanes(block, lane), capsule_r_lanes(block, lane),
-                               &c, &shift);
+  real_mask hit = capsule_line(ray, capsule_p0_lanes(block, lane), capsule_p1_lanes(block, lane),
+                               capsule_r_lanes(block, lane), &c, &shift);
   *t = shift;
   *side = int_of(0);
   if (mask_bits(hit) == 0) return hit;
@@ -130,8 +140,8 @@ static inline real_mask capsule_hit(const ShapeRay* ray, __global const float* b
 static inline Span capsule_span(const ShapeRay* ray, __global const float* block, uint lane) {
   CapsuleLine c;
   real shift;
-  real_mask enters = capsule_line(ray, capsule_p0_lanes(block, lane), capsule_p1_lanes(block, lane), capsule_r_lanes(block, lane),
-                                  &c, &shift);
+  real_mask enters = capsule_line(ray, capsule_p0_lanes(block, lane), capsule_p1_lanes(block, lane),
+                                  capsule_r_lanes(block, lane), &c, &shift);
   real_mask exits = enters;
   c.h = sqrt(real_max(c.h, real_of(0.0f)));
   const real t_enter = shift + capsule_end(ray, &c, -1.0f, &enters);

@@ -72,8 +72,8 @@ static inline int csg_value(const CsgLine* line) {
 #if CAPLET_REAL_WIDTH == 8
 // Adds the crossings of operand i: itself from `enter` to `exit`, grown from `grown_enter` to
 // `grown_exit`; `shift` is added to all t.
-static inline void csg_add(CsgLine* line, uint i, float enter, float exit, float grown_enter, float grown_exit, float shift,
-                           int surface_enter, int surface_exit) {
+static inline void csg_add(CsgLine* line, uint i, float enter, float exit, float grown_enter,
+                           float grown_exit, float shift, int surface_enter, int surface_exit) {
   exit = fmax(exit, enter);
   if (!(fabs(enter) < MAXFLOAT && fabs(exit) < MAXFLOAT)) return;
   line->t[2 * i] = shift + enter;
@@ -87,7 +87,8 @@ static inline void csg_add(CsgLine* line, uint i, float enter, float exit, float
 #endif
 
 // Adds the crossings of the operands of one group with the ray `own`.
-static inline void csg_add_group(CsgLine* line, const ShapeRay* own, __global const uint* group, float shift) {
+static inline void csg_add_group(CsgLine* line, const ShapeRay* own, __global const uint* group,
+                                 float shift) {
   __global const float* block = own->leaves + group[1];
   const uint kind = group[0], count = group[2], first = group[3];
 #if CAPLET_REAL_WIDTH == 8
@@ -103,7 +104,8 @@ static inline void csg_add_group(CsgLine* line, const ShapeRay* own, __global co
   for (uint i = 0; i < count; i++) {
     if ((bits >> i & 1u) == 0) continue;
     const uint grown = (bits >> (i + 4) & 1u) != 0 ? i + 4 : i;
-    csg_add(line, first + i, enter[i], exit[i], enter[grown], exit[grown], shift, surface_enter[i], surface_exit[i]);
+    csg_add(line, first + i, enter[i], exit[i], enter[grown], exit[grown], shift, surface_enter[i],
+            surface_exit[i]);
   }
 #else
   for (uint i = 0; i < count; i++) {
@@ -163,7 +165,8 @@ static inline int csg_start(const ShapeRay* ray, uint begin, CsgLine* line) {
   CAPLET_WAITS float kept[7] = {o.x, o.y, o.z, d.x, d.y, d.z, shift};
   for (uint i = 0; i < groups; i++) {
     __global const uint* group = numbers + 8 * (1 + i);
-    float3 group_o = (float3)(kept[0], kept[1], kept[2]), group_d = (float3)(kept[3], kept[4], kept[5]);
+    float3 group_o = (float3)(kept[0], kept[1], kept[2]),
+           group_d = (float3)(kept[3], kept[4], kept[5]);
     if (group[4] != CAPLET_NONE) {
       group_o = transform_point(ray->leaves + group[4], group_o);
       group_d = transform_vector(ray->leaves + group[4], group_d);
@@ -200,7 +203,8 @@ static inline int csg_next(CsgLine* line, float* t, int* side) {
       const float own_low = leaves_operand ? fmax(own_t - slack, partner) : own_t - slack;
       const float own_high = leaves_operand ? own_t + slack : fmin(own_t + slack, partner);
       const float common_low = fmax(low, own_low), common_high = fmin(high, own_high);
-      if (members != 0 && ((members >> (event >> 1) & 1u) != 0 || !(common_low <= common_high))) break;
+      if (members != 0 && ((members >> (event >> 1) & 1u) != 0 || !(common_low <= common_high)))
+        break;
       low = common_low;
       high = common_high;
       members |= 1u << (event >> 1);
@@ -219,7 +223,8 @@ static inline int csg_next(CsgLine* line, float* t, int* side) {
     const int seen = line->t[crossed] > line->t_min && (first_seen || low > line->t_min);
     if (line->value == before || !seen) continue;
     if ((line->value != 0 ? line->sees_entering : line->sees_leaving) == 0) continue;
-    const uint surface = (line->operands[crossed >> 1] & CAPLET_SURFACE_MASK) + line->surface[crossed];
+    const uint surface =
+        (line->operands[crossed >> 1] & CAPLET_SURFACE_MASK) + line->surface[crossed];
     // Each crossing is reported beyond the last one, so that a chord of no length still enters
     // before it leaves.
     line->last = line->t[crossed] > line->last ? line->t[crossed] : nextafter(line->last, INFINITY);
@@ -236,7 +241,8 @@ static inline int csg_nearest(const ShapeRay* ray, uint begin, float* t, int* si
   return csg_start(ray, begin, &line) && csg_next(&line, t, side);
 }
 
-static inline real_mask csg_hit(const ShapeRay* ray, __global const float* block, uint lane, real* t, real_mask* side) {
+static inline real_mask csg_hit(const ShapeRay* ray, __global const float* block, uint lane,
+                                real* t, real_mask* side) {
   __global const int* ids = (__global const int*)block;
 #if CAPLET_REAL_WIDTH == 8
   float ts[8];
@@ -244,7 +250,8 @@ static inline real_mask csg_hit(const ShapeRay* ray, __global const float* block
   for (uint i = 0; i < 8; i++) {
     ts[i] = 0.0f;
     sides[i] = 0;
-    hits[i] = ids[i] >= 0 && csg_nearest(ray, csg_begin(lane_data(block, i)), &ts[i], &sides[i]) ? -1 : 0;
+    hits[i] =
+        ids[i] >= 0 && csg_nearest(ray, csg_begin(lane_data(block, i)), &ts[i], &sides[i]) ? -1 : 0;
   }
   (void)lane;
   *t = vload8(0, ts);

@@ -20,8 +20,9 @@
 // Returns the crossing of the tube, or of the ball at the round end beyond which it lies, on the
 // entering (sign -1) or leaving (+1) side. `position` is the place on the axis of the tube's
 // crossing; lanes that miss the ball leave `hit`; `surface`: 0 tube, 1 or 2 ball.
-static inline real cylinder_end(const ShapeRay* ray, const CapsuleLine* c, float sign, real_mask round0, real_mask round1,
-                                real_mask* hit, real_mask* surface) {
+static inline real cylinder_end(const ShapeRay* ray, const CapsuleLine* c, float sign,
+                                real_mask round0, real_mask round1, real_mask* hit,
+                                real_mask* surface) {
   const real tube = c->t0 + sign * c->h;
   const real position = c->u + c->v * tube;
   const real_mask beyond0 = round0 & (position < 0.0f), beyond1 = round1 & (position > 1.0f);
@@ -29,8 +30,10 @@ static inline real cylinder_end(const ShapeRay* ray, const CapsuleLine* c, float
   *surface = int_of(0);
   if (mask_bits(beyond0 | beyond1) == 0) return tube;
   const real zero = real_of(0.0f);
-  const real cx = c->px - (beyond1 ? c->bx : zero), cy = c->py - (beyond1 ? c->by : zero), cz = c->pz - (beyond1 ? c->bz : zero);
-  const real room = 0x1p-23f * (fabs(c->bx) + fabs(c->by) + fabs(c->bz) + c->r);  // as in capsule.cl
+  const real cx = c->px - (beyond1 ? c->bx : zero), cy = c->py - (beyond1 ? c->by : zero),
+             cz = c->pz - (beyond1 ? c->bz : zero);
+  const real room =
+      0x1p-23f * (fabs(c->bx) + fabs(c->by) + fabs(c->bz) + c->r);  // as in capsule.cl
   real enter, exit;
   const real_mask met = sphere_span_within(ray, cx, cy, cz, c->r, room, &enter, &exit);
   *hit &= body | met;
@@ -38,15 +41,18 @@ static inline real cylinder_end(const ShapeRay* ray, const CapsuleLine* c, float
   // A shallow ray may meet the ball on the other side of the circle than the tube: the side where
   // it meets it counts.
   const real place = c->u + c->v * t;
-  *surface = (beyond0 & (place < 0.0f)) ? int_of(1) : ((beyond1 & (place > 1.0f)) ? int_of(2) : int_of(0));
+  *surface =
+      (beyond0 & (place < 0.0f)) ? int_of(1) : ((beyond1 & (place > 1.0f)) ? int_of(2) : int_of(0));
   return t;
 }
 
 static inline Span cylinder_hull(const ShapeRay* ray, __global const float* block, uint lane) {
   const RealVector p0 = cylinder_p0_lanes(block, lane), p1 = cylinder_p1_lanes(block, lane);
   const real r = cylinder_r_lanes(block, lane);
-  const RealVector from = {ray->ox - p0.x, ray->oy - p0.y, ray->oz - p0.z}, b = {p1.x - p0.x, p1.y - p0.y, p1.z - p0.z};
-  return cone_span_of(ray, from, b, r, r, cylinder_cap0_lanes(block, lane), cylinder_cap1_lanes(block, lane));
+  const RealVector from = {ray->ox - p0.x, ray->oy - p0.y, ray->oz - p0.z},
+                   b = {p1.x - p0.x, p1.y - p0.y, p1.z - p0.z};
+  return cone_span_of(ray, from, b, r, r, cylinder_cap0_lanes(block, lane),
+                      cylinder_cap1_lanes(block, lane));
 }
 
 static inline Span cylinder_span(const ShapeRay* ray, __global const float* block, uint lane) {
@@ -55,7 +61,8 @@ static inline Span cylinder_span(const ShapeRay* ray, __global const float* bloc
   const RealVector p0 = cylinder_p0_lanes(block, lane), p1 = cylinder_p1_lanes(block, lane);
   const real cap0 = cylinder_cap0_lanes(block, lane), cap1 = cylinder_cap1_lanes(block, lane);
   const real_mask round0 = cap0 == CAPLET_CAP_ROUND, round1 = cap1 == CAPLET_CAP_ROUND;
-  const real r = cylinder_r_lanes(block, lane), bx = p1.x - p0.x, by = p1.y - p0.y, bz = p1.z - p0.z;
+  const real r = cylinder_r_lanes(block, lane), bx = p1.x - p0.x, by = p1.y - p0.y,
+             bz = p1.z - p0.z;
   const real bb = real_dot(bx, by, bz, bx, by, bz);
   // `pierced`: a ball reaches through the other end, which is flat.
   const real_mask pierced = (round0 | round1) & ((round0 & round1) == 0) & (bb < r * r);

@@ -10,7 +10,8 @@
 // The ray is moved to its point nearest to the centre first, so the plane distance is rounded
 // relative to the disk's size and the origin's distance alone: 8 eps (|o - c| + r), along the
 // normal.
-static inline real_mask disk_hit(const ShapeRay* ray, __global const float* block, uint lane, real* t, real_mask* side) {
+static inline real_mask disk_hit(const ShapeRay* ray, __global const float* block, uint lane,
+                                 real* t, real_mask* side) {
   const RealVector c = disk_c_lanes(block, lane), n = disk_n_lanes(block, lane);
   const real wx = ray->ox - c.x, wy = ray->oy - c.y, wz = ray->oz - c.z;
   const real r = disk_r_lanes(block, lane);

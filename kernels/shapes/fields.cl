@@ -9,7 +9,9 @@
 #include "shared/shapes.h"
 
 // Returns the data of the primitive in lane `lane` of a leaf block.
-static inline __global const float* lane_data(__global const float* block, uint lane) { return block + 8 + lane; }
+static inline __global const float* lane_data(__global const float* block, uint lane) {
+  return block + 8 + lane;
+}
 
 #define CAPLET_FIELD_scalar(function, at) \
   static inline float function(__global const float* data) { return data[8 * (at)]; }

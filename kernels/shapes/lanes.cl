@@ -13,13 +13,16 @@ typedef struct {
   real x, y, z;
 } RealVector;
 
-#define CAPLET_FIELD_scalar(function, at) \
-  static inline real function(__global const float* block, uint lane) { return real_load(block + 8 * (1 + (at)), lane); }
-#define CAPLET_FIELD_vector(function, at)                                                                   \
-  static inline RealVector function(__global const float* block, uint lane) {                               \
-    const RealVector v = {real_load(block + 8 * (1 + (at)), lane), real_load(block + 8 * (2 + (at)), lane), \
-                          real_load(block + 8 * (3 + (at)), lane)};                                         \
-    return v;                                                                                               \
+#define CAPLET_FIELD_scalar(function, at)                               \
+  static inline real function(__global const float* block, uint lane) { \
+    return real_load(block + 8 * (1 + (at)), lane);                     \
+  }
+#define CAPLET_FIELD_vector(function, at)                                     \
+  static inline RealVector function(__global const float* block, uint lane) { \
+    const RealVector v = {real_load(block + 8 * (1 + (at)), lane),            \
+                          real_load(block + 8 * (2 + (at)), lane),            \
+                          real_load(block + 8 * (3 + (at)), lane)};           \
+    return v;                                                                 \
   }
 #define CAPLET_FIELD_index(function, at)                                     \
   static inline real_mask function(__global const float* block, uint lane) { \

@@ -12,7 +12,8 @@
 
 #include "shapes/turn.cl"
 
-static inline real_mask open_cylinder_holds(const ShapeRay* ray, __global const float* block, uint lane, real t) {
+static inline real_mask open_cylinder_holds(const ShapeRay* ray, __global const float* block,
+                                            uint lane, real t) {
   const real x = ray->ox + t * ray->dx, y = ray->oy + t * ray->dy, rise = t * ray->dz;
   const real_mask above = rise + (ray->oz - open_cylinder_z_min_lanes(block, lane)) >= 0.0f;
   const real_mask below = rise + (ray->oz - open_cylinder_z_max_lanes(block, lane)) <= 0.0f;

@@ -19,7 +19,8 @@ static inline Span partial_disk_span(const ShapeRay* ray, __global const float* 
   const real squared = x * x + y * y;
   const real_mask hit = (squared <= r * r) & (squared >= inner * inner) & (fabs(t) < INFINITY);
   const int leaving = ray->dz > 0.0f ? CAPLET_LEAVING : 0;
-  return span_of_one(hit & within_turn(x, y, partial_disk_phi_max_lanes(block, lane)), t, int_of(leaving));
+  return span_of_one(hit & within_turn(x, y, partial_disk_phi_max_lanes(block, lane)), t,
+                     int_of(leaving));
 }
 
 SPAN_HIT(partial_disk)

@@ -16,8 +16,8 @@
 
 // Returns whether the line meets one polyhedron, where it goes in and out, and through which
 // planes.
-static inline int polyhedron_planes(const ShapeRay* ray, uint begin, float* t_enter, float* t_exit, int* surface_enter,
-                                    int* surface_exit) {
+static inline int polyhedron_planes(const ShapeRay* ray, uint begin, float* t_enter, float* t_exit,
+                                    int* surface_enter, int* surface_exit) {
   __global const float* head = ray->leaves + begin;
   const uint count = as_uint(head[3]);
   const float wx = ray->ox - head[0], wy = ray->oy - head[1], wz = ray->oz - head[2];
@@ -64,7 +64,8 @@ static inline Span polyhedron_span(const ShapeRay* ray, __global const float* bl
       surfaces_exit[i] = surfaces_exit[i - 1];
       continue;
     }
-    hits[i] = -polyhedron_planes(ray, (uint)begins[i], enters + i, exits + i, surfaces_enter + i, surfaces_exit + i);
+    hits[i] = -polyhedron_planes(ray, (uint)begins[i], enters + i, exits + i, surfaces_enter + i,
+                                 surfaces_exit + i);
   }
   span.t_enter = vload8(0, enters);
   span.t_exit = vload8(0, exits);
@@ -73,7 +74,8 @@ static inline Span polyhedron_span(const ShapeRay* ray, __global const float* bl
   span.enter = span.exit = vload8(0, hits);
 #else
   const uint begin = (uint)polyhedron_begin_lanes(block, lane);
-  span.enter = span.exit = polyhedron_planes(ray, begin, &span.t_enter, &span.t_exit, &span.surface_enter, &span.surface_exit);
+  span.enter = span.exit = polyhedron_planes(ray, begin, &span.t_enter, &span.t_exit,
+                                             &span.surface_enter, &span.surface_exit);
 #endif
   return span;
 }

@@ -61,7 +61,9 @@ static inline real real_of(float x) { return x; }
 static inline real_mask int_of(int x) { return x; }
 static inline real_mask real_bits(real x) { return as_int(x); }
 static inline real real_load(__global const float* row, uint lane) { return row[lane]; }
-static inline real_mask lanes_filled(__global const float* row, uint lane) { return ((__global const int*)row)[lane] >= 0; }
+static inline real_mask lanes_filled(__global const float* row, uint lane) {
+  return ((__global const int*)row)[lane] >= 0;
+}
 static inline void real_store(real x, float* out) { *out = x; }
 static inline void mask_store(real_mask m, int* out) { *out = m; }
 static inline uint mask_bits(real_mask m) { return m != 0; }
@@ -72,7 +74,9 @@ static inline uint mask_bits(real_mask m) { return m != 0; }
 // The second operand wins when the first is not a number.
 static inline real real_min(real a, real b) { return a < b ? a : b; }
 static inline real real_max(real a, real b) { return a > b ? a : b; }
-static inline real real_dot(real ax, real ay, real az, real bx, real by, real bz) { return ax * bx + ay * by + az * bz; }
+static inline real real_dot(real ax, real ay, real az, real bx, real by, real bz) {
+  return ax * bx + ay * by + az * bz;
+}
 
 // Returns a power of two that takes a positive x to [1, 2). (For 2^127 or more, and for subnormals,
 // it is some finite number.)
@@ -218,15 +222,17 @@ static inline Span span_of_one(real_mask hit, real t, real_mask side) {
 }
 
 // Defines name_hit from name_span.
-#define SPAN_HIT(name)                                                                                                            \
-  static inline real_mask name##_hit(const ShapeRay* ray, __global const float* block, uint lane, real* t, real_mask* side) {     \
-    const Span span = name##_span(ray, block, lane);                                                                              \
-    return span_nearest(ray, &span, t, side);                                                                                     \
+#define SPAN_HIT(name)                                                                            \
+  static inline real_mask name##_hit(const ShapeRay* ray, __global const float* block, uint lane, \
+                                     real* t, real_mask* side) {                                  \
+    const Span span = name##_span(ray, block, lane);                                              \
+    return span_nearest(ray, &span, t, side);                                                     \
   }
 
 // Finds the nearest crossing beyond t_min that the ray sees: the lanes that have one, t, and
 // HitRecord.surface.
-static inline real_mask span_nearest(const ShapeRay* ray, const Span* span, real* t, real_mask* side) {
+static inline real_mask span_nearest(const ShapeRay* ray, const Span* span, real* t,
+                                     real_mask* side) {
   const real_mask enter = span->enter & (span->t_enter > ray->t_min) & int_of(ray->sees_entering);
   const real_mask exit = span->exit & (span->t_exit > ray->t_min) & int_of(ray->sees_leaving);
   *t = enter ? span->t_enter : span->t_exit;

@@ -8,14 +8,15 @@
 #include "shapes/lanes.cl"
 #include "shapes/{shapes}.cl"
 
-#define SHAPE(name, traits)                                                 \
-  case shape_##name:                                                        \
+#define SHAPE(name, traits)                                          \
+  case shape_##name:                                                 \
     if (SPAN_IS_ASKED(traits)) return name##_span(ray, block, lane); \
     break;
 
 // Returns the crossings of the lanes of a block with the ray's line. csg shapes have any number of
 // them and are not handled here.
-static inline Span shape_span(uint shape, const ShapeRay* ray, __global const float* block, uint lane) {
+static inline Span shape_span(uint shape, const ShapeRay* ray, __global const float* block,
+                              uint lane) {
   switch (shape) {
 #define COMPOUND(name, traits)
 #define SPAN_IS_ASKED(traits) 1
@@ -27,7 +28,8 @@ static inline Span shape_span(uint shape, const ShapeRay* ray, __global const fl
 }
 
 // Does the same for solids alone, which csg shapes combine.
-static inline Span solid_span(uint shape, const ShapeRay* ray, __global const float* block, uint lane) {
+static inline Span solid_span(uint shape, const ShapeRay* ray, __global const float* block,
+                              uint lane) {
   switch (shape) {
 #define COMPOUND(name, traits)
 #define SPAN_IS_ASKED(traits) (((traits)&trait_solid) != 0)
@@ -43,7 +45,8 @@ static inline Span solid_span(uint shape, const ShapeRay* ray, __global const fl
 static inline int shape_is_solid(uint shape) {
   switch (shape) {
 #define SHAPE(name, traits) \
-  case shape_##name: return ((traits)&trait_solid) != 0;
+  case shape_##name:        \
+    return ((traits)&trait_solid) != 0;
 #include "rows/shapes.def"
 #undef SHAPE
     default: return 0;

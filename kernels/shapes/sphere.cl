@@ -13,8 +13,8 @@
 // relative error 5 eps and moves the point along the ray, the perpendicular q is off by 4 eps |w|,
 // r^2 - q^2 by 4 eps r^2: 8 eps (|o - c| + r) together (docs/numerics.md). A ray that passes within
 // `room` counts as touching.
-static inline real_mask sphere_span_within(const ShapeRay* ray, real wx, real wy, real wz, real r, real room, real* t_enter,
-                                           real* t_exit) {
+static inline real_mask sphere_span_within(const ShapeRay* ray, real wx, real wy, real wz, real r,
+                                           real room, real* t_enter, real* t_exit) {
   const real tc = -real_dot(wx, wy, wz, ray->dx, ray->dy, ray->dz) * ray->inv_dd;
   const real qx = wx + tc * ray->dx, qy = wy + tc * ray->dy, qz = wz + tc * ray->dz;
   // A second step removes the error of the first, which matters when the origin is far.
@@ -30,7 +30,8 @@ static inline Span sphere_span(const ShapeRay* ray, __global const float* block,
   const RealVector c = sphere_c_lanes(block, lane);
   const real wx = ray->ox - c.x, wy = ray->oy - c.y, wz = ray->oz - c.z;
   real t_enter, t_exit;
-  const real_mask hit = sphere_span_within(ray, wx, wy, wz, sphere_r_lanes(block, lane), real_of(0.0f), &t_enter, &t_exit);
+  const real_mask hit = sphere_span_within(ray, wx, wy, wz, sphere_r_lanes(block, lane),
+                                           real_of(0.0f), &t_enter, &t_exit);
   return span_of(hit, t_enter, t_exit);
 }
 

@@ -41,7 +41,8 @@ static inline LocalSurface surface_local(const SurfaceQuery* q) {
 }
 
 // Returns the surface at a hit of `ray` (hit->slot is not CAPLET_NONE).
-static inline Surface surface_at(const Tree* tree, const Surfaces* surfaces, const RayRecord* ray, const HitRecord* hit) {
+static inline Surface surface_at(const Tree* tree, const Surfaces* surfaces, const RayRecord* ray,
+                                 const HitRecord* hit) {
   float3 o = (float3)(ray->ox, ray->oy, ray->oz);
   float3 d = (float3)(ray->dx, ray->dy, ray->dz);
   const int placed = CAPLET_HAS_SHAPE(shape_instance) && hit->instance != CAPLET_NONE;
@@ -60,8 +61,17 @@ static inline Surface surface_at(const Tree* tree, const Surfaces* surfaces, con
   if (any_chain && (geometry.flags & CAPLET_GEOMETRY_CHAIN))
     chain_u = surfaces->mesh_uvs + geometry.uv_begin + 2u * (primitive - geometry.primitive_begin);
   const SurfaceQuery query = {
-      surfaces, tree->leaves, &geometry, primitive, surface, lane_data(tree->leaves, hit->slot), o + hit->t * d,
-      backward, geometry.uv_space != CAPLET_NONE ? tree->leaves + geometry.uv_space : 0, d, chain_u};
+      surfaces,
+      tree->leaves,
+      &geometry,
+      primitive,
+      surface,
+      lane_data(tree->leaves, hit->slot),
+      o + hit->t * d,
+      backward,
+      geometry.uv_space != CAPLET_NONE ? tree->leaves + geometry.uv_space : 0,
+      d,
+      chain_u};
   LocalSurface found = surface_local(&query);
   if (geometry.flags & CAPLET_GEOMETRY_FLIP_NORMAL) {
     found.ng = -found.ng;
@@ -88,9 +98,10 @@ static inline Surface surface_at(const Tree* tree, const Surfaces* surfaces, con
   s.along_u = found.along_u;
   uint base = 0u;
   if (placed) base = tree->instances[hit->instance].light_base;
-  s.light = s.primitive_light = geometry.light_offset == CAPLET_NONE || base == CAPLET_NONE
-                                    ? CAPLET_NONE
-                                    : base + geometry.light_offset + (primitive - geometry.primitive_begin);
+  s.light = s.primitive_light =
+      geometry.light_offset == CAPLET_NONE || base == CAPLET_NONE
+          ? CAPLET_NONE
+          : base + geometry.light_offset + (primitive - geometry.primitive_begin);
   s.material = geometry.material;
   if (geometry.surface_begin != CAPLET_NONE) {
     const uint entry = surfaces->surface_materials[geometry.surface_begin + surface];
@@ -114,7 +125,8 @@ static inline float round_along(float x, float step) {
 static inline float3 offset_origin(float3 p, float3 ng, float error, float3 direction) {
   const float3 step = (dot(direction, ng) < 0.0f ? -error : error) * ng;
   const float3 moved = p + step;
-  return (float3)(round_along(moved.x, step.x), round_along(moved.y, step.y), round_along(moved.z, step.z));
+  return (float3)(round_along(moved.x, step.x), round_along(moved.y, step.y),
+                  round_along(moved.z, step.z));
 }
 
 #endif

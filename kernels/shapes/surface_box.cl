@@ -18,7 +18,8 @@ static inline LocalSurface surface_box(const SurfaceQuery* q) {
   const float sign = greatest ? 1.0f : -1.0f;
   float3 p = clamp(q->x, low, high);
   const float3 face = greatest ? high : low;
-  const float3 share = (float3)(size.x > 0.0f ? (p.x - low.x) / size.x : 0.0f, size.y > 0.0f ? (p.y - low.y) / size.y : 0.0f,
+  const float3 share = (float3)(size.x > 0.0f ? (p.x - low.x) / size.x : 0.0f,
+                                size.y > 0.0f ? (p.y - low.y) / size.y : 0.0f,
                                 size.z > 0.0f ? (p.z - low.z) / size.z : 0.0f);
   LocalSurface s;
   float u;

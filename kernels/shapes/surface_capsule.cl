@@ -11,14 +11,16 @@
 #include "shapes/surface_sphere.cl"
 
 // Requires r0 > 0 or r1 > 0.
-static inline LocalSurface round_cone_point(const SurfaceQuery* query, float3 p0, float3 p1, float r0, float r1) {
+static inline LocalSurface round_cone_point(const SurfaceQuery* query, float3 p0, float3 p1,
+                                            float r0, float r1) {
   const float3 axis = p1 - p0;
   const float3 unit_axis = unit_or(axis, own_z(query->space));
   const float axis_length = dot(axis, unit_axis);
   const float taper = r0 - r1;
   if (!(axis_length > fabs(taper))) {
     // Here one sphere holds the other (or the ends are equal).
-    return taper >= 0.0f ? sphere_point(query, p0, r0, unit_axis, 0.0f) : sphere_point(query, p1, r1, unit_axis, 1.0f);
+    return taper >= 0.0f ? sphere_point(query, p0, r0, unit_axis, 0.0f)
+                         : sphere_point(query, p1, r1, unit_axis, 1.0f);
   }
   // Normals of the tangent cone make a constant angle with the axis: `k` is the sine of its
   // complement.
@@ -34,7 +36,8 @@ static inline LocalSurface round_cone_point(const SurfaceQuery* query, float3 p0
   float3 unit_radial = unit_or(radial, perpendicular(unit_axis));
   // Where x is on the axis to rounding, the remainder may point along it.
   const float tilt = dot(unit_radial, unit_axis);
-  unit_radial = fabs(tilt) < 0.5f ? unit_or(unit_radial - tilt * unit_axis, unit_radial) : perpendicular(unit_axis);
+  unit_radial = fabs(tilt) < 0.5f ? unit_or(unit_radial - tilt * unit_axis, unit_radial)
+                                  : perpendicular(unit_axis);
   const float along = (z - dot(radial, unit_radial) * k / c) / axis_length;
   const float s = fmin(fmax(along, 0.0f), 1.0f);
 
@@ -54,7 +57,8 @@ static inline LocalSurface round_cone_point(const SurfaceQuery* query, float3 p0
     // cone's.
     if (s > 0.0f ? dot(out.ng, unit_axis) < k : dot(out.ng, unit_axis) > k) out.ng = rim;
     const float angle = angle_between(unit_axis, out.ng);
-    arc = s > 0.0f ? r0 * angle0 + side + r1 * (CAPLET_PI - angle0 - angle) : r0 * (CAPLET_PI - angle);
+    arc = s > 0.0f ? r0 * angle0 + side + r1 * (CAPLET_PI - angle0 - angle)
+                   : r0 * (CAPLET_PI - angle);
   }
   out.ns = out.ng;
   out.p = q + radius * out.ng;
@@ -64,13 +68,15 @@ static inline LocalSurface round_cone_point(const SurfaceQuery* query, float3 p0
   out.uv.y = fmin(fmax(arc / profile, 0.0f), 1.0f);
   out.dpdv = profile * unit_or(unit_axis - dot(unit_axis, out.ng) * out.ng, (float3)(0.0f));
   out.dpdu = along_turn(&turn, radius * out.ng);
-  out.error = CAPLET_EPS * (32.0f * fmax(r0, r1) + 12.0f * axis_length + 6.0f * (norm1(q) + radius));
+  out.error =
+      CAPLET_EPS * (32.0f * fmax(r0, r1) + 12.0f * axis_length + 6.0f * (norm1(q) + radius));
   if (any_chain && query->chain_u) chain_uv(query, unit_axis, s, c, radius, side, &out);
   return out;
 }
 
 static inline LocalSurface surface_capsule(const SurfaceQuery* q) {
-  return round_cone_point(q, capsule_p0(q->data), capsule_p1(q->data), capsule_r(q->data), capsule_r(q->data));
+  return round_cone_point(q, capsule_p0(q->data), capsule_p1(q->data), capsule_r(q->data),
+                          capsule_r(q->data));
 }
 
 #endif

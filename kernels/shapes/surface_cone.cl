@@ -27,7 +27,8 @@ typedef struct {
   int one_ball;      // or holds it
 } ConeProfile;
 
-static inline ConeProfile cone_profile(float3 p0, float3 p1, float r0, float r1, int round0, int round1) {
+static inline ConeProfile cone_profile(float3 p0, float3 p1, float r0, float r1, int round0,
+                                       int round1) {
   ConeProfile s;
   s.axis = p1 - p0;
   s.unit_axis = unit_or(s.axis, (float3)(0.0f, 0.0f, 1.0f));
@@ -61,7 +62,8 @@ static inline ConeProfile cone_profile(float3 p0, float3 p1, float r0, float r1,
 // Returns the second part of the side, outside a disk through which the other end's ball of radius
 // `ball` reaches.
 static inline ConeProfile cone_second_profile(ConeProfile s, float ball, float rim, int round0) {
-  const float length = s.length, w = sqrt(fmax((length - ball) * (length + ball) + rim * rim, 0.0f));
+  const float length = s.length,
+              w = sqrt(fmax((length - ball) * (length + ball) + rim * rim, 0.0f));
   s.c = (ball - length) * (ball + length) / (rim * ball + length * w);
   s.k = (length * ball + rim * w) / (length * length + rim * rim);
   if (round0) {
@@ -85,7 +87,8 @@ static inline float cone_side_position(const ConeProfile* s, float y, float rho,
   return position;
 }
 
-static inline LocalSurface cone_point(const SurfaceQuery* query, float3 p0, float3 p1, float r0, float r1, float cap0, float cap1) {
+static inline LocalSurface cone_point(const SurfaceQuery* query, float3 p0, float3 p1, float r0,
+                                      float r1, float cap0, float cap1) {
   const uint surface = query->surface;
   const float3 x = query->x;
   const int round0 = cap0 == CAPLET_CAP_ROUND, round1 = cap1 == CAPLET_CAP_ROUND;
@@ -126,7 +129,8 @@ static inline LocalSurface cone_point(const SurfaceQuery* query, float3 p0, floa
     // The point lies between a point of each end, so that an error of the normal moves it only by
     // that error's square.
     out.ng = s.k * m + s.c * unit_radial;
-    const float3 spoke0 = r0 * (round0 ? out.ng : unit_radial), spoke1 = r1 * (round1 ? out.ng : unit_radial);
+    const float3 spoke0 = r0 * (round0 ? out.ng : unit_radial),
+                 spoke1 = r1 * (round1 ? out.ng : unit_radial);
     const float3 q = p0 + position * s.axis;
     const float3 spoke = (1.0f - position) * spoke0 + position * spoke1;
     out.p = q + spoke;
@@ -143,7 +147,8 @@ static inline LocalSurface cone_point(const SurfaceQuery* query, float3 p0, floa
     if (!whole && (first ? dot(out.ng, m) > s.k : dot(out.ng, m) < s.k)) out.ng = rim;
     out.p = center + radius * out.ng;
     // Angles count from the pole that comes first along the axis.
-    const float begin = first || whole ? 0.0f : acos(-s.k), end = first && !whole ? acos(-s.k) : CAPLET_PI;
+    const float begin = first || whole ? 0.0f : acos(-s.k),
+                end = first && !whole ? acos(-s.k) : CAPLET_PI;
     const float angle = angle_between(-m, out.ng);
     out.uv.y = fmin(fmax((angle - begin) / (end - begin), 0.0f), 1.0f);
     out.dpdu = along_turn(&turn, radius * out.ng);
@@ -160,13 +165,15 @@ static inline LocalSurface cone_point(const SurfaceQuery* query, float3 p0, floa
     out.dpdv = distance > 0.0f ? (first ? radius : -radius) * unit_radial : (float3)(0.0f);
   }
   // Roundings of the span functions at either end grow with L when a ray starts here.
-  out.error = CAPLET_EPS * (32.0f * fmax(r0, r1) + 12.0f * s.length + 6.0f * (norm1(base) + fmax(r0, r1)));
+  out.error =
+      CAPLET_EPS * (32.0f * fmax(r0, r1) + 12.0f * s.length + 6.0f * (norm1(base) + fmax(r0, r1)));
   out.ns = out.ng;
   return out;
 }
 
 static inline LocalSurface surface_cone(const SurfaceQuery* q) {
-  return cone_point(q, cone_p0(q->data), cone_p1(q->data), cone_r0(q->data), cone_r1(q->data), cone_cap0(q->data), cone_cap1(q->data));
+  return cone_point(q, cone_p0(q->data), cone_p1(q->data), cone_r0(q->data), cone_r1(q->data),
+                    cone_cap0(q->data), cone_cap1(q->data));
 }
 
 #endif

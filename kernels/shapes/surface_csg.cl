@@ -52,7 +52,8 @@ static inline uint csg_operand(const SurfaceQuery* q, CsgOperand* operand, Surfa
   if (operand->placed) {
     own->x = transform_point(operand->transform, own->x);
     own->direction = transform_vector(operand->transform, own->direction);
-    own->fallback = unit_or(transform_transposed(operand->transform + 12, own->fallback), own->fallback);
+    own->fallback =
+        unit_or(transform_transposed(operand->transform + 12, own->fallback), own->fallback);
   }
   return row[0];
 }

@@ -8,8 +8,8 @@
 #include "shapes/surface_cone.cl"
 
 static inline LocalSurface surface_cylinder(const SurfaceQuery* q) {
-  return cone_point(q, cylinder_p0(q->data), cylinder_p1(q->data), cylinder_r(q->data), cylinder_r(q->data), cylinder_cap0(q->data),
-                    cylinder_cap1(q->data));
+  return cone_point(q, cylinder_p0(q->data), cylinder_p1(q->data), cylinder_r(q->data),
+                    cylinder_r(q->data), cylinder_cap0(q->data), cylinder_cap1(q->data));
 }
 
 #endif

@@ -18,7 +18,8 @@ static inline LocalSurface surface_disk(const SurfaceQuery* q) {
   const float3 flat_spoke = in_plane - dot(in_plane, normal) * normal;
   const float distance = fmin(length(flat_spoke), radius);
   // The hit's rounding may lie beyond the rim; the point does not.
-  const float3 spoke = distance < radius ? flat_spoke : unit_or(flat_spoke, (float3)(0.0f)) * radius;
+  const float3 spoke =
+      distance < radius ? flat_spoke : unit_or(flat_spoke, (float3)(0.0f)) * radius;
   s.ng = s.ns = normal;
   s.p = center + spoke;
   s.uv = (float2)(distance > 0.0f ? turn_around(&turn, spoke / distance) : 0.0f,

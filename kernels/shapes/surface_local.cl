@@ -13,13 +13,15 @@
 // LocalSurface is a point of a shape in the space in which its data is stored (world, or an
 // instance's object space).
 typedef struct {
-  float3 p;     // on the surface, within `error`
-  float3 ng;    // unit; outward of solids, by winding or stored normal for open shapes
-  float3 ns;    // unit shading normal, on ng's side
+  float3 p;           // on the surface, within `error`
+  float3 ng;          // unit; outward of solids, by winding or stored normal for open shapes
+  float3 ns;          // unit shading normal, on ng's side
   float3 dpdu, dpdv;  // derivatives of the point by uv; zero where they are undefined (poles)
   float2 uv;
-  float error;  // bound on the distance of p from the true surface (docs/numerics.md, "Surface points")
-  int along_u;  // 1: of a chain, whose axis lies along dpdu; those of other capsules, cylinders, cones lie along dpdv
+  float error;  // bound on the distance of p from the true surface (docs/numerics.md, "Surface
+                // points")
+  int along_u;  // 1: of a chain, whose axis lies along dpdu; those of other capsules, cylinders,
+                // cones lie along dpdv
 } LocalSurface;
 
 // any_chain says that there may be capsules with u at their ends (FlatScene::has_chains). Programs
@@ -43,7 +45,7 @@ typedef struct {
   // `space` is a rotation or reflection (3x4 row-major, no translation) that the shape is stored
   // under, if its uv depends on it; or 0.
   __global const float* space;
-  float3 direction;                // of the ray, of any length, in the space of x
+  float3 direction;               // of the ray, of any length, in the space of x
   __global const float* chain_u;  // u at p0 and at p1 of a capsule of a chain; 0: it is in none
 } SurfaceQuery;
 
@@ -96,8 +98,8 @@ static inline float3 along_turn(const Frame* f, float3 v) {
 // from 0 to 1 as the ray sees it. out->ng is the normal at the ball that stands `s` of the way from
 // p0 to p1 and has `radius`; `c` is the part of the side's normal across the axis (unit), and
 // `side` the length of the side.
-static inline void chain_uv(const SurfaceQuery* q, float3 axis, float s, float c, float radius, float side,
-                            LocalSurface* out) {
+static inline void chain_uv(const SurfaceQuery* q, float3 axis, float s, float c, float radius,
+                            float side, LocalSurface* out) {
   const float u0 = q->chain_u[0], u1 = q->chain_u[1];
   // Both neighbours have the same number at their joint.
   const float u = s < 1.0f ? u0 + s * (u1 - u0) : u1;
@@ -105,20 +107,26 @@ static inline void chain_uv(const SurfaceQuery* q, float3 axis, float s, float c
   // has there.
   const float rate = side / (u1 - u0);
   const float along = dot(axis, out->ng);
-  out->dpdu = (fabs(rate) < INFINITY ? rate : side) * unit_or(axis - along * out->ng, (float3)(0.0f));
+  out->dpdu =
+      (fabs(rate) < INFINITY ? rate : side) * unit_or(axis - along * out->ng, (float3)(0.0f));
   // e is across the axis as the ray sees it, and f points against the ray: v = (1 + sin a) / 2 at
   // sin a e + cos a f.
   const float3 e = unit_or(cross(q->direction, axis), (float3)(0.0f)), f = cross(e, axis);
   const float3 across = out->ng - along * axis;
   const float turned =
-      q->space && dot(cross(load3(q->space), load3(q->space + 4)), load3(q->space + 8)) < 0.0f ? -1.0f : 1.0f;
+      q->space && dot(cross(load3(q->space), load3(q->space + 4)), load3(q->space + 8)) < 0.0f
+          ? -1.0f
+          : 1.0f;
   out->uv = (float2)(u, clamp(0.5f + 0.5f * turned * dot(across, e) / c, 0.0f, 1.0f));
-  const float cosine = dot(unit_or(across, f), f), steep = fabs(cosine) > 1e-3f ? cosine : copysign(1e-3f, cosine);
+  const float cosine = dot(unit_or(across, f), f),
+              steep = fabs(cosine) > 1e-3f ? cosine : copysign(1e-3f, cosine);
   out->dpdv = turned * (2.0f * radius * c / steep) * unit_or(cross(axis, across), (float3)(0.0f));
 }
 
 // Returns the angle between the unit vectors `axis` and `n`, in [0, pi]; accurate near the poles.
-static inline float angle_between(float3 axis, float3 n) { return atan2(length(n - axis * dot(n, axis)), dot(n, axis)); }
+static inline float angle_between(float3 axis, float3 n) {
+  return atan2(length(n - axis * dot(n, axis)), dot(n, axis));
+}
 
 // Returns the sum over columns of |m| |p|, translation included; roundings of transform_point(m, p)
 // are proportional to it.
@@ -131,20 +139,23 @@ static inline float3 transform_magnitude(__global const float* m, float3 p) {
 
 // Takes a surface point through an affine map (to_world, 3x4 row-major) with its inverse
 // (to_object).
-static inline LocalSurface surface_transformed(__global const float* to_world, __global const float* to_object, LocalSurface s) {
+static inline LocalSurface surface_transformed(__global const float* to_world,
+                                               __global const float* to_object, LocalSurface s) {
   const float3 magnitude = transform_magnitude(to_world, s.p);
   const float3 normal = unit_or(transform_transposed(to_object, s.ng), s.ng);
   const float3 shading = unit_or(transform_transposed(to_object, s.ns), normal);
   // This is the object-space uncertainty: that of the point, and the rounding of the way there and
   // back with both rounded matrices.
-  const float object_error = s.error + 8.0f * CAPLET_EPS * norm1(transform_magnitude(to_object, magnitude));
+  const float object_error =
+      s.error + 8.0f * CAPLET_EPS * norm1(transform_magnitude(to_object, magnitude));
   LocalSurface out = s;
   out.p = transform_point(to_world, s.p);
   out.dpdu = transform_vector(to_world, s.dpdu);
   out.dpdv = transform_vector(to_world, s.dpdv);
   out.ng = normal;
   out.ns = dot(shading, normal) < 0.0f ? -shading : shading;
-  out.error = length(transform_transposed(to_world, normal)) * object_error + 8.0f * CAPLET_EPS * dot(fabs(normal), magnitude);
+  out.error = length(transform_transposed(to_world, normal)) * object_error +
+              8.0f * CAPLET_EPS * dot(fabs(normal), magnitude);
   return out;
 }
 

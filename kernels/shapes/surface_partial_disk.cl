@@ -10,8 +10,8 @@
 #include "shapes/surface_turn.cl"
 
 static inline LocalSurface surface_partial_disk(const SurfaceQuery* q) {
-  const float height = partial_disk_height(q->data), r = partial_disk_r(q->data), inner = partial_disk_inner(q->data),
-              phi_max = partial_disk_phi_max(q->data);
+  const float height = partial_disk_height(q->data), r = partial_disk_r(q->data),
+              inner = partial_disk_inner(q->data), phi_max = partial_disk_phi_max(q->data);
   LocalSurface s;
   float phi;
   const float2 spoke = spoke_within_turn(q->x.x, q->x.y, phi_max, &phi);

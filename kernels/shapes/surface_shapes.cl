@@ -13,13 +13,15 @@
 static inline LocalSurface surface_shape(uint shape, const SurfaceQuery* q) {
   switch (shape) {
 #define SHAPE(name, traits) \
-  case shape_##name: return surface_##name(q);
+  case shape_##name:        \
+    return surface_##name(q);
 #define COMPOUND(name, traits)
 #include "rows/shapes.def"
 #undef SHAPE
     default: break;
   }
-  const LocalSurface none = {q->x, q->fallback, q->fallback, (float3)(0.0f), (float3)(0.0f), (float2)(0.0f), 0.0f, 0};
+  const LocalSurface none = {q->x,           q->fallback,    q->fallback, (float3)(0.0f),
+                             (float3)(0.0f), (float2)(0.0f), 0.0f,        0};
   return none;
 }
 

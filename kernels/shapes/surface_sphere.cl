@@ -10,7 +10,8 @@
 
 // Returns the point of the sphere of `radius` around `center` that is q->x projected from its
 // centre. uv is about `axis` (unit). end: which of a capsule's it is, 0 or 1.
-static inline LocalSurface sphere_point(const SurfaceQuery* q, float3 center, float radius, float3 axis, float end) {
+static inline LocalSurface sphere_point(const SurfaceQuery* q, float3 center, float radius,
+                                        float3 axis, float end) {
   const Frame turn = turn_frame(q->space, axis);
   LocalSurface s;
   s.ng = unit_or(q->x - center, q->fallback);

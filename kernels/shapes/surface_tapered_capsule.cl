@@ -8,8 +8,8 @@
 #include "shapes/surface_capsule.cl"
 
 static inline LocalSurface surface_tapered_capsule(const SurfaceQuery* q) {
-  return round_cone_point(q, tapered_capsule_p0(q->data), tapered_capsule_p1(q->data), tapered_capsule_r0(q->data),
-                          tapered_capsule_r1(q->data));
+  return round_cone_point(q, tapered_capsule_p0(q->data), tapered_capsule_p1(q->data),
+                          tapered_capsule_r0(q->data), tapered_capsule_r1(q->data));
 }
 
 #endif

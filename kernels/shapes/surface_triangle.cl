@@ -16,13 +16,15 @@ static inline float difference_of_products(float a, float b, float c, float d) {
   return fma(a, b, -cd) + fma(-c, d, cd);
 }
 static inline float3 robust_cross(float3 a, float3 b) {
-  return (float3)(difference_of_products(a.y, b.z, a.z, b.y), difference_of_products(a.z, b.x, a.x, b.z),
+  return (float3)(difference_of_products(a.y, b.z, a.z, b.y),
+                  difference_of_products(a.z, b.x, a.x, b.z),
                   difference_of_products(a.x, b.y, a.y, b.x));
 }
 
 // Computes dpdu and dpdv from the derivatives of uv and of the point by two other parameters; they
 // are zero where uv leaves them undefined or beyond a float.
-static inline void derivatives_by_uv(float2 uv_a, float2 uv_b, float3 p_a, float3 p_b, LocalSurface* s) {
+static inline void derivatives_by_uv(float2 uv_a, float2 uv_b, float3 p_a, float3 p_b,
+                                     LocalSurface* s) {
   const float determinant = difference_of_products(uv_a.x, uv_b.y, uv_a.y, uv_b.x);
   s->dpdu = (uv_b.y * p_a - uv_a.y * p_b) / determinant;
   s->dpdv = (uv_a.x * p_b - uv_b.x * p_a) / determinant;
@@ -66,7 +68,8 @@ static inline LocalSurface surface_triangle(const SurfaceQuery* q) {
   if (geometry->uv_begin != CAPLET_NONE) {
     __global const float* uvs = surfaces->mesh_uvs + geometry->uv_begin;
     const float2 uv0 = vload2(surfaces->mesh_indices[corner], uvs);
-    const float2 uv1 = vload2(surfaces->mesh_indices[corner + 1u], uvs), uv2 = vload2(surfaces->mesh_indices[corner + 2u], uvs);
+    const float2 uv1 = vload2(surfaces->mesh_indices[corner + 1u], uvs),
+                 uv2 = vload2(surfaces->mesh_indices[corner + 2u], uvs);
     s.uv = b0 * uv0 + b1 * uv1 + b2 * uv2;
     derivatives_by_uv(uv1 - uv0, uv2 - uv0, e1, e2, &s);
   } else {

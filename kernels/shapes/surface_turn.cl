@@ -8,7 +8,9 @@
 #include "math/vector.cl"
 
 // Returns x / whole in [0, 1], and 0 if whole is 0: parameters of shapes without an extent.
-static inline float share_of(float x, float whole) { return whole != 0.0f ? clamp(x / whole, 0.0f, 1.0f) : 0.0f; }
+static inline float share_of(float x, float whole) {
+  return whole != 0.0f ? clamp(x / whole, 0.0f, 1.0f) : 0.0f;
+}
 
 // Returns the unit vector across the z axis towards (x, y), turned back to the nearer edge where
 // rounding took it beyond; the angle in `phi`.

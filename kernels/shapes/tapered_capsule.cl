@@ -17,8 +17,10 @@
 #include "shapes/lanes.cl"
 #include "shapes/sphere.cl"
 
-static inline Span tapered_capsule_span(const ShapeRay* ray, __global const float* block, uint lane) {
-  const RealVector p0 = tapered_capsule_p0_lanes(block, lane), p1 = tapered_capsule_p1_lanes(block, lane);
+static inline Span tapered_capsule_span(const ShapeRay* ray, __global const float* block,
+                                        uint lane) {
+  const RealVector p0 = tapered_capsule_p0_lanes(block, lane),
+                   p1 = tapered_capsule_p1_lanes(block, lane);
   const real bx = p1.x - p0.x, by = p1.y - p0.y, bz = p1.z - p0.z;
   const real r0 = tapered_capsule_r0_lanes(block, lane), r1 = tapered_capsule_r1_lanes(block, lane);
   const real wx = ray->ox - p0.x, wy = ray->oy - p0.y, wz = ray->oz - p0.z;
@@ -31,7 +33,8 @@ static inline Span tapered_capsule_span(const ShapeRay* ray, __global const floa
   const real length = sqrt(real_dot(bx, by, bz, bx, by, bz));
   const real inv_length = 1.0f / (length > 0.0f ? length : real_of(1.0f));
   const real mx = bx * inv_length, my = by * inv_length, mz = bz * inv_length;
-  const real u = real_dot(px, py, pz, mx, my, mz), v = real_dot(mx, my, mz, ray->dx, ray->dy, ray->dz);
+  const real u = real_dot(px, py, pz, mx, my, mz),
+             v = real_dot(mx, my, mz, ray->dx, ray->dy, ray->dz);
   const real ex = px - u * mx, ey = py - u * my, ez = pz - u * mz;
   const real fx = ray->dx - v * mx, fy = ray->dy - v * my, fz = ray->dz - v * mz;
   const real ff = real_max(real_dot(fx, fy, fz, fx, fy, fz), real_of(ray->ff_min));
@@ -47,7 +50,8 @@ static inline Span tapered_capsule_span(const ShapeRay* ray, __global const floa
   const real room = 0x1p-22f * (length + wide);
   real enter0, exit0, enter1, exit1;
   const real_mask hit0 = sphere_span_within(ray, px, py, pz, r0, room, &enter0, &exit0);
-  const real_mask hit1 = sphere_span_within(ray, px - bx, py - by, pz - bz, r1, room, &enter1, &exit1);
+  const real_mask hit1 =
+      sphere_span_within(ray, px - bx, py - by, pz - bz, r1, room, &enter1, &exit1);
   const real far = real_of(INFINITY);
   real t_enter = real_min(hit0 ? enter0 : far, hit1 ? enter1 : far);
   real t_exit = real_max(hit0 ? exit0 : -far, hit1 ? exit1 : -far);
@@ -69,12 +73,14 @@ static inline Span tapered_capsule_span(const ShapeRay* ray, __global const floa
   const real disc = b * b - a * c;
   const real root = sqrt(real_max(disc, zero));
   const real s = -(b + (b < 0.0f ? -root : root));  // no cancellation
-  const real t1 = s / a, t2 = c / s;                // 0 denominators give infinities or NaN, which lie in no interval
+  const real t1 = s / a,
+             t2 = c / s;  // 0 denominators give infinities or NaN, which lie in no interval
   const real y1 = y + t1 * v, y2 = y + t2 * v;
   // Past a touching circle by 2^-12 of its sphere's radius the cone is 2^-25 of that radius off the
   // sphere.
   const real cosine = 0x1p-12f * sqrt(real_max(cos2, zero));
-  const real lowest = low - real_max(r0 * cosine, room), highest = high + real_max(r1 * cosine, room);
+  const real lowest = low - real_max(r0 * cosine, room),
+             highest = high + real_max(r1 * cosine, room);
   const real_mask cone = (cos2 > 0.0f) & ((disc >= 0.0f) | (a <= 0.0f));
   const real_mask ok1 = cone & (y1 >= lowest) & (y1 <= highest) & (fabs(t1) < far);
   const real_mask ok2 = cone & (y2 >= lowest) & (y2 <= highest) & (fabs(t2) < far);

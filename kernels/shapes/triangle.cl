@@ -19,7 +19,8 @@ static inline real edge_function(real a, real b, real c, real d) {
   return fma(a, b, -cd) + fma(-c, d, cd);
 }
 
-static inline real_mask triangle_hit(const ShapeRay* ray, __global const float* block, uint lane, real* t, real_mask* side) {
+static inline real_mask triangle_hit(const ShapeRay* ray, __global const float* block, uint lane,
+                                     real* t, real_mask* side) {
 #pragma OPENCL FP_CONTRACT OFF
   const TriangleRay axes = triangle_ray_of(ray);
   __global const float* v0 = block + 8 * (1 + triangle_at_v0);
@@ -39,7 +40,8 @@ static inline real_mask triangle_hit(const ShapeRay* ray, __global const float* 
   const real v = edge_function(ax, cy, ay, cx);
   const real w = edge_function(bx, ay, by, ax);
   const real det = u + v + w;
-  const real_mask inside = ((u >= 0.0f) & (v >= 0.0f) & (w >= 0.0f)) | ((u <= 0.0f) & (v <= 0.0f) & (w <= 0.0f));
+  const real_mask inside =
+      ((u >= 0.0f) & (v >= 0.0f) & (w >= 0.0f)) | ((u <= 0.0f) & (v <= 0.0f) & (w <= 0.0f));
   // This is a convex combination of the vertices' z: off by 6 eps max |z| at most.
   *t = ((u * az + v * bz + w * cz) / det) * axes.inv_dz;
   // det is minus twice the area in the ray's plane, positive counter-clockwise: the normal points

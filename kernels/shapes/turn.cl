@@ -16,7 +16,8 @@
 static inline real_mask within_turn(real x, real y, real phi_max) {
   const real_mask whole = phi_max >= CAPLET_FULL_TURN;
   const real s = sin(phi_max), c = cos(phi_max);
-  const real_mask left = y >= 0.0f, right = x * s - y * c >= 0.0f;  // of the edges at 0 and at phi_max
+  const real_mask left = y >= 0.0f,
+                  right = x * s - y * c >= 0.0f;  // of the edges at 0 and at phi_max
   return whole | (s >= 0.0f ? left & right : left | right);
 }
 

@@ -8,7 +8,9 @@
 static void stage_item(const Stage* g, uint item) {
   RayRecord ray = g->rays.path_ray[item];
   ray.t_min = 0.0f;
-  ray.dx = 0.371391f; ray.dy = 0.557086f; ray.dz = 0.742781f;  // any direction that scenes do not prefer
+  ray.dx = 0.371391f;
+  ray.dy = 0.557086f;
+  ray.dz = 0.742781f;  // any direction that scenes do not prefer
   const MediumStack nothing = {(uint4)(0u), g->camera.camera->medium};
   const MediumStack stack = medium_stack_counted(&g->tree, &g->surfaces, &g->media, ray, nothing);
   g->medium_stacks.path_inside[item] = stack.inside;

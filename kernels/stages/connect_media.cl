@@ -19,12 +19,14 @@ static void stage_item(const Stage* g, uint item) {
   const float4 wavelengths = g->carried.path_wavelengths[path];
   const float3 o = (float3)(ray.ox, ray.oy, ray.oz), d = (float3)(ray.dx, ray.dy, ray.dz);
   const PathSample at = path_sample(g->batch.batch, g->view.view, path);
-  MediumNumbers numbers = {hash_combine(path_hash(at, g->carried.path_flags[path]), HASHED_SAMPLE(shadow)), 0u};
+  MediumNumbers numbers = {
+      hash_combine(path_hash(at, g->carried.path_flags[path]), HASHED_SAMPLE(shadow)), 0u};
   MediumWeights weights;
   weights.throughput = g->shadows.path_shadow_radiance[path];
   weights.scattering = weights.light = g->medium_stacks.path_ratio[path];
   weights.most = max4(fabs(weights.throughput));
-  if (g->medium_stacks.shadow_near[path] == CAPLET_RECOUNT) stack = medium_stack_counted(&g->tree, &g->surfaces, &g->media, ray, stack);
+  if (g->medium_stacks.shadow_near[path] == CAPLET_RECOUNT)
+    stack = medium_stack_counted(&g->tree, &g->surfaces, &g->media, ray, stack);
   RayCrossings crossings;
   crossings_begin(&crossings, ray);
   HitRecord hit = {ray.t_min, CAPLET_NONE, CAPLET_NONE, 0u};
@@ -33,18 +35,25 @@ static void stage_item(const Stage* g, uint item) {
   for (;;) {
     const float from = hit.t;
     const int met = crossings_next(&g->tree, &crossings);
-    if (met) hit = crossings.hits[crossings.at - 1u];
-    else hit.slot = CAPLET_NONE;
+    if (met)
+      hit = crossings.hits[crossings.at - 1u];
+    else
+      hit.slot = CAPLET_NONE;
     const int ends = shadow_is_free(&hit, target);
     const int crosses = !ends && alpha_stops(&scene, &ray, &hit);
     if (crosses && !surface_passes(&g->tree, &g->surfaces, &g->materials, &hit)) return;
     stack = medium_stack_before(&g->tree, &g->surfaces, &g->media, &hit, isinf(ray.t_max), stack);
     const uint medium = medium_stack_medium(&g->media, &stack);
     const float to = met ? hit.t : ray.t_max;
-    if (medium != CAPLET_NONE && from < to && !medium_dims(&g->media, &g->spectra, medium, wavelengths, o, d, from, to, &numbers, &weights)) return;
+    if (medium != CAPLET_NONE && from < to &&
+        !medium_dims(&g->media, &g->spectra, medium, wavelengths, o, d, from, to, &numbers,
+                     &weights))
+      return;
     if (ends) break;
-    const uint boundary = crosses ? boundary_of(&g->tree, &g->surfaces, &g->media, &hit) : CAPLET_NONE;
-    if (boundary == CAPLET_NONE || crossing_repeats(&g->tree, &g->surfaces, &g->media, &crossings)) continue;
+    const uint boundary =
+        crosses ? boundary_of(&g->tree, &g->surfaces, &g->media, &hit) : CAPLET_NONE;
+    if (boundary == CAPLET_NONE || crossing_repeats(&g->tree, &g->surfaces, &g->media, &crossings))
+      continue;
     medium_stack_cross(&g->tree, &g->surfaces, &g->media, &hit, &stack);
     if (!boundary_is_left(&g->tree, &g->surfaces, &g->media, boundary, &hit)) continue;
     left = hit.t - left_at <= crossings_apart(&ray, hit.t) ? min(left, boundary) : boundary;

@@ -10,7 +10,8 @@
 #include "media/medium_stack.cl"
 #include "trace/list.cl"
 
-#define CAPLET_CROSSINGS 16  // that are found at a time; of more at the same t the rest are not told
+#define CAPLET_CROSSINGS \
+  16  // that are found at a time; of more at the same t the rest are not told
 
 // RayCrossings holds the crossings of `ray` that are found but not yet returned, and the number of
 // the next one.
@@ -58,14 +59,17 @@ static inline float crossings_apart(const RayRecord* ray, float t) {
 
 // Returns whether the last crossing is a repetition: where the ray meets an edge or corner of a
 // mesh there is a crossing for each face.
-static inline int crossing_repeats(const Tree* tree, const Surfaces* surfaces, const Media* media, const RayCrossings* c) {
+static inline int crossing_repeats(const Tree* tree, const Surfaces* surfaces, const Media* media,
+                                   const RayCrossings* c) {
   const HitRecord hit = c->hits[c->at - 1u];
   const uint geometry = surfaces->primitive_geometry[as_uint(tree->leaves[hit.slot])];
-  if ((media->boundaries[media->geometry_boundary[geometry]].flags & CAPLET_BOUNDARY_SHEET) == 0) return 0;
+  if ((media->boundaries[media->geometry_boundary[geometry]].flags & CAPLET_BOUNDARY_SHEET) == 0)
+    return 0;
   const float first = hit.t - crossings_apart(&c->ray, hit.t);
   for (uint i = c->at - 1u; i > 0u && c->hits[i - 1u].t >= first; --i) {
     const HitRecord before = c->hits[i - 1u];
-    if (before.instance == hit.instance && ((before.surface ^ hit.surface) & CAPLET_LEAVING) == 0u &&
+    if (before.instance == hit.instance &&
+        ((before.surface ^ hit.surface) & CAPLET_LEAVING) == 0u &&
         surfaces->primitive_geometry[as_uint(tree->leaves[before.slot])] == geometry)
       return 1;
   }
@@ -76,7 +80,9 @@ static inline int crossing_repeats(const Tree* tree, const Surfaces* surfaces, c
 
 // Finds the boundaries that contain a ray behind its t_min: the closed solids that it leaves more
 // often than it enters them, and from `before` those that are told by normals alone.
-static inline MediumStack medium_stack_counted(const Tree* tree, const Surfaces* surfaces, const Media* media, RayRecord ray, MediumStack before) {
+static inline MediumStack medium_stack_counted(const Tree* tree, const Surfaces* surfaces,
+                                               const Media* media, RayRecord ray,
+                                               MediumStack before) {
   uint boundary[CAPLET_COUNTED_BOUNDARIES];
   int count[CAPLET_COUNTED_BOUNDARIES];
   for (int i = 0; i < CAPLET_COUNTED_BOUNDARIES; ++i) count[i] = 0;
@@ -86,7 +92,8 @@ static inline MediumStack medium_stack_counted(const Tree* tree, const Surfaces*
   while (crossings_next(tree, &crossings)) {
     const HitRecord hit = crossings.hits[crossings.at - 1u];
     const uint met = boundary_of(tree, surfaces, media, &hit);
-    if (met == CAPLET_NONE || (media->boundaries[met].flags & CAPLET_BOUNDARY_CLOSED) == 0) continue;
+    if (met == CAPLET_NONE || (media->boundaries[met].flags & CAPLET_BOUNDARY_CLOSED) == 0)
+      continue;
     if (crossing_repeats(tree, surfaces, media, &crossings)) continue;
     int place = -1, empty = -1;
     for (int i = 0; i < CAPLET_COUNTED_BOUNDARIES; ++i) {

@@ -2,8 +2,12 @@
 // Copyright Caplet authors
 //
 // Finds the closest hit of every ray in the queue.
-static __global const RayRecord* traced_ray_at(const Stage* g, uint item) { return g->rays.path_ray + g->queues.queue[item]; }
-static void traced_hit(const Stage* g, uint item, const HitRecord* hit) { g->rays.path_hit[g->queues.queue[item]] = *hit; }
+static __global const RayRecord* traced_ray_at(const Stage* g, uint item) {
+  return g->rays.path_ray + g->queues.queue[item];
+}
+static void traced_hit(const Stage* g, uint item, const HitRecord* hit) {
+  g->rays.path_hit[g->queues.queue[item]] = *hit;
+}
 #define TRACED_TREE(g) (&(g)->tree)
 #define TRACED_ROOT(g) ((g)->tree.world->root)
 #include "trace/many.cl"

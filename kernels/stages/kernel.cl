@@ -9,8 +9,7 @@
 // diverges where primitives are tested one by one: compilers must not put several of them into one
 // vector. Without this hint Intel's compilers of 2025 and later do, which is slow in both
 // encodings, and wrong where functions are called (docs/drivers.md).
-__attribute__((vec_type_hint(float8)))
-__kernel void STAGE_NAME(
+__attribute__((vec_type_hint(float8))) __kernel void STAGE_NAME(
 #define GROUP_BEGIN(Type, group)
 #define BUFFER(name, type, access) access(type) name,
 #define GROUP_END(Type)
@@ -18,11 +17,14 @@ __kernel void STAGE_NAME(
 #undef GROUP_BEGIN
 #undef BUFFER
 #undef GROUP_END
-    uint item_count, uint counter) {
+        uint item_count,
+    uint counter) {
   const Stage stage = {
 #define GROUP_BEGIN(Type, group) {
 #define BUFFER(name, type, access) name,
-#define GROUP_END(Type) },
+#define GROUP_END(Type) \
+  }                     \
+  ,
       STAGE_GROUPS
 #undef GROUP_BEGIN
 #undef BUFFER
@@ -31,7 +33,8 @@ __kernel void STAGE_NAME(
 #ifdef STAGE_IS_COUNTED
   // The launch is for as many items as there may be. Without any the buffers may be null
   // (Program::prepare).
-  if (item_count > 0 && counter != CAPLET_NONE) item_count = min(item_count, stage.counters.counters[counter]);
+  if (item_count > 0 && counter != CAPLET_NONE)
+    item_count = min(item_count, stage.counters.counters[counter]);
 #endif
 #include "stages/items.cl"
 }

@@ -9,12 +9,14 @@
 #include "shared/kinds.h"
 #include "shared/records.h"
 
-static inline __global float* layers_of_path(__global const BatchRecord* batch, uint path, __global float* path_layers) {
+static inline __global float* layers_of_path(__global const BatchRecord* batch, uint path,
+                                             __global float* path_layers) {
   return path_layers + (size_t)path * batch->layer_floats;
 }
 
 // Stores the values of a camera ray that has hit nothing yet.
-static inline void layers_of_nothing(__global const BatchRecord* batch, uint path, __global float* path_layers) {
+static inline void layers_of_nothing(__global const BatchRecord* batch, uint path,
+                                     __global float* path_layers) {
   __global float* at = layers_of_path(batch, path, path_layers);
   const uint layers = batch->layers;
 #define RADIANCE_LAYER(name, option, channels, how, count, words, unit, value)

@@ -15,7 +15,8 @@
 #include "shared/records.h"
 
 // path_flags
-#define PATH_SPECULAR 1u   // the last scattering was a delta: light sampling could not have found what is hit next
+#define PATH_SPECULAR \
+  1u  // the last scattering was a delta: light sampling could not have found what is hit next
 #define PATH_DEPTH_SHIFT 8
 
 // These are addresses of random numbers (dimensions.def).
@@ -53,7 +54,8 @@ enum {
 #undef CAMERA_DIMENSION
 #undef SCATTERING_DIMENSION
 #define CAMERA_SAMPLE(name) camera_dimension_##name
-#define SCATTERING_SAMPLE(name, depth) (camera_dimension_count + scattering_dimension_count * (depth) + scattering_dimension_##name)
+#define SCATTERING_SAMPLE(name, depth) \
+  (camera_dimension_count + scattering_dimension_count * (depth) + scattering_dimension_##name)
 #define MEDIUM_SAMPLE(name, depth) (medium_dimension_##name + (depth))
 #define HASHED_SAMPLE(name) hashed_dimension_##name()
 
@@ -83,26 +85,37 @@ static inline uint2 batch_pixel(__global const BatchRecord* batch, uint pixel) {
   const uint rows = min(8u, batch->window_height - 8u * band);
   const uint tile = in_band / (8u * rows), in_tile = in_band - tile * 8u * rows;
   const uint columns = min(8u, width - 8u * tile);
-  return (uint2)(batch->window_x + 8u * tile + in_tile % columns, batch->window_y + 8u * band + in_tile / columns);
+  return (uint2)(batch->window_x + 8u * tile + in_tile % columns,
+                 batch->window_y + 8u * band + in_tile / columns);
 }
 
 // Returns the number of a path of a batch: that of sample number `sample` of pixel number `pixel`.
 static inline uint path_number(__global const BatchRecord* batch, uint pixel, uint sample) {
-  return batch->by_sample ? sample * batch->pixel_count + pixel : pixel * batch->sample_count + sample;
+  return batch->by_sample ? sample * batch->pixel_count + pixel
+                          : pixel * batch->sample_count + sample;
 }
 
 // Returns the sample of path number `path` of a batch.
-static inline PathSample path_sample(__global const BatchRecord* batch, __global const ViewRecord* view, uint path) {
-  const uint2 pixel = batch_pixel(batch, batch->by_sample ? path % batch->pixel_count : path / batch->sample_count);
-  return sample_of_pixel(view, pixel.x, pixel.y, batch->sample_begin + (batch->by_sample
-                             ? path / batch->pixel_count : path % batch->sample_count));
+static inline PathSample path_sample(__global const BatchRecord* batch,
+                                     __global const ViewRecord* view, uint path) {
+  const uint2 pixel =
+      batch_pixel(batch, batch->by_sample ? path % batch->pixel_count : path / batch->sample_count);
+  return sample_of_pixel(view, pixel.x, pixel.y,
+                         batch->sample_begin + (batch->by_sample ? path / batch->pixel_count
+                                                                 : path % batch->sample_count));
 }
 
 // Returns the ray of a path that goes on from a point.
 static inline RayRecord path_onward(float3 origin, float3 direction) {
   RayRecord ray;
-  ray.ox = origin.x; ray.oy = origin.y; ray.oz = origin.z; ray.t_min = 0.0f;
-  ray.dx = direction.x; ray.dy = direction.y; ray.dz = direction.z; ray.t_max = INFINITY;
+  ray.ox = origin.x;
+  ray.oy = origin.y;
+  ray.oz = origin.z;
+  ray.t_min = 0.0f;
+  ray.dx = direction.x;
+  ray.dy = direction.y;
+  ray.dz = direction.z;
+  ray.t_max = INFINITY;
   return ray;
 }
 

@@ -40,8 +40,10 @@ static inline PathState load_path_state(const Stage* g, uint path) {
 // (keep_hero_wavelength).
 static inline void store_path_state(const Stage* g, uint path, const PathState* state) {
   g->carried.path_throughput[path] = state->throughput;
-  g->carried.path_scatter[path] = (float4)(state->last_pdf, state->eta_scale, as_float(state->crossed_light), 0.0f);
-  g->carried.path_flags[path] = (state->depth << PATH_DEPTH_SHIFT) | path_flag(g->view.view, state->specular);
+  g->carried.path_scatter[path] =
+      (float4)(state->last_pdf, state->eta_scale, as_float(state->crossed_light), 0.0f);
+  g->carried.path_flags[path] =
+      (state->depth << PATH_DEPTH_SHIFT) | path_flag(g->view.view, state->specular);
 }
 
 // Return and set the side of the last scattering that light samples saw: normal_bits, or
@@ -64,14 +66,16 @@ static inline void set_path_side(const Stage* g, uint path, uint side) {
 
 // Puts the path, whose next ray is in path_ray, into the queue of the next round. `from`: about
 // where the ray begins.
-static inline void append_path(const Stage* g, Outbox* out, uint path, float3 from, float3 direction) {
+static inline void append_path(const Stage* g, Outbox* out, uint path, float3 from,
+                               float3 direction) {
   const uint bits = g->batch.batch->sort_bits;
-  append_next(g, out, path, bits != CAPLET_NONE ? sort_key(g->tree.world, bits, from, direction) : 0u);
+  append_next(g, out, path,
+              bits != CAPLET_NONE ? sort_key(g->tree.world, bits, from, direction) : 0u);
 }
 
 // Sends the path on by a ray from `origin`, after a scattering that made `state`.
-static inline void continue_path(const Stage* g, Outbox* out, uint path, const PathState* state, uint side, float3 origin,
-                                 float3 direction) {
+static inline void continue_path(const Stage* g, Outbox* out, uint path, const PathState* state,
+                                 uint side, float3 origin, float3 direction) {
   g->rays.path_ray[path] = path_onward(origin, direction);
   store_path_state(g, path, state);
   set_path_side(g, path, side);
@@ -80,12 +84,13 @@ static inline void continue_path(const Stage* g, Outbox* out, uint path, const P
 
 // Returns whether a scattering takes a light sample.
 static inline int takes_light_sample(const Stage* g) {
-  return g->lights.lighting->sampled_light_count > 0u && (g->view.view->strategy & CAPLET_STRATEGY_NO_LIGHTS) == 0u;
+  return g->lights.lighting->sampled_light_count > 0u &&
+         (g->view.view->strategy & CAPLET_STRATEGY_NO_LIGHTS) == 0u;
 }
 
 // Sends the shadow ray of a light sample, from `origin`. `contribution` counts where it is free.
-static inline void send_shadow_ray(const Stage* g, Outbox* out, uint path, const LightSample* light, float3 origin,
-                                   float4 contribution) {
+static inline void send_shadow_ray(const Stage* g, Outbox* out, uint path, const LightSample* light,
+                                   float3 origin, float4 contribution) {
   ShadowTarget target;
   g->shadows.path_shadow[path] = shadow_ray(light, origin, &target);
   g->shadows.path_shadow_target[path] = target;

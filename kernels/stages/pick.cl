@@ -4,7 +4,9 @@
 // Finds the nearest crossing of every ray of a query.
 #include "stages/pick_record.cl"
 
-static __global const RayRecord* traced_ray_at(const Stage* g, uint item) { return g->query.query_rays + item; }
+static __global const RayRecord* traced_ray_at(const Stage* g, uint item) {
+  return g->query.query_rays + item;
+}
 static void traced_hit(const Stage* g, uint item, const HitRecord* hit) {
   const RayRecord ray = g->query.query_rays[item];
   g->picks.picks[item] = pick_record(&g->tree, &g->surfaces, &ray, hit);

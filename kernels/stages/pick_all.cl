@@ -7,5 +7,5 @@
 static void stage_item(const Stage* g, uint item) {
   const uint capacity = g->query.query->capacity;
   g->crossings.query_counts[item] = trace_all(&g->tree, g->query.query_rays[item], capacity,
-                                    g->crossings.query_hits + (size_t)item * capacity);
+                                              g->crossings.query_hits + (size_t)item * capacity);
 }

@@ -6,7 +6,8 @@
 
 static void stage_item(const Stage* g, uint item) {
   const uint capacity = g->query.query->capacity;
-  const uint count = min(g->crossings.query_counts[item], capacity), begin = g->crossings.query_begin[item];
+  const uint count = min(g->crossings.query_counts[item], capacity),
+             begin = g->crossings.query_begin[item];
   const RayRecord ray = g->query.query_rays[item];
   for (uint i = 0; i < count; ++i) {
     const HitRecord hit = g->crossings.query_hits[(size_t)item * capacity + i];

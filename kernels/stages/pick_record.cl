@@ -12,7 +12,8 @@
 static inline int shape_is_sheet(uint shape) {
   switch (shape) {
 #define SHAPE(name, traits) \
-  case shape_##name: return ((traits)&trait_sheet) != 0;
+  case shape_##name:        \
+    return ((traits)&trait_sheet) != 0;
 #include "shared/shapes.def"
 #undef SHAPE
     default: return 0;
@@ -21,8 +22,10 @@ static inline int shape_is_sheet(uint shape) {
 
 // Returns the record of a hit of `ray`, or of a miss. The normal points against the ray, from
 // inside too.
-static inline PickRecord pick_record(const Tree* tree, const Surfaces* surfaces, const RayRecord* ray, const HitRecord* hit) {
-  PickRecord out = {INFINITY, 0.0f, 0.0f, 0.0f, CAPLET_NONE, CAPLET_NONE, 0, 0, 0, 0, {0.0f, 0.0f, 0.0f}, {0.0f, 0.0f, 0.0f}};
+static inline PickRecord pick_record(const Tree* tree, const Surfaces* surfaces,
+                                     const RayRecord* ray, const HitRecord* hit) {
+  PickRecord out = {INFINITY, 0.0f, 0.0f, 0.0f, CAPLET_NONE,        CAPLET_NONE,
+                    0,        0,    0,    0,    {0.0f, 0.0f, 0.0f}, {0.0f, 0.0f, 0.0f}};
   if (hit->slot == CAPLET_NONE) return out;
   const Surface s = surface_at(tree, surfaces, ray, hit);
   __global const GeometryRecord* geometry = surfaces->geometries + s.geometry;
@@ -38,7 +41,8 @@ static inline PickRecord pick_record(const Tree* tree, const Surfaces* surfaces,
   out.surface = s.surface;
   out.material = s.material;
   out.leaving = s.leaving ? 1u : 0u;
-  if (shape_is_sheet(geometry->shape) && (geometry->flags & CAPLET_GEOMETRY_FLIP_NORMAL)) out.leaving ^= 1u;
+  if (shape_is_sheet(geometry->shape) && (geometry->flags & CAPLET_GEOMETRY_FLIP_NORMAL))
+    out.leaving ^= 1u;
   vstore3(s.p, 0, out.point);
   vstore3(normal, 0, out.normal);
   return out;

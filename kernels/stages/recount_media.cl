@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Recounts, before distances are sampled, the boundaries that contain rays which began where several
-// surfaces are at one place, and finds whether their hits are at such a place.
+// Recounts, before distances are sampled, the boundaries that contain rays which began where
+// several surfaces are at one place, and finds whether their hits are at such a place.
 #include "stages/crossings.cl"
 #include "media/passing.cl"
 #include "stages/path.cl"
@@ -32,16 +32,22 @@ static void stage_item(const Stage* g, uint item) {
   while (crossings_next(&g->tree, &crossings)) {
     const HitRecord other = crossings.hits[crossings.at - 1u];
     const uint boundary = boundary_of(&g->tree, &g->surfaces, &g->media, &other);
-    if (boundary != CAPLET_NONE && boundary_is_left(&g->tree, &g->surfaces, &g->media, boundary, &other)) left = min(left, boundary);
-    if (other.slot == hit.slot && other.instance == hit.instance && other.t == hit.t && other.surface == hit.surface) continue;
+    if (boundary != CAPLET_NONE &&
+        boundary_is_left(&g->tree, &g->surfaces, &g->media, boundary, &other))
+      left = min(left, boundary);
+    if (other.slot == hit.slot && other.instance == hit.instance && other.t == hit.t &&
+        other.surface == hit.surface)
+      continue;
     if (boundary != CAPLET_NONE) near = CAPLET_NEAR;
     if (!passes || other.t != hit.t) continue;
     // The nearest hit may hide, at the same t, a surface that stops light.
     const uint geometry = g->surfaces.primitive_geometry[as_uint(g->tree.leaves[other.slot])];
-    passes = g->surfaces.geometries[geometry].alpha != CAPLET_NONE || surface_passes(&g->tree, &g->surfaces, &g->materials, &other);
+    passes = g->surfaces.geometries[geometry].alpha != CAPLET_NONE ||
+             surface_passes(&g->tree, &g->surfaces, &g->materials, &other);
     if (passes) continue;
     g->rays.path_hit[path] = other;
     near = CAPLET_NEAR;
   }
-  if (near == CAPLET_NEAR) g->medium_stacks.path_near[path] = left == CAPLET_NONE ? CAPLET_NEAR : CAPLET_NEAR_LEFT + left;
+  if (near == CAPLET_NEAR)
+    g->medium_stacks.path_near[path] = left == CAPLET_NONE ? CAPLET_NEAR : CAPLET_NEAR_LEFT + left;
 }

@@ -13,10 +13,12 @@
 // not a number is black and counted.
 static inline float3 sample_xyz(const Stage* g, uint path, int counted) {
   const float4 radiance = g->radiance.path_radiance[path];
-  const float3 xyz = xyz_from_spectrum(g->observer.observer, radiance, g->carried.path_wavelengths[path],
-                                       g->carried.path_wavelength_pdfs[path]);
+  const float3 xyz =
+      xyz_from_spectrum(g->observer.observer, radiance, g->carried.path_wavelengths[path],
+                        g->carried.path_wavelength_pdfs[path]);
   if (all(isfinite(radiance)) && all(isfinite(xyz))) {
-    const float limit = g->view.view->sample_limit, peak = fmax(fabs(xyz.x), fmax(fabs(xyz.y), fabs(xyz.z)));
+    const float limit = g->view.view->sample_limit,
+                peak = fmax(fabs(xyz.x), fmax(fabs(xyz.y), fabs(xyz.z)));
     return limit > 0.0f && peak > limit ? (limit / peak) * xyz : xyz;
   }
   if (counted) atomic_inc(&g->counters.counters[counter_not_finite]);
@@ -25,29 +27,30 @@ static inline float3 sample_xyz(const Stage* g, uint path, int counted) {
 
 // Adds the samples of the batch's pixel `number` to `count` sums of `words` words at `film`.
 // sample: a float4 as a function of the number `path` of a path.
-#define ADD_SAMPLES(count, words, unit, sample)                                                     \
-  {                                                                                                 \
-    ulong4 sums[words];                                                                             \
-    for (int w = 0; w < words; ++w)                                                                 \
-      sums[w] = first ? (ulong4)(0)                                                                 \
-                      : (ulong4)(film[w], film[count > 1 ? words + w : 0], film[count > 2 ? 2 * words + w : 0], 0); \
-    for (uint i = 0; i < batch->sample_count; ++i) {                                                \
-      const uint path = path_number(batch, number, i);                                              \
-      exact_add(sums, words, sample, unit);                                                         \
-    }                                                                                               \
-    for (int w = 0; w < words; ++w) {                                                               \
-      film[w] = sums[w].x;                                                                          \
-      if (count > 1) film[words + w] = sums[w].y;                                                   \
-      if (count > 2) film[2 * words + w] = sums[w].z;                                               \
-    }                                                                                               \
+#define ADD_SAMPLES(count, words, unit, sample)                            \
+  {                                                                        \
+    ulong4 sums[words];                                                    \
+    for (int w = 0; w < words; ++w)                                        \
+      sums[w] = first ? (ulong4)(0)                                        \
+                      : (ulong4)(film[w], film[count > 1 ? words + w : 0], \
+                                 film[count > 2 ? 2 * words + w : 0], 0);  \
+    for (uint i = 0; i < batch->sample_count; ++i) {                       \
+      const uint path = path_number(batch, number, i);                     \
+      exact_add(sums, words, sample, unit);                                \
+    }                                                                      \
+    for (int w = 0; w < words; ++w) {                                      \
+      film[w] = sums[w].x;                                                 \
+      if (count > 1) film[words + w] = sums[w].y;                          \
+      if (count > 2) film[2 * words + w] = sums[w].z;                      \
+    }                                                                      \
   }
 
 // radiance_layer_<name> returns the value of a sample.
-#define RADIANCE_LAYER(name, option, channels, how, count, words, unit, value)                        \
-  static inline float4 radiance_layer_##name(float3 xyz, __global const ViewRecord* view) {          \
-    const float3 rgb = rgb_from_xyz(view->rgb_from_xyz, xyz);                                         \
-    (void)rgb;                                                                                        \
-    return (float4)(value, 0.0f);                                                                     \
+#define RADIANCE_LAYER(name, option, channels, how, count, words, unit, value)              \
+  static inline float4 radiance_layer_##name(float3 xyz, __global const ViewRecord* view) { \
+    const float3 rgb = rgb_from_xyz(view->rgb_from_xyz, xyz);                               \
+    (void)rgb;                                                                              \
+    return (float4)(value, 0.0f);                                                           \
   }
 #define HIT_LAYER(name, option, channels, how, count, words, unit, value)
 #define ID_LAYER(name, option, channel, value)
@@ -75,30 +78,32 @@ static void stage_item(const Stage* g, uint item) {
   const uint layers = batch->layers;
   const int color = batch->color_exponent, length = batch->length_exponent;
   uint offset = 0;  // of the layer in path_layers
-#define RADIANCE_LAYER(name, option, channels, how, count, words, unit, value) \
-  if (layers & (1u << layer_##name)) {                                         \
-    if (TAKES_LAYER)                                                           \
-      ADD_SAMPLES(count, words, unit, radiance_layer_##name(sample_xyz(g, path, layer_##name == layer_color), view)) \
-    film += (count) * (words);                                                 \
+#define RADIANCE_LAYER(name, option, channels, how, count, words, unit, value)                   \
+  if (layers & (1u << layer_##name)) {                                                           \
+    if (TAKES_LAYER)                                                                             \
+      ADD_SAMPLES(count, words, unit,                                                            \
+                  radiance_layer_##name(sample_xyz(g, path, layer_##name == layer_color), view)) \
+    film += (count) * (words);                                                                   \
   }
-#define HIT_LAYER(name, option, channels, how, count, words, unit, value)                                                 \
-  if (layers & (1u << layer_##name)) {                                                                                    \
-    if (TAKES_LAYER)                                                                                                      \
-      ADD_SAMPLES(count, words, unit, layer_at(layers_of_path(batch, path, g->layers.path_layers) + offset, count))       \
-    film += (count) * (words);                                                                                            \
-    offset += count;                                                                                                      \
+#define HIT_LAYER(name, option, channels, how, count, words, unit, value)                       \
+  if (layers & (1u << layer_##name)) {                                                          \
+    if (TAKES_LAYER)                                                                            \
+      ADD_SAMPLES(count, words, unit,                                                           \
+                  layer_at(layers_of_path(batch, path, g->layers.path_layers) + offset, count)) \
+    film += (count) * (words);                                                                  \
+    offset += count;                                                                            \
   }
-#define ID_LAYER(name, option, channel, value)                                                                           \
-  if (layers & (1u << layer_##name)) {                                                                                   \
-    const int takes = TAKES_LAYER;                                                                                       \
-    if (takes && first) *film = 0;                                                                                       \
-    for (uint i = 0; takes && i < batch->sample_count; ++i) {                                                            \
-      const uint path = path_number(batch, number, i);                                                                   \
-      const uint id = as_uint(layers_of_path(batch, path, g->layers.path_layers)[offset]);                               \
-      *film = max(*film, ~(((ulong)(batch->sample_begin + i) << 32) | id));                                                 \
-    }                                                                                                                    \
-    ++film;                                                                                                              \
-    ++offset;                                                                                                            \
+#define ID_LAYER(name, option, channel, value)                                             \
+  if (layers & (1u << layer_##name)) {                                                     \
+    const int takes = TAKES_LAYER;                                                         \
+    if (takes && first) *film = 0;                                                         \
+    for (uint i = 0; takes && i < batch->sample_count; ++i) {                              \
+      const uint path = path_number(batch, number, i);                                     \
+      const uint id = as_uint(layers_of_path(batch, path, g->layers.path_layers)[offset]); \
+      *film = max(*film, ~(((ulong)(batch->sample_begin + i) << 32) | id));                \
+    }                                                                                      \
+    ++film;                                                                                \
+    ++offset;                                                                              \
   }
 #include "shared/layers.def"
 #undef RADIANCE_LAYER

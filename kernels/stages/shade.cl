@@ -21,24 +21,28 @@
 
 // Returns the white of the film's colour space, of luminance 1.
 static inline float4 film_white(const Stage* g, float4 wavelengths) {
-  return spectrum_table_at4(g->spectra.spectrum_tables + g->tree.world->illuminant_table, wavelengths);
+  return spectrum_table_at4(g->spectra.spectrum_tables + g->tree.world->illuminant_table,
+                            wavelengths);
 }
 
 // Returns CIE XYZ under white, whatever lights there are: a white surface has albedo 1 1 1.
-static inline float3 first_hit_albedo(const Stage* g, const Bsdf* bsdf, float3 wo_local, float4 wavelengths, float4 pdfs) {
+static inline float3 first_hit_albedo(const Stage* g, const Bsdf* bsdf, float3 wo_local,
+                                      float4 wavelengths, float4 pdfs) {
   const float4 seen = bsdf_albedo(bsdf, wo_local) * film_white(g, wavelengths);
   return xyz_from_spectrum(g->observer.observer, seen, wavelengths, pdfs);
 }
 
 // Returns the number in the object-id layer: the shape's, or that of the instance which holds it.
 static inline uint first_hit_object(const Stage* g, const Surface* s, uint instance) {
-  if (instance != CAPLET_NONE && g->tree.instances[instance].object != CAPLET_NONE) return g->tree.instances[instance].object;
+  if (instance != CAPLET_NONE && g->tree.instances[instance].object != CAPLET_NONE)
+    return g->tree.instances[instance].object;
   return g->surfaces.geometries[s->geometry].object;
 }
 
 // Stores the values of layers.def.
-static inline void store_layers(const Stage* g, uint path, const HitRecord* hit, const Surface* s, const Bsdf* bsdf, float3 wo_local,
-                                float3 wo, float4 wavelengths, float4 pdfs) {
+static inline void store_layers(const Stage* g, uint path, const HitRecord* hit, const Surface* s,
+                                const Bsdf* bsdf, float3 wo_local, float3 wo, float4 wavelengths,
+                                float4 pdfs) {
   __global float* at = layers_of_path(g->batch.batch, path, g->layers.path_layers);
   const uint layers = g->batch.batch->layers;
 #define RADIANCE_LAYER(name, option, channels, how, count, words, unit, value)
@@ -76,7 +80,8 @@ static inline uint receiving_side(const Frame* frame, const Bsdf* bsdf, float3 w
 // what crosses it as no reflection, and so lets no light through (decision 0023).
 static inline int goes_by_shading_normal(const Surface* s, const Bsdf* bsdf, int bumped) {
   if (bumped) return 1;
-  return (s->flags & CAPLET_GEOMETRY_NORMALS) != 0u && ((s->flags & CAPLET_GEOMETRY_OPEN) != 0u || !bsdf_is_opaque(bsdf));
+  return (s->flags & CAPLET_GEOMETRY_NORMALS) != 0u &&
+         ((s->flags & CAPLET_GEOMETRY_OPEN) != 0u || !bsdf_is_opaque(bsdf));
 }
 
 // A hit that is shaded: the surface, and the path's direction there.
@@ -88,22 +93,24 @@ typedef struct {
   TexturePlace place;
   uint material;
   int bumped;
-  Frame frame;      // of the shading normal
+  Frame frame;  // of the shading normal
   Bsdf bsdf;
   float3 wo, wo_local;
-  float2 cone;      // of the ray at the hit
-  uint side;        // that light samples see
-  int by_shading;   // directions go by the shading normal alone
+  float2 cone;     // of the ray at the hit
+  uint side;       // that light samples see
+  int by_shading;  // directions go by the shading normal alone
 } ShadingPoint;
 
 // Takes one light sample; its unoccluded contribution waits in path_shadow_radiance for `connect`.
-static inline void sample_light(const Stage* g, Outbox* out, const Scene* scene, const ShadingPoint* point, const PathState* state, PathSample at) {
+static inline void sample_light(const Stage* g, Outbox* out, const Scene* scene,
+                                const ShadingPoint* point, const PathState* state, PathSample at) {
   const Surface* s = &point->surface;
   LightSample light;
   // The origin is on the side of wo, as for the density of a reflected ray that meets the light:
   // this matters within an emitting solid.
   const LightReceiver receiver = {offset_origin(s->p, s->ng, s->error, point->wo), point->side};
-  if (!light_sample(scene, receiver, state->wavelengths, sampler_bits(at, SCATTERING_SAMPLE(choices, state->depth)),
+  if (!light_sample(scene, receiver, state->wavelengths,
+                    sampler_bits(at, SCATTERING_SAMPLE(choices, state->depth)),
                     sampler_2d(at, SCATTERING_SAMPLE(light, state->depth)), &light))
     return;
   const float3 wi_local = to_local(&point->frame, light.wi);
@@ -119,15 +126,18 @@ static inline void sample_light(const Stage* g, Outbox* out, const Scene* scene,
   const float weight = media_light_weight(g, point->path, &point->hit, &light, crosses, bsdf_pdf);
   const float4 contribution = state->throughput * f * light.radiance * (weight / light.pdf);
   if (!(max4(fabs(contribution)) > 0.0f)) return;  // the filter's weight may be negative
-  send_shadow_ray(g, out, point->path, &light, offset_origin(s->p, s->ng, s->error, light.wi), contribution);
+  send_shadow_ray(g, out, point->path, &light, offset_origin(s->p, s->ng, s->error, light.wi),
+                  contribution);
 }
 
 // Samples a direction uniformly over the hemisphere of wo, or over the sphere where the BSDF or the
 // integrator asks for it, in place of bsdf_sample: the integrators "simplepath" and "randomwalk".
 // Returns 0 where nothing is scattered there.
-static inline int uniform_sample(const Bsdf* bsdf, uint strategy, float3 wo_local, float2 u, BsdfSample* s) {
+static inline int uniform_sample(const Bsdf* bsdf, uint strategy, float3 wo_local, float2 u,
+                                 BsdfSample* s) {
   const int is_sphere = (strategy & CAPLET_STRATEGY_SPHERE) != 0u || !bsdf_is_opaque(bsdf);
-  const float z = is_sphere ? 1.0f - 2.0f * u.x : copysign(u.x, wo_local.z), across = sqrt(fmax(0.0f, 1.0f - z * z));
+  const float z = is_sphere ? 1.0f - 2.0f * u.x : copysign(u.x, wo_local.z),
+              across = sqrt(fmax(0.0f, 1.0f - z * z));
   const float phi = 2.0f * CAPLET_PI * u.y;
   s->wi = (float3)(across * cos(phi), across * sin(phi), z);
   s->pdf = CAPLET_INV_PI * (is_sphere ? 0.25f : 0.5f);
@@ -141,10 +151,12 @@ static inline int uniform_sample(const Bsdf* bsdf, uint strategy, float3 wo_loca
 
 // Sends the one ray of ambient occlusion (the integrator "ambientocclusion" of pbrt-v4): what it
 // does not meet within the greatest distance is white.
-static inline void send_occlusion_ray(const Stage* g, Outbox* out, const ShadingPoint* point, PathState* state) {
+static inline void send_occlusion_ray(const Stage* g, Outbox* out, const ShadingPoint* point,
+                                      PathState* state) {
   __global const ViewRecord* view = g->view.view;
   const Surface* s = &point->surface;
-  const float2 u = sampler_2d(path_sample(g->batch.batch, view, point->path), SCATTERING_SAMPLE(bsdf, 0));
+  const float2 u =
+      sampler_2d(path_sample(g->batch.batch, view, point->path), SCATTERING_SAMPLE(bsdf, 0));
   float3 wi_local = sample_cosine_hemisphere(u);
   if ((view->strategy & CAPLET_STRATEGY_UNIFORM) != 0u) {
     const float across = sqrt(1.0f - u.x * u.x), phi = 2.0f * CAPLET_PI * u.y;
@@ -156,7 +168,8 @@ static inline void send_occlusion_ray(const Stage* g, Outbox* out, const Shading
   state->depth = 1u;
   state->specular = 1;
   media_scattered(g, point->path, &point->hit, 0);
-  continue_path(g, out, point->path, state, CAPLET_NONE, offset_origin(s->p, s->ng, s->error, wi), wi);
+  continue_path(g, out, point->path, state, CAPLET_NONE, offset_origin(s->p, s->ng, s->error, wi),
+                wi);
   g->rays.path_ray[point->path].t_max = view->max_distance;
 }
 
@@ -188,29 +201,34 @@ static inline void stage_ahead(const Stage* g, uint item, uint count) {
 #endif
 
 // Adds the light of the sky to a path that met nothing.
-static inline void add_sky(const Stage* g, uint path, const PathState* state, const RayRecord* ray) {
+static inline void add_sky(const Stage* g, uint path, const PathState* state,
+                           const RayRecord* ray) {
   const int is_occlusion = (g->view.view->strategy & CAPLET_STRATEGY_OCCLUSION) != 0u;
 #ifdef CAPLET_UNSEEN_SKY
   if (state->depth == 0u) return;  // a backdrop takes its place
 #endif
   float4 sky = (float4)(0.0f);
   if (!is_occlusion)
-    sky = light_infinite(&g->spectra, &g->lights, (float3)(ray->ox, ray->oy, ray->oz), (float3)(ray->dx, ray->dy, ray->dz),
-                         state->wavelengths, state->last_pdf, state->specular);
+    sky = light_infinite(&g->spectra, &g->lights, (float3)(ray->ox, ray->oy, ray->oz),
+                         (float3)(ray->dx, ray->dy, ray->dz), state->wavelengths, state->last_pdf,
+                         state->specular);
   else if (state->depth > 0u)
     sky = film_white(g, state->wavelengths);
   g->radiance.path_radiance[path] += state->throughput * sky;
 }
 
 // Adds the light that a surface emits towards the path, weighted against light samples.
-static inline void add_emission(const Stage* g, const Scene* scene, const ShadingPoint* point, const PathState* state) {
+static inline void add_emission(const Stage* g, const Scene* scene, const ShadingPoint* point,
+                                const PathState* state) {
   const Surface* s = &point->surface;
-  const float4 emitted = light_emitted(&g->spectra, &g->lights, s->light, s->ng, s->uv, point->wo, state->wavelengths);
+  const float4 emitted =
+      light_emitted(&g->spectra, &g->lights, s->light, s->ng, s->uv, point->wo, state->wavelengths);
   if (!(max4(emitted) > 0.0f)) return;
   float weight = 1.0f;
   // Only this strategy finds light of the primitive that the ray crossed.
   if (!state->specular && state->crossed_light != s->light) {
-    const LightReceiver from = {(float3)(point->ray.ox, point->ray.oy, point->ray.oz), path_side(g, point->path)};
+    const LightReceiver from = {(float3)(point->ray.ox, point->ray.oy, point->ray.oz),
+                                path_side(g, point->path)};
     weight = power_heuristic(state->last_pdf, light_area_pdf(scene, s->light, from, s, -point->wo));
   }
   g->radiance.path_radiance[point->path] += state->throughput * emitted * weight;
@@ -233,7 +251,8 @@ static inline void find_material(const Stage* g, ShadingPoint* point, const Path
   if (any_choice_material) {
     const PathSample at = path_sample(g->batch.batch, g->view.view, point->path);
     const float u = sampler_2d(at, SCATTERING_SAMPLE(roulette, state->depth)).y;
-    point->material = bsdf_chosen(&g->materials, &g->spectra, point->material, &point->place, state->wavelengths, u);
+    point->material = bsdf_chosen(&g->materials, &g->spectra, point->material, &point->place,
+                                  state->wavelengths, u);
   }
 }
 
@@ -246,9 +265,11 @@ static inline void make_bsdf(const Stage* g, ShadingPoint* point, const PathStat
     float3 dndu = (float3)(0.0f), dndv = dndu;
     if (any_displacement && g->materials.materials[material].bump_kind == texture_displacement)
       normal_derivatives(&g->tree, &g->surfaces, &point->ray, &point->hit, s, &dndu, &dndv);
-    s->ns = bump_normal(&g->materials, &g->spectra, material, &point->place, s->ns, s->dpdu, s->dpdv, dndu, dndv);
+    s->ns = bump_normal(&g->materials, &g->spectra, material, &point->place, s->ns, s->dpdu,
+                        s->dpdv, dndu, dndv);
   }
-  point->frame = frame_from_tangent(s->ns, bsdf_tangent(&g->materials, material, s->dpdu, s->ns, s->along_u));
+  point->frame =
+      frame_from_tangent(s->ns, bsdf_tangent(&g->materials, material, s->dpdu, s->ns, s->along_u));
   point->wo_local = to_local(&point->frame, point->wo);
   point->bsdf = bsdf_make(&g->materials, &g->spectra, material, &point->place, state->wavelengths);
 }
@@ -263,14 +284,16 @@ static inline void keep_hero_wavelength(const Stage* g, uint path, PathState* st
 
 // Samples the BSDF and sends the path on. is_within: it met the boundary of a subsurface from
 // within, after `uncounted` scatterings there.
-static inline void scatter(const Stage* g, Outbox* out, const ShadingPoint* point, PathState* state, PathSample at, int is_within) {
+static inline void scatter(const Stage* g, Outbox* out, const ShadingPoint* point, PathState* state,
+                           PathSample at, int is_within) {
   const Surface* s = &point->surface;
   const uint path = point->path, depth = state->depth, strategy = g->view.view->strategy;
   BsdfSample sample;
   const float u_lobe = sampler_2d(at, SCATTERING_SAMPLE(choices, depth)).y;
   const float2 u = sampler_2d(at, SCATTERING_SAMPLE(bsdf, depth));
-  if ((strategy & CAPLET_STRATEGY_UNIFORM) == 0u ? !bsdf_sample(&point->bsdf, point->wo_local, u_lobe, u, &sample)
-                                                 : !uniform_sample(&point->bsdf, strategy, point->wo_local, u, &sample))
+  if ((strategy & CAPLET_STRATEGY_UNIFORM) == 0u
+          ? !bsdf_sample(&point->bsdf, point->wo_local, u_lobe, u, &sample)
+          : !uniform_sample(&point->bsdf, strategy, point->wo_local, u, &sample))
     return;
   float3 wi = to_world(&point->frame, sample.wi);
   int crosses = dot(wi, s->ng) * dot(point->wo, s->ng) < 0.0f;
@@ -287,14 +310,17 @@ static inline void scatter(const Stage* g, Outbox* out, const ShadingPoint* poin
   state->crossed_light = crosses ? s->primitive_light : CAPLET_NONE;
   if (!path_survives(at, depth, state->eta_scale, &state->throughput)) return;
   if (!(max4(fabs(state->throughput)) > 0.0f)) return;
-  if (is_within && !path_survives_within(g, path, media_uncounted(g, path), path_hash(at, depth), &state->throughput)) return;
+  if (is_within && !path_survives_within(g, path, media_uncounted(g, path), path_hash(at, depth),
+                                         &state->throughput))
+    return;
   state->depth = depth + 1u;
   state->specular = sample.specular;
   if (has_cones) {
     float2 cone = point->cone;
     if (sample.specular) {
       const float side = dot(point->wo, s->ng) < 0.0f ? -1.0f : 1.0f;
-      const float bend = surface_bend(&g->tree, &g->surfaces, &point->ray, &point->hit, s, fmax(cone.x, 1e3f * s->error));
+      const float bend = surface_bend(&g->tree, &g->surfaces, &point->ray, &point->hit, s,
+                                      fmax(cone.x, 1e3f * s->error));
       // eta_scale is the squared index of the side of wi over that of wo.
       cone = cone_turned(cone.x, cone.y, side * bend, fabs(dot(point->wo, s->ng)),
                          sample.transmitted ? rsqrt(sample.eta_scale) : 0.0f);
@@ -322,12 +348,15 @@ static void sending_item(const Stage* g, Outbox* out, uint item) {
   if (is_occlusion && state.depth > 0u) return;
   point.surface = surface_at(&g->tree, &g->surfaces, &point.ray, &point.hit);
   point.wo = -(float3)(point.ray.dx, point.ray.dy, point.ray.dz);
-  if (any_surface_light && point.surface.light != CAPLET_NONE && !is_occlusion) add_emission(g, &scene, &point, &state);
+  if (any_surface_light && point.surface.light != CAPLET_NONE && !is_occlusion)
+    add_emission(g, &scene, &point, &state);
   find_material(g, &point, &state);
   if (media_passes(g, out, path, point.material, &point.ray, &point.hit)) return;
   make_bsdf(g, &point, &state);
   const float4 pdfs = g->carried.path_wavelength_pdfs[path];
-  if (state.depth == 0u) store_layers(g, path, &point.hit, &point.surface, &point.bsdf, point.wo_local, point.wo, state.wavelengths, pdfs);
+  if (state.depth == 0u)
+    store_layers(g, path, &point.hit, &point.surface, &point.bsdf, point.wo_local, point.wo,
+                 state.wavelengths, pdfs);
   if (is_occlusion) {
     send_occlusion_ray(g, out, &point, &state);
     return;
@@ -340,7 +369,8 @@ static void sending_item(const Stage* g, Outbox* out, uint item) {
   if (any_stochastic_material) point.bsdf.random = path_hash(at, state.depth);
   point.side = receiving_side(&point.frame, &point.bsdf, point.wo_local);
   point.by_shading = goes_by_shading_normal(&point.surface, &point.bsdf, point.bumped);
-  if (takes_light_sample(g) && !bsdf_is_specular(&point.bsdf)) sample_light(g, out, &scene, &point, &state, at);
+  if (takes_light_sample(g) && !bsdf_is_specular(&point.bsdf))
+    sample_light(g, out, &scene, &point, &state, at);
   scatter(g, out, &point, &state, at, is_within);
 }
 

@@ -5,5 +5,6 @@
 // paths do not depend on each other.
 
 static void stage_item(const Stage* g, uint item) {
-  g->queues.queue[atomic_inc(&g->sort.sort_bins[g->sort.sort_keys[item]])] = g->queues.queue_next[item];
+  g->queues.queue[atomic_inc(&g->sort.sort_bins[g->sort.sort_keys[item]])] =
+      g->queues.queue_next[item];
 }

@@ -20,8 +20,11 @@ static inline int boundary_is_met_within(const Stage* g, uint path, const HitRec
   const uint boundary = boundary_of(&g->tree, &g->surfaces, &g->media, hit);
   if (boundary == CAPLET_NONE) return 0;
   const uint medium = g->media.boundaries[boundary].inside;
-  if (!medium_is_within(&g->media, medium) || !boundary_is_left(&g->tree, &g->surfaces, &g->media, boundary, hit)) return 0;
-  const MediumStack stack = {g->medium_stacks.path_inside[path], g->medium_stacks.path_around[path]};
+  if (!medium_is_within(&g->media, medium) ||
+      !boundary_is_left(&g->tree, &g->surfaces, &g->media, boundary, hit))
+    return 0;
+  const MediumStack stack = {g->medium_stacks.path_inside[path],
+                             g->medium_stacks.path_around[path]};
   const MediumStack here = medium_stack_before(&g->tree, &g->surfaces, &g->media, hit, 1, stack);
   return medium_stack_medium(&g->media, &here) == medium;
 }
@@ -39,8 +42,10 @@ static inline int within_survives(uint within, float u, float4* throughput) {
 }
 
 // The same for the path, whose random numbers have the key `hash`; counts the scattering.
-static inline int path_survives_within(const Stage* g, uint path, uint within, uint hash, float4* throughput) {
-  const float u = (float)(hash_mix(hash_combine(hash ^ HASHED_SAMPLE(within), within)) >> 8) * 0x1p-24f;
+static inline int path_survives_within(const Stage* g, uint path, uint within, uint hash,
+                                       float4* throughput) {
+  const float u =
+      (float)(hash_mix(hash_combine(hash ^ HASHED_SAMPLE(within), within)) >> 8) * 0x1p-24f;
   if (!within_survives(within, u, throughput)) return 0;
   g->medium_stacks.path_within[path] = within + 1u;
   return 1;

@@ -7,7 +7,8 @@
 
 #include "textures/texture_types.cl"
 
-static inline float4 alpha_texture_at(const TexturePoint* at, __global const float* data, const float4* values) {
+static inline float4 alpha_texture_at(const TexturePoint* at, __global const float* data,
+                                      const float4* values) {
   (void)at;
   return clamp(values[alpha_texture_tex(data)], 0.0f, 1.0f);
 }

@@ -7,7 +7,8 @@
 
 #include "textures/texture_types.cl"
 
-static inline float4 constant_texture_at(const TexturePoint* at, __global const float* data, const float4* values) {
+static inline float4 constant_texture_at(const TexturePoint* at, __global const float* data,
+                                         const float4* values) {
   (void)values;
   return spectrum_eval(at->spectra, constant_texture_value(data), at->lambda);
 }

@@ -8,7 +8,8 @@
 
 #include "textures/texture_types.cl"
 
-static inline float4 displacement_texture_at(const TexturePoint* at, __global const float* data, const float4* values) {
+static inline float4 displacement_texture_at(const TexturePoint* at, __global const float* data,
+                                             const float4* values) {
   (void)at;
   return values[displacement_texture_tex(data)];
 }

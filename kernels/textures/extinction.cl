@@ -8,7 +8,8 @@
 
 #include "textures/texture_types.cl"
 
-static inline float4 extinction_texture_at(const TexturePoint* at, __global const float* data, const float4* values) {
+static inline float4 extinction_texture_at(const TexturePoint* at, __global const float* data,
+                                           const float4* values) {
   (void)at;
   const float4 r = clamp(values[extinction_texture_tex(data)], 0.0f, 0.9999f);
   return 2.0f * sqrt(r) / sqrt(1.0f - r);

@@ -7,9 +7,11 @@
 
 #include "textures/noise.cl"
 
-static inline float4 fbm_texture_at(const TexturePoint* at, __global const float* data, const float4* values) {
+static inline float4 fbm_texture_at(const TexturePoint* at, __global const float* data,
+                                    const float4* values) {
   (void)values;
-  return (float4)(noise_fbm(texture_xyz(at, fbm_texture_place(data)), fbm_texture_roughness(data), fbm_texture_octaves(data)));
+  return (float4)(noise_fbm(texture_xyz(at, fbm_texture_place(data)), fbm_texture_roughness(data),
+                            fbm_texture_octaves(data)));
 }
 
 #endif

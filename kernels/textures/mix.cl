@@ -7,7 +7,8 @@
 
 #include "textures/texture_types.cl"
 
-static inline float4 mix_texture_at(const TexturePoint* at, __global const float* data, const float4* values) {
+static inline float4 mix_texture_at(const TexturePoint* at, __global const float* data,
+                                    const float4* values) {
   (void)at;
   const float amount = values[mix_texture_amount(data)].x;
   return (1.0f - amount) * values[mix_texture_tex1(data)] + amount * values[mix_texture_tex2(data)];

@@ -8,11 +8,14 @@
 
 #include "textures/images.cl"
 
-static inline float4 normalmap_texture_at(const TexturePoint* at, __global const float* data, const float4* values) {
+static inline float4 normalmap_texture_at(const TexturePoint* at, __global const float* data,
+                                          const float4* values) {
   (void)values;
   __global const ImageRecord* image = at->materials->images + normalmap_texture_image(data);
   const float2 st = (float2)(at->place.uv.x, 1.0f - at->place.uv.y);
-  return 2.0f * image_bilinear(at->materials, image, 0u, CAPLET_WRAP_REPEAT, image_st(st, CAPLET_WRAP_REPEAT)) - 1.0f;
+  return 2.0f * image_bilinear(at->materials, image, 0u, CAPLET_WRAP_REPEAT,
+                               image_st(st, CAPLET_WRAP_REPEAT)) -
+         1.0f;
 }
 
 #endif

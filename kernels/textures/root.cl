@@ -7,7 +7,8 @@
 
 #include "textures/texture_types.cl"
 
-static inline float4 root_texture_at(const TexturePoint* at, __global const float* data, const float4* values) {
+static inline float4 root_texture_at(const TexturePoint* at, __global const float* data,
+                                     const float4* values) {
   (void)at;
   return sqrt(fmax(values[root_texture_tex(data)], 0.0f));
 }

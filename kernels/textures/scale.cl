@@ -7,7 +7,8 @@
 
 #include "textures/texture_types.cl"
 
-static inline float4 scale_texture_at(const TexturePoint* at, __global const float* data, const float4* values) {
+static inline float4 scale_texture_at(const TexturePoint* at, __global const float* data,
+                                      const float4* values) {
   (void)at;
   return values[scale_texture_tex(data)] * values[scale_texture_scale(data)].x;
 }

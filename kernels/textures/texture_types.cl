@@ -14,9 +14,9 @@
 // sides.
 typedef struct {
   float2 uv;
-  float3 p, n;         // n: geometric normal, unit
-  float3 dpdx, dpdy;   // the sides
-  float2 duvdx, duvdy; // along them
+  float3 p, n;          // n: geometric normal, unit
+  float3 dpdx, dpdy;    // the sides
+  float2 duvdx, duvdy;  // along them
 } TexturePlace;
 
 // Images and checkerboards are means over this many times the sides of a place, about what
@@ -33,7 +33,13 @@ typedef struct {
 
 // Returns the point with coordinates uv of a surface in the plane z = 0.
 static inline TexturePlace texture_place(float2 uv) {
-  const TexturePlace place = {uv, (float3)(uv.x, uv.y, 0.0f), (float3)(0.0f, 0.0f, 1.0f), (float3)(0.0f), (float3)(0.0f), (float2)(0.0f), (float2)(0.0f)};
+  const TexturePlace place = {uv,
+                              (float3)(uv.x, uv.y, 0.0f),
+                              (float3)(0.0f, 0.0f, 1.0f),
+                              (float3)(0.0f),
+                              (float3)(0.0f),
+                              (float2)(0.0f),
+                              (float2)(0.0f)};
   return place;
 }
 

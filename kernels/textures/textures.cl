@@ -32,8 +32,8 @@ static inline float4 texture_eval(uint first, const TexturePoint* at) {
     __global const float* data = materials->texture_data + step->data;
     (void)data;
     switch (step->kind) {
-#define TEXTURE(name)                                      \
-  case texture_##name:                                     \
+#define TEXTURE(name)                                \
+  case texture_##name:                               \
     values[i] = name##_texture_at(at, data, values); \
     break;
 #include "rows/textures.def"
@@ -46,7 +46,8 @@ static inline float4 texture_eval(uint first, const TexturePoint* at) {
 
 // Returns the probability, 0 to 1, that a surface stops a ray at a point: that of the texture with
 // the first step `alpha`. n: geometric normal, unit.
-static inline float alpha_chance(const Materials* materials, const Spectra* spectra, uint alpha, float2 uv, float3 p, float3 n) {
+static inline float alpha_chance(const Materials* materials, const Spectra* spectra, uint alpha,
+                                 float2 uv, float3 p, float3 n) {
   TexturePoint at = {materials, spectra, texture_place(uv), (float4)(550.0f)};
   at.place.p = p;
   at.place.n = n;

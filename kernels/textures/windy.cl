@@ -8,9 +8,11 @@
 
 #include "textures/noise.cl"
 
-static inline float4 windy_texture_at(const TexturePoint* at, __global const float* data, const float4* values) {
+static inline float4 windy_texture_at(const TexturePoint* at, __global const float* data,
+                                      const float4* values) {
   (void)values;
-  const TextureXYZ c = texture_xyz(at, windy_texture_place(data)), slow = {0.1f * c.p, 0.1f * c.dx, 0.1f * c.dy};
+  const TextureXYZ c = texture_xyz(at, windy_texture_place(data)),
+                   slow = {0.1f * c.p, 0.1f * c.dx, 0.1f * c.dy};
   return (float4)(fabs(noise_fbm(slow, 0.5f, 3u)) * noise_fbm(c, 0.5f, 6u));
 }
 

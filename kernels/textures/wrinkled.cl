@@ -7,9 +7,12 @@
 
 #include "textures/noise.cl"
 
-static inline float4 wrinkled_texture_at(const TexturePoint* at, __global const float* data, const float4* values) {
+static inline float4 wrinkled_texture_at(const TexturePoint* at, __global const float* data,
+                                         const float4* values) {
   (void)values;
-  return (float4)(noise_turbulence(texture_xyz(at, wrinkled_texture_place(data)), wrinkled_texture_roughness(data), wrinkled_texture_octaves(data)));
+  return (float4)(noise_turbulence(texture_xyz(at, wrinkled_texture_place(data)),
+                                   wrinkled_texture_roughness(data),
+                                   wrinkled_texture_octaves(data)));
 }
 
 #endif

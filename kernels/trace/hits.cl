@@ -18,14 +18,17 @@ static inline int line_is_valid(float3 o, float3 d) {
 // Says which of two hits at the same t counts: hits of the world's shapes come before those of the
 // scene's instances, these in their order, then the smaller primitive comes first. So the hit does
 // not depend on slots, or on how trees were built. The records are read at ties alone.
-static inline int tie_is_before(const Tree* tree, uint slot, uint instance, uint other_slot, uint other_instance) {
+static inline int tie_is_before(const Tree* tree, uint slot, uint instance, uint other_slot,
+                                uint other_instance) {
   if (CAPLET_HAS_SHAPE(shape_instance) && instance != other_instance) {
     // Trees of world shapes have no object number: CAPLET_NONE + 1 is 0.
     const uint object = instance == CAPLET_NONE ? 0u : tree->instances[instance].object + 1u;
-    const uint other = other_instance == CAPLET_NONE ? 0u : tree->instances[other_instance].object + 1u;
+    const uint other =
+        other_instance == CAPLET_NONE ? 0u : tree->instances[other_instance].object + 1u;
     if (object != other) return object < other;
   }
-  const uint primitive = as_uint(tree->leaves[slot]), other_primitive = as_uint(tree->leaves[other_slot]);
+  const uint primitive = as_uint(tree->leaves[slot]),
+             other_primitive = as_uint(tree->leaves[other_slot]);
   if (primitive != other_primitive) return primitive < other_primitive;
   return instance < other_instance;
 }
@@ -56,8 +59,9 @@ static inline HitRecord hit_record(const NearestHit* nearest) {
 
 // Keeps the nearest of the ray's hits with the lanes from `lane` on of the leaf block at `row`.
 // `instance`: that the ray is in.
-static inline void keep_hits(const Tree* tree, uint row, uint lane, const ShapeRay* shape, uint instance, real_mask ok, real t,
-                             real_mask side, NearestHit* nearest) {
+static inline void keep_hits(const Tree* tree, uint row, uint lane, const ShapeRay* shape,
+                             uint instance, real_mask ok, real t, real_mask side,
+                             NearestHit* nearest) {
   __global const float* block = tree->leaves + (size_t)row * 8;
   ok &= lanes_filled(block, lane) & (t > shape->t_min) & (t <= nearest->t);
   // These are tested one by one: PoCL 6.0 aborts where the two are chosen between by the side
@@ -75,7 +79,8 @@ static inline void keep_hits(const Tree* tree, uint row, uint lane, const ShapeR
     bits &= bits - 1;
     const uint slot = row * 8 + lane + i;
     if (ts[i] < nearest->t ||
-        (ts[i] == nearest->t && nearest->found && tie_is_before(tree, slot, instance, nearest->slot, nearest->instance))) {
+        (ts[i] == nearest->t && nearest->found &&
+         tie_is_before(tree, slot, instance, nearest->slot, nearest->instance))) {
       nearest->t = ts[i];
       nearest->slot = slot;
       nearest->instance = instance;
@@ -87,7 +92,8 @@ static inline void keep_hits(const Tree* tree, uint row, uint lane, const ShapeR
 
 // Tests the ray with these lanes, whose shapes are of one kind, and not rare where it is traced
 // alone.
-static inline void test_leaf(const Tree* tree, uint kind, uint row, uint lane, const ShapeRay* shape, uint instance, NearestHit* nearest) {
+static inline void test_leaf(const Tree* tree, uint kind, uint row, uint lane,
+                             const ShapeRay* shape, uint instance, NearestHit* nearest) {
   real t;
   real_mask side;
   const real_mask ok = shape_hit(kind, shape, tree->leaves + (size_t)row * 8, lane, &t, &side);

@@ -17,17 +17,20 @@ typedef struct {
   CAPLET_LIST_SPACE HitRecord* sorted;
   uint capacity, count;
   int more;       // some were left out
-  float t_end;    // crossings at or beyond this t cannot matter; of a full list, those beyond its last one
+  float t_end;    // crossings at or beyond this t cannot matter; of a full list, those beyond its
+                  // last one
   float t_begin;  // nor do those at or before this t
 } HitList;
 
 // Orders hits by t; leaving before entering, so that solids that touch are not nested for an
 // instant; then by tie_is_before and surface.
-static inline int hit_is_before(const Tree* tree, const HitRecord* a, CAPLET_LIST_SPACE const HitRecord* b) {
+static inline int hit_is_before(const Tree* tree, const HitRecord* a,
+                                CAPLET_LIST_SPACE const HitRecord* b) {
   if (a->t != b->t) return a->t < b->t;
   const uint a_leaves = a->surface & CAPLET_LEAVING, b_leaves = b->surface & CAPLET_LEAVING;
   if (a_leaves != b_leaves) return a_leaves != 0;
-  if (a->slot != b->slot || a->instance != b->instance) return tie_is_before(tree, a->slot, a->instance, b->slot, b->instance);
+  if (a->slot != b->slot || a->instance != b->instance)
+    return tie_is_before(tree, a->slot, a->instance, b->slot, b->instance);
   return a->surface < b->surface;
 }
 
@@ -46,12 +49,14 @@ static inline void list_add(HitList* list, float t, uint slot, uint instance, ui
   } else {
     list->count = place + 1;
   }
-  for (; place > 0 && hit_is_before(list->tree, &hit, list->sorted + place - 1); place--) list->sorted[place] = list->sorted[place - 1];
+  for (; place > 0 && hit_is_before(list->tree, &hit, list->sorted + place - 1); place--)
+    list->sorted[place] = list->sorted[place - 1];
   list->sorted[place] = hit;
 }
 
 // Adds the crossings of the primitives in lanes lane .. lane + CAPLET_REAL_WIDTH - 1.
-static inline void list_add_spans(HitList* list, uint kind, const ShapeRay* ray, __global const float* block, uint lane, uint slot,
+static inline void list_add_spans(HitList* list, uint kind, const ShapeRay* ray,
+                                  __global const float* block, uint lane, uint slot,
                                   uint instance) {
   const Span span = shape_span(kind, ray, block, lane);
   const real_mask filled = lanes_filled(block, lane);
@@ -66,15 +71,19 @@ static inline void list_add_spans(HitList* list, uint kind, const ShapeRay* ray,
   for (uint bits = enter_bits | exit_bits; bits != 0; bits &= bits - 1) {
     const uint i = lowest_bit(bits);
     const int enters = (int)(enter_bits >> i & 1u), leaves = (int)(exit_bits >> i & 1u);
-    if (enters && ray->sees_entering) list_add(list, enter[i], slot + i, instance, (uint)enter_surface[i]);
+    if (enters && ray->sees_entering)
+      list_add(list, enter[i], slot + i, instance, (uint)enter_surface[i]);
     // A solid that is touched at one point is left just after it is entered, whatever the rounding.
-    const int touched = shape_is_solid(kind) && enters && enter[i] > list->t_begin && exit[i] <= enter[i];
+    const int touched =
+        shape_is_solid(kind) && enters && enter[i] > list->t_begin && exit[i] <= enter[i];
     const float t_exit = touched ? nextafter(enter[i], INFINITY) : exit[i];
-    if (leaves && ray->sees_leaving) list_add(list, t_exit, slot + i, instance, (uint)exit_surface[i] | CAPLET_LEAVING);
+    if (leaves && ray->sees_leaving)
+      list_add(list, t_exit, slot + i, instance, (uint)exit_surface[i] | CAPLET_LEAVING);
   }
 }
 
-static inline void list_add_csg(HitList* list, const ShapeRay* ray, __global const float* block, uint slot, uint instance) {
+static inline void list_add_csg(HitList* list, const ShapeRay* ray, __global const float* block,
+                                uint slot, uint instance) {
   for (uint lane = 0; lane < CAPLET_WIDTH; lane++) {
     if (((__global const int*)block)[lane] < 0) continue;
     CsgLine line;
@@ -86,7 +95,8 @@ static inline void list_add_csg(HitList* list, const ShapeRay* ray, __global con
 }
 
 // Adds the crossings of a leaf block in the tree; not of one of instances.
-static inline void list_add_leaf(HitList* list, const ShapeRay* ray, uint kind, uint row, uint instance) {
+static inline void list_add_leaf(HitList* list, const ShapeRay* ray, uint kind, uint row,
+                                 uint instance) {
   __global const float* block = list->tree->leaves + (size_t)row * 8;
   if (CAPLET_HAS_SHAPE(shape_csg) && kind == shape_csg) {
     list_add_csg(list, ray, block, row * 8, instance);
@@ -108,7 +118,8 @@ static inline float list_end(const HitList* list, float t_end) {
 // traversal. capacity 1 finds what trace_closest finds. Zero, infinite and NaN rays miss.
 // HitRecord.surface: of open shapes each sheet counts by itself, leaving along its stored normal,
 // so closed meshes are entered and left by their winding.
-static inline uint trace_list(const Tree* tree, uint root, RayRecord ray, uint capacity, CAPLET_LIST_SPACE HitRecord* sorted) {
+static inline uint trace_list(const Tree* tree, uint root, RayRecord ray, uint capacity,
+                              CAPLET_LIST_SPACE HitRecord* sorted) {
   HitList list;
   list.tree = tree;
   list.sorted = sorted;
@@ -134,8 +145,10 @@ static inline uint trace_list(const Tree* tree, uint root, RayRecord ray, uint c
   __global const float* nodes = tree->nodes;
   __global const float* leaves = tree->leaves;
   const float t_min = list.t_begin;
-  const float3 world_o = (float3)(ray.ox, ray.oy, ray.oz), world_d = (float3)(ray.dx, ray.dy, ray.dz);
-  if (!line_is_valid(world_o, world_d) || !(ray.t_min < ray.t_max) || !(t_min < ray.t_max)) return 0;
+  const float3 world_o = (float3)(ray.ox, ray.oy, ray.oz),
+               world_d = (float3)(ray.dx, ray.dy, ray.dz);
+  if (!line_is_valid(world_o, world_d) || !(ray.t_min < ray.t_max) || !(t_min < ray.t_max))
+    return 0;
 
   uint instance = CAPLET_NONE;
   ulong stack[CAPLET_STACK_SIZE];
@@ -162,7 +175,8 @@ static inline uint trace_list(const Tree* tree, uint root, RayRecord ray, uint c
       t_best = list_end(&list, t_best);
     }
     while (!pop_entry(stack, &top, floor, t_best, &current)) {
-      if (!CAPLET_HAS_SHAPE(shape_instance) || instance == CAPLET_NONE) return list.more ? capacity + 1 : list.count;
+      if (!CAPLET_HAS_SHAPE(shape_instance) || instance == CAPLET_NONE)
+        return list.more ? capacity + 1 : list.count;
       instance = CAPLET_NONE;
       floor = 0;
       slab = slab_ray(world_o, world_d);
@@ -173,7 +187,8 @@ static inline uint trace_list(const Tree* tree, uint root, RayRecord ray, uint c
 }
 
 // Finds all crossings in the whole scene.
-static inline uint trace_all(const Tree* tree, RayRecord ray, uint capacity, CAPLET_LIST_SPACE HitRecord* sorted) {
+static inline uint trace_all(const Tree* tree, RayRecord ray, uint capacity,
+                             CAPLET_LIST_SPACE HitRecord* sorted) {
   return trace_list(tree, tree->world->root, ray, capacity, sorted);
 }
 

@@ -34,14 +34,16 @@ static inline RayRecord traced_ray(const Stage* g, uint item) { return *traced_r
 #if defined(CAPLET_ONE_BY_ONE) || (!defined(CAPLET_EIGHT_IS_FAST) && !defined(CAPLET_PORTABLE))
 static void stage_share(const Stage* g, uint begin, uint end) {
   for (; begin < end; begin++) {
-    const HitRecord hit = trace_ray(TRACED_TREE(g), TRACED_ROOT(g), traced_ray(g, begin), TRACED_ENOUGH(g, begin));
+    const HitRecord hit =
+        trace_ray(TRACED_TREE(g), TRACED_ROOT(g), traced_ray(g, begin), TRACED_ENOUGH(g, begin));
     traced_hit(g, begin, &hit);
   }
 }
 #elif TRACED_NEIGHBOURS
 #include "trace/stream.cl"
 static void stage_share(const Stage* g, uint begin, uint end) {
-  for (; begin < end; begin += CAPLET_STREAM_RAYS) trace_stream(g, begin, min(end - begin, (uint)CAPLET_STREAM_RAYS));
+  for (; begin < end; begin += CAPLET_STREAM_RAYS)
+    trace_stream(g, begin, min(end - begin, (uint)CAPLET_STREAM_RAYS));
 }
 #else
 #include "trace/pool.cl"
@@ -49,7 +51,8 @@ static void stage_share(const Stage* g, uint begin, uint end) { trace_pool(g, be
 #endif
 #else
 static void stage_item(const Stage* g, uint item) {
-  const HitRecord hit = trace_ray_at(TRACED_TREE(g), TRACED_ROOT(g), traced_ray_at(g, item), TRACED_ENOUGH(g, item));
+  const HitRecord hit =
+      trace_ray_at(TRACED_TREE(g), TRACED_ROOT(g), traced_ray_at(g, item), TRACED_ENOUGH(g, item));
   traced_hit(g, item, &hit);
 }
 #endif

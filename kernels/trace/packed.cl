@@ -38,8 +38,9 @@ static inline BoxRay box_ray(float3 o, float3 d) {
   // A vanishing component becomes 2^-64 of the largest: its slab is then crossed at once or never,
   // and nothing is NaN.
   const float largest = max3(fabs(d)), smallest = largest * 0x1p-64f, reach = max3(fabs(o));
-  const float3 s = (float3)(copysign(fmax(fabs(d.x), smallest), d.x), copysign(fmax(fabs(d.y), smallest), d.y),
-                            copysign(fmax(fabs(d.z), smallest), d.z));
+  const float3 s =
+      (float3)(copysign(fmax(fabs(d.x), smallest), d.x), copysign(fmax(fabs(d.y), smallest), d.y),
+               copysign(fmax(fabs(d.z), smallest), d.z));
   const float3 i = clamp(1.0f / s, -1e37f, 1e37f);
   BoxRay r;
   r.ix = reach <= 0x1p126f ? i.x : NAN;
@@ -60,27 +61,36 @@ static inline int packed_child(__global const float* nodes, uint node, uint slot
 
 // Returns the children whose box a ray from `o` meets within [t_min, t_best]; bit slot ^ octant, so
 // that the children it (nearly) meets first are the lowest.
-static inline uint packed_node_hits(__global const float* nodes, uint node, const BoxRay* r, float ox, float oy, float oz, float t_min,
-                                    float t_best) {
+static inline uint packed_node_hits(__global const float* nodes, uint node, const BoxRay* r,
+                                    float ox, float oy, float oz, float t_min, float t_best) {
   __global const uint4* at = packed_node(nodes, node);
   const uint4 head = at[0], low = at[1], mixed = at[2], high = at[3];
-  const float ax = as_float((head.w & 255u) << 23) * r->ix, ay = as_float((head.w >> 8 & 255u) << 23) * r->iy,
+  const float ax = as_float((head.w & 255u) << 23) * r->ix,
+              ay = as_float((head.w >> 8 & 255u) << 23) * r->iy,
               az = as_float((head.w >> 16 & 255u) << 23) * r->iz;
-  const float bx = (as_float(head.x) - ox) * r->ix, by = (as_float(head.y) - oy) * r->iy, bz = (as_float(head.z) - oz) * r->iz;
+  const float bx = (as_float(head.x) - ox) * r->ix, by = (as_float(head.y) - oy) * r->iy,
+              bz = (as_float(head.z) - oz) * r->iz;
   const float rx = r->room * fabs(r->ix), ry = r->room * fabs(r->iy), rz = r->room * fabs(r->iz);
   const float near_x = bx - rx, near_y = by - ry, near_z = bz - rz;
   const float far_x = bx + rx, far_y = by + ry, far_z = bz + rz;
-  const int down_x = (r->octant & 1u) != 0, down_y = (r->octant & 2u) != 0, down_z = (r->octant & 4u) != 0;
+  const int down_x = (r->octant & 1u) != 0, down_y = (r->octant & 2u) != 0,
+            down_z = (r->octant & 4u) != 0;
   uint bits = 0;
   for (uint part = 0; part < 2; part++) {
-    const uint lx = part == 0 ? low.x : low.y, ly = part == 0 ? low.z : low.w, lz = part == 0 ? mixed.x : mixed.y;
-    const uint hx = part == 0 ? mixed.z : mixed.w, hy = part == 0 ? high.x : high.y, hz = part == 0 ? high.z : high.w;
+    const uint lx = part == 0 ? low.x : low.y, ly = part == 0 ? low.z : low.w,
+               lz = part == 0 ? mixed.x : mixed.y;
+    const uint hx = part == 0 ? mixed.z : mixed.w, hy = part == 0 ? high.x : high.y,
+               hz = part == 0 ? high.z : high.w;
     uint nx = down_x ? hx : lx, ny = down_y ? hy : ly, nz = down_z ? hz : lz;
     uint fx = down_x ? lx : hx, fy = down_y ? ly : hy, fz = down_z ? lz : hz;
     for (uint i = 0; i < 4; i++) {
-      const float near = fmax(fmax((float)(nx & 255u) * ax + near_x, (float)(ny & 255u) * ay + near_y), (float)(nz & 255u) * az + near_z);
-      const float far = fmin(fmin((float)(fx & 255u) * ax + far_x, (float)(fy & 255u) * ay + far_y), (float)(fz & 255u) * az + far_z);
-      const int met = fmax(near * (1.0f - 0x1p-20f), t_min) <= fmin(far * (1.0f + 0x1p-20f), t_best);
+      const float near =
+          fmax(fmax((float)(nx & 255u) * ax + near_x, (float)(ny & 255u) * ay + near_y),
+               (float)(nz & 255u) * az + near_z);
+      const float far = fmin(fmin((float)(fx & 255u) * ax + far_x, (float)(fy & 255u) * ay + far_y),
+                             (float)(fz & 255u) * az + far_z);
+      const int met =
+          fmax(near * (1.0f - 0x1p-20f), t_min) <= fmin(far * (1.0f + 0x1p-20f), t_best);
       bits |= (met ? head.w >> (24u + 4u * part + i) & 1u : 0u) << ((4u * part + i) ^ r->octant);
       nx >>= 8;
       ny >>= 8;

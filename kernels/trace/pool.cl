@@ -43,7 +43,9 @@ typedef struct {
   int enter[CAPLET_POOL_STACK], child[CAPLET_POOL_STACK];
 } PooledRay;
 
-static inline int octant_of(const SlabRay* s) { return (s->near_x != 0 ? 1 : 0) | (s->near_y != 8 ? 2 : 0) | (s->near_z != 16 ? 4 : 0); }
+static inline int octant_of(const SlabRay* s) {
+  return (s->near_x != 0 ? 1 : 0) | (s->near_y != 8 ? 2 : 0) | (s->near_z != 16 ? 4 : 0);
+}
 
 // Sets up the ray as it is in the world.
 static inline void pool_ray(PooledRay* r, const Tree* tree, float3 o, float3 d) {
@@ -84,22 +86,26 @@ static inline void pool_visit(PooledRay* r, __global const float* nodes) {
   const uint met = mask_bits(permuted(boxes, lanes));
   const int8 order = convert_int8(as_uchar8(set_bits[met])) ^ (int8)(r->flip);
   vstore8(permuted(as_int8(near), order), 0, r->enter + r->top);
-  vstore8(permuted(vload8(0, (__global const int*)(node + CAPLET_NODE_CHILDREN)), order), 0, r->child + r->top);
+  vstore8(permuted(vload8(0, (__global const int*)(node + CAPLET_NODE_CHILDREN)), order), 0,
+          r->child + r->top);
   r->top += (int)popcount(met);
 }
 
 // Moves the ray into the instance that it is at. Below the entries of the instance's root lies one
 // that leads back.
 static inline void pool_enter_instance(PooledRay* r, const Stage* g, const Tree* tree) {
-  const uint instance = ((__global const uint*)tree->leaves)[(size_t)CAPLET_LEAF_ROW(r->current) * 8];
+  const uint instance =
+      ((__global const uint*)tree->leaves)[(size_t)CAPLET_LEAF_ROW(r->current) * 8];
   __global const InstanceRecord* placed = tree->instances + instance;
   const RayRecord ray = traced_ray(g, r->item);
   r->instance = instance;
   r->enter[r->top] = 0;
   r->child[r->top++] = CAPLET_POOL_LEAVE_INSTANCE;
-  const int valid = ray_to_instance(placed, (float3)(ray.ox, ray.oy, ray.oz), (float3)(ray.dx, ray.dy, ray.dz), r->t_min, tree->leaves,
-                                    &r->slab, &r->shape);
-  r->near = near_ray((float3)(r->shape.ox, r->shape.oy, r->shape.oz), (float3)(r->shape.dx, r->shape.dy, r->shape.dz));
+  const int valid =
+      ray_to_instance(placed, (float3)(ray.ox, ray.oy, ray.oz), (float3)(ray.dx, ray.dy, ray.dz),
+                      r->t_min, tree->leaves, &r->slab, &r->shape);
+  r->near = near_ray((float3)(r->shape.ox, r->shape.oy, r->shape.oz),
+                     (float3)(r->shape.dx, r->shape.dy, r->shape.dz));
   r->flip = octant_of(&r->slab);
   if (!valid) return;
   r->enter[r->top] = 0;
@@ -117,7 +123,8 @@ static void trace_pool(const Stage* g, uint next, const uint end) {
   const uint root = TRACED_ROOT(g);
   PooledRay pool[CAPLET_POOL_RAYS];
   // These are places in the pool; each list has one more, which is written and not kept.
-  uchar at_node[CAPLET_POOL_RAYS + 1], at_leaf[CAPLET_POOL_RAYS + 1], going_on[CAPLET_POOL_RAYS + 1];
+  uchar at_node[CAPLET_POOL_RAYS + 1], at_leaf[CAPLET_POOL_RAYS + 1],
+      going_on[CAPLET_POOL_RAYS + 1];
   int nodes = 0, leaves = 0;
   const HitRecord miss = {INFINITY, CAPLET_NONE, CAPLET_NONE, 0};
 
@@ -144,7 +151,8 @@ static void trace_pool(const Stage* g, uint next, const uint end) {
       int may = 1;
       if (CAPLET_LEAF_KIND(r->current) == shape_capsule) {
         __global const float* block = tree->leaves + (size_t)CAPLET_LEAF_ROW(r->current) * 8;
-        may = mask_bits(capsule_near(&r->near, block, 0, r->t_min, r->nearest.t) & lanes_filled(block, 0)) != 0;
+        may = mask_bits(capsule_near(&r->near, block, 0, r->t_min, r->nearest.t) &
+                        lanes_filled(block, 0)) != 0;
       }
       at_leaf[near] = place;
       going_on[count] = place;
@@ -158,7 +166,8 @@ static void trace_pool(const Stage* g, uint next, const uint end) {
       if (CAPLET_HAS_SHAPE(shape_instance) && CAPLET_LEAF_KIND(r->current) == shape_instance)
         pool_enter_instance(r, g, tree);
       else
-        test_leaf(tree, CAPLET_LEAF_KIND(r->current), CAPLET_LEAF_ROW(r->current), 0, &r->shape, r->instance, &r->nearest);
+        test_leaf(tree, CAPLET_LEAF_KIND(r->current), CAPLET_LEAF_ROW(r->current), 0, &r->shape,
+                  r->instance, &r->nearest);
       going_on[count++] = at_leaf[i];
     }
     nodes = leaves = 0;
@@ -173,7 +182,9 @@ static void trace_pool(const Stage* g, uint next, const uint end) {
         const int t_best = as_int(r->nearest.t);
         do top--;
         while (r->enter[top] > t_best);
-        if (!CAPLET_HAS_SHAPE(shape_instance) || top == 0 || r->child[top] != CAPLET_POOL_LEAVE_INSTANCE) break;
+        if (!CAPLET_HAS_SHAPE(shape_instance) || top == 0 ||
+            r->child[top] != CAPLET_POOL_LEAVE_INSTANCE)
+          break;
         pool_leave_instance(r, g, tree);
       }
       if (top == 0) {

@@ -15,7 +15,8 @@
 // Returns 1 if the ray reaches its light. `hit`: the nearest one, or one that is nearer than
 // target.enough. A ray that rounding leads past the light's silhouette meets nothing.
 static inline int shadow_is_free(const HitRecord* hit, ShadowTarget target) {
-  return hit->slot == CAPLET_NONE || (hit->slot == target.slot && hit->instance == target.instance && hit->t >= target.enough);
+  return hit->slot == CAPLET_NONE ||
+         (hit->slot == target.slot && hit->instance == target.instance && hit->t >= target.enough);
 }
 
 #endif

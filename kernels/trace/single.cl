@@ -10,7 +10,8 @@
 
 // Tests the lanes of a leaf of rare shapes. The state of the walk and the nearest hit so far wait
 // in memory meanwhile, because compilers leave volatile values there.
-static inline void rare_leaf(const Tree* tree, CAPLET_RAY_SPACE const RayRecord* ray, uint kind, uint row, Walk* w, NearestHit* nearest) {
+static inline void rare_leaf(const Tree* tree, CAPLET_RAY_SPACE const RayRecord* ray, uint kind,
+                             uint row, Walk* w, NearestHit* nearest) {
   __global const float* block = tree->leaves + (size_t)row * 8;
   volatile uint kept[8];
   kept[0] = w->top;
@@ -49,7 +50,8 @@ static inline void rare_leaf(const Tree* tree, CAPLET_RAY_SPACE const RayRecord*
 // Returns the closest hit in (t_min, t_max), or any hit nearer than `enough` (0: the closest;
 // INFINITY: any). At equal t tie_is_before decides, so that the hit does not depend on the tree or
 // on the order of traversal. Zero, infinite and NaN rays miss.
-static inline HitRecord trace_ray_at(const Tree* tree, uint root, CAPLET_RAY_SPACE const RayRecord* ray, const float enough) {
+static inline HitRecord trace_ray_at(const Tree* tree, uint root,
+                                     CAPLET_RAY_SPACE const RayRecord* ray, const float enough) {
   NearestHit nearest = nothing_before(ray->t_max);
   uint2 stack[CAPLET_WALK_ENTRIES];
   Walk walk;

@@ -43,16 +43,26 @@ typedef struct {
   uchar met[CAPLET_STREAM_RAYS + 8], near[CAPLET_STREAM_RAYS + 8];
 } StreamLists;
 
-static inline void stream_ray(StreamSpace* space, uint id, const SlabRay* s, const ShapeRay* shape, float t_min, float t_best, int valid) {
+static inline void stream_ray(StreamSpace* space, uint id, const SlabRay* s, const ShapeRay* shape,
+                              float t_min, float t_best, int valid) {
   StreamSlab* to = &space->slabs[id];
-  to->near_ix = s->near_ix; to->near_iy = s->near_iy; to->near_iz = s->near_iz;
-  to->near_ox = s->near_ox; to->near_oy = s->near_oy; to->near_oz = s->near_oz;
-  to->far_ix = s->far_ix; to->far_iy = s->far_iy; to->far_iz = s->far_iz;
-  to->far_ox = s->far_ox; to->far_oy = s->far_oy; to->far_oz = s->far_oz;
+  to->near_ix = s->near_ix;
+  to->near_iy = s->near_iy;
+  to->near_iz = s->near_iz;
+  to->near_ox = s->near_ox;
+  to->near_oy = s->near_oy;
+  to->near_oz = s->near_oz;
+  to->far_ix = s->far_ix;
+  to->far_iy = s->far_iy;
+  to->far_iz = s->far_iz;
+  to->far_ox = s->far_ox;
+  to->far_oy = s->far_oy;
+  to->far_oz = s->far_oz;
   to->t_min = t_min;
   to->t_best = t_best;
   space->shapes[id] = *shape;
-  space->near[id] = near_ray((float3)(shape->ox, shape->oy, shape->oz), (float3)(shape->dx, shape->dy, shape->dz));
+  space->near[id] = near_ray((float3)(shape->ox, shape->oy, shape->oz),
+                             (float3)(shape->dx, shape->dy, shape->dz));
   space->octants[id] = (uchar)(valid ? octant_of(s) : 8);
 }
 
@@ -62,8 +72,9 @@ static inline void stream_ray(StreamSpace* space, uint id, const SlabRay* s, con
 
 // Traces the n rays whose numbers begin at l->ids[at] through an instance; entries from `top` on
 // and numbers behind these are free.
-static void stream_instance(const Stage* g, uint first, const Tree* tree, uint instance, StreamSpace* space, StreamSpace* inner,
-                            NearestHit* nearest, StreamLists* l, int top, int at, int n) {
+static void stream_instance(const Stage* g, uint first, const Tree* tree, uint instance,
+                            StreamSpace* space, StreamSpace* inner, NearestHit* nearest,
+                            StreamLists* l, int top, int at, int n) {
   __global const InstanceRecord* placed = tree->instances + instance;
   const int begin = at + n;
   for (int i = 0; i < n; i++) {
@@ -72,8 +83,9 @@ static void stream_instance(const Stage* g, uint first, const Tree* tree, uint i
     const float t_min = space->slabs[id].t_min;
     SlabRay slab;
     ShapeRay shape;
-    const int valid = ray_to_instance(placed, (float3)(ray.ox, ray.oy, ray.oz), (float3)(ray.dx, ray.dy, ray.dz), t_min, tree->leaves,
-                                      &slab, &shape);
+    const int valid =
+        ray_to_instance(placed, (float3)(ray.ox, ray.oy, ray.oz), (float3)(ray.dx, ray.dy, ray.dz),
+                        t_min, tree->leaves, &slab, &shape);
     stream_ray(inner, id, &slab, &shape, t_min, nearest[id].t, valid);
   }
   for (int flip = 0; flip < 8; flip++) {
@@ -84,7 +96,8 @@ static void stream_instance(const Stage* g, uint first, const Tree* tree, uint i
       begun += inner->octants[id] == flip;
     }
     if (begun == 0) continue;
-    stream_within_instance(g, first, tree, placed->root, flip, instance, inner, nearest, l, top, begin, begun);
+    stream_within_instance(g, first, tree, placed->root, flip, instance, inner, nearest, l, top,
+                           begin, begun);
   }
   for (int i = 0; i < n; i++) {
     const uint id = l->ids[at + i];
@@ -119,7 +132,8 @@ static void trace_stream(const Stage* g, uint first, uint count) {
       begun += space.octants[i] == flip;
     }
     if (begun == 0) continue;
-    stream_world(g, first, tree, TRACED_ROOT(g), flip, CAPLET_NONE, &space, nearest, &lists, 0, 0, begun, &inner);
+    stream_world(g, first, tree, TRACED_ROOT(g), flip, CAPLET_NONE, &space, nearest, &lists, 0, 0,
+                 begun, &inner);
   }
   for (uint i = 0; i < count; i++) {
     const HitRecord hit = hit_record(&nearest[i]);

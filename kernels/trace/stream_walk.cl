@@ -7,10 +7,12 @@
 // It begins at node `root`, with the `begun` rays whose numbers begin at `l->ids[begin]`; their
 // directions fall in the octant `flip`. Entries from `base` on are free. `instance`: that the rays
 // are in.
-static void STREAM_WALK(const Stage* g, uint first, const Tree* tree, uint root, int flip, uint instance, StreamSpace* space,
-                        NearestHit* nearest, StreamLists* l, int base, int begin, int begun
+static void STREAM_WALK(const Stage* g, uint first, const Tree* tree, uint root, int flip,
+                        uint instance, StreamSpace* space, NearestHit* nearest, StreamLists* l,
+                        int base, int begin, int begun
 #if WALK_MEETS_INSTANCES
-                        , StreamSpace* inner
+                        ,
+                        StreamSpace* inner
 #endif
 ) {
   const int near_x = flip & 1 ? 24 : 0, near_y = flip & 2 ? 32 : 8, near_z = flip & 4 ? 40 : 16;
@@ -24,15 +26,19 @@ static void STREAM_WALK(const Stage* g, uint first, const Tree* tree, uint root,
     const int current = l->child[top], at = l->at[top], n = l->count[top];
     if (current >= 0) {
       __global const float* node = tree->nodes + (size_t)(uint)current * CAPLET_NODE_FLOATS;
-      const float8 nx = vload8(0, node + near_x), ny = vload8(0, node + near_y), nz = vload8(0, node + near_z);
-      const float8 fx = vload8(0, node + far_x), fy = vload8(0, node + far_y), fz = vload8(0, node + far_z);
+      const float8 nx = vload8(0, node + near_x), ny = vload8(0, node + near_y),
+                   nz = vload8(0, node + near_z);
+      const float8 fx = vload8(0, node + far_x), fy = vload8(0, node + far_y),
+                   fz = vload8(0, node + far_z);
       uint any = 0;
       for (int i = 0; i < n; i++) {
         const StreamSlab* s = &space->slabs[l->ids[at + i]];
-        const float8 near_t = real_max(real_max(nx * s->near_ix - s->near_ox, ny * s->near_iy - s->near_oy),
-                                       real_max(nz * s->near_iz - s->near_oz, real_of(s->t_min)));
-        const float8 far_t = real_min(real_min(fx * s->far_ix - s->far_ox, fy * s->far_iy - s->far_oy),
-                                      real_min(fz * s->far_iz - s->far_oz, real_of(s->t_best)));
+        const float8 near_t =
+            real_max(real_max(nx * s->near_ix - s->near_ox, ny * s->near_iy - s->near_oy),
+                     real_max(nz * s->near_iz - s->near_oz, real_of(s->t_min)));
+        const float8 far_t =
+            real_min(real_min(fx * s->far_ix - s->far_ox, fy * s->far_iy - s->far_oy),
+                     real_min(fz * s->far_iz - s->far_oz, real_of(s->t_best)));
         const uint bits = mask_bits(near_t <= far_t);
         l->met[i] = (uchar)bits;
         any |= bits;
@@ -46,7 +52,8 @@ static void STREAM_WALK(const Stage* g, uint first, const Tree* tree, uint root,
         const int list = end;
         for (int i = 0; i < n; i += 8) {
           const uint column = bit_column(as_ulong(vload8(0, l->met + i)), k);
-          vstore8(permuted_bytes(vload8(0, l->ids + at + i), as_uchar8(set_bits[column])), 0, l->ids + end);
+          vstore8(permuted_bytes(vload8(0, l->ids + at + i), as_uchar8(set_bits[column])), 0,
+                  l->ids + end);
           end += (int)popcount(column);
         }
         l->child[top] = child[k];
@@ -54,7 +61,7 @@ static void STREAM_WALK(const Stage* g, uint first, const Tree* tree, uint root,
         l->count[top] = end - list;
         top++;
         fetch_ahead(child[k] < 0 ? tree->leaves + (size_t)CAPLET_LEAF_ROW(child[k]) * 8
-                                : tree->nodes + (size_t)(uint)child[k] * CAPLET_NODE_FLOATS);
+                                 : tree->nodes + (size_t)(uint)child[k] * CAPLET_NODE_FLOATS);
       }
       continue;
     }
@@ -62,7 +69,8 @@ static void STREAM_WALK(const Stage* g, uint first, const Tree* tree, uint root,
     __global const float* block = tree->leaves + (size_t)row * 8;
 #if WALK_MEETS_INSTANCES
     if (CAPLET_HAS_SHAPE(shape_instance) && kind == shape_instance) {
-      stream_instance(g, first, tree, ((__global const uint*)block)[0], space, inner, nearest, l, top, at, n);
+      stream_instance(g, first, tree, ((__global const uint*)block)[0], space, inner, nearest, l,
+                      top, at, n);
       continue;
     }
 #endif
@@ -72,7 +80,9 @@ static void STREAM_WALK(const Stage* g, uint first, const Tree* tree, uint root,
       l->near[nears] = id;
 #ifdef CAPLET_CAPSULE_NEAR
       if (kind == shape_capsule &&
-          mask_bits(capsule_near(&space->near[id], block, 0, space->slabs[id].t_min, space->slabs[id].t_best) & lanes_filled(block, 0)) == 0)
+          mask_bits(capsule_near(&space->near[id], block, 0, space->slabs[id].t_min,
+                                 space->slabs[id].t_best) &
+                    lanes_filled(block, 0)) == 0)
         continue;
 #endif
       nears++;

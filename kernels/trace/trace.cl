@@ -24,7 +24,8 @@
 typedef struct {
   float near_ix, near_iy, near_iz, near_ox, near_oy, near_oz;
   float far_ix, far_iy, far_iz, far_ox, far_oy, far_oz;
-  uint near_x, near_y, near_z;  // first float of the near plane's row; the far one is 24 further or back
+  uint near_x, near_y,
+      near_z;  // first float of the near plane's row; the far one is 24 further or back
   uint far_x, far_y, far_z;
 } SlabRay;
 
@@ -32,13 +33,15 @@ static inline SlabRay slab_ray(float3 o, float3 d) {
   // A vanishing component becomes 2^-64 of the largest: its slab is then crossed at once or never,
   // and nothing is NaN.
   const float largest = max3(fabs(d)), smallest = largest * 0x1p-64f;
-  const float3 s = (float3)(copysign(fmax(fabs(d.x), smallest), d.x), copysign(fmax(fabs(d.y), smallest), d.y),
-                            copysign(fmax(fabs(d.z), smallest), d.z));
+  const float3 s =
+      (float3)(copysign(fmax(fabs(d.x), smallest), d.x), copysign(fmax(fabs(d.y), smallest), d.y),
+               copysign(fmax(fabs(d.z), smallest), d.z));
   const float3 i = clamp(1.0f / s, -1e37f, 1e37f);
   const float3 shift = clamp(o * i, -1e37f, 1e37f);
   const float3 slack = clamp(fabs(i) * (max3(fabs(o)) * 0x1p-19f), 0.0f, 1e37f);
   const float3 near_i = i * (1.0f - 0x1p-21f), far_i = i * (1.0f + 0x1p-21f);
-  const float3 near_o = shift * (1.0f - 0x1p-21f) + slack, far_o = shift * (1.0f + 0x1p-21f) - slack;
+  const float3 near_o = shift * (1.0f - 0x1p-21f) + slack,
+               far_o = shift * (1.0f + 0x1p-21f) - slack;
   SlabRay r;
   r.near_ix = near_i.x;
   r.near_iy = near_i.y;
@@ -63,7 +66,8 @@ static inline SlabRay slab_ray(float3 o, float3 d) {
 
 // Returns the lanes of the children whose box the ray meets within [t_min, t_best], and where it
 // enters them.
-static inline int8 boxes_met(__global const float* node, const SlabRay* s, float t_min, float t_best, float8* enter) {
+static inline int8 boxes_met(__global const float* node, const SlabRay* s, float t_min,
+                             float t_best, float8* enter) {
   const float8 nx = vload8(0, node + s->near_x) * s->near_ix - s->near_ox;
   const float8 ny = vload8(0, node + s->near_y) * s->near_iy - s->near_oy;
   const float8 nz = vload8(0, node + s->near_z) * s->near_iz - s->near_oz;
@@ -76,7 +80,8 @@ static inline int8 boxes_met(__global const float* node, const SlabRay* s, float
 }
 
 // Does the same and returns bits.
-static inline uint node_hits(__global const float* node, const SlabRay* s, float t_min, float t_best, float* enter) {
+static inline uint node_hits(__global const float* node, const SlabRay* s, float t_min,
+                             float t_best, float* enter) {
   float8 near;
   const int8 met = boxes_met(node, s, t_min, t_best, &near);
   vstore8(near, 0, enter);
@@ -85,12 +90,14 @@ static inline uint node_hits(__global const float* node, const SlabRay* s, float
 
 // Stack entries order by where the ray enters: parameters are not negative, so their bits order as
 // they do.
-static inline ulong stack_key(float enter, int child) { return ((ulong)as_uint(enter) << 32) | (uint)child; }
+static inline ulong stack_key(float enter, int child) {
+  return ((ulong)as_uint(enter) << 32) | (uint)child;
+}
 
 // Writes the child of a node that the ray enters first to `next`, and pushes the others in the way
 // on the stack, nearest on top. Returns 0 if none is met.
-static inline int visit_node(__global const float* node, const SlabRay* slab, float t_min, float t_best, ulong* stack, int* stack_top,
-                             int* next) {
+static inline int visit_node(__global const float* node, const SlabRay* slab, float t_min,
+                             float t_best, ulong* stack, int* stack_top, int* next) {
   __global const int* child = (__global const int*)(node + CAPLET_NODE_CHILDREN);
   float enter[8];
   uint bits = node_hits(node, slab, t_min, t_best, enter);
@@ -161,8 +168,9 @@ static inline int pop_entry(const ulong* stack, int* top, int floor, float t_bes
 
 // Transforms the ray to the space of an instance: its direction is not normalised, so t stays the
 // same. Returns 0 if it is not valid in floats.
-static inline int ray_to_instance(__global const InstanceRecord* placed, float3 world_o, float3 world_d, float t_min,
-                                  __global const float* leaves, SlabRay* slab, ShapeRay* shape) {
+static inline int ray_to_instance(__global const InstanceRecord* placed, float3 world_o,
+                                  float3 world_d, float t_min, __global const float* leaves,
+                                  SlabRay* slab, ShapeRay* shape) {
   const float3 o = transform_point(placed->object_from_world, world_o);
   const float3 d = transform_vector(placed->object_from_world, world_d);
   *slab = slab_ray(o, d);
@@ -179,9 +187,11 @@ static inline HitRecord trace_ray(const Tree* tree, uint root, RayRecord ray, co
   __global const float* nodes = tree->nodes;
   __global const float* leaves = tree->leaves;
   NearestHit nearest = nothing_before(ray.t_max);
-  const float3 world_o = (float3)(ray.ox, ray.oy, ray.oz), world_d = (float3)(ray.dx, ray.dy, ray.dz);
+  const float3 world_o = (float3)(ray.ox, ray.oy, ray.oz),
+               world_d = (float3)(ray.dx, ray.dy, ray.dz);
   const float t_min = ray.t_min > 0.0f ? ray.t_min : 0.0f;  // never -0: stack keys go by the bits
-  if (!line_is_valid(world_o, world_d) || !(ray.t_min < ray.t_max) || !(t_min < nearest.t)) return hit_record(&nearest);
+  if (!line_is_valid(world_o, world_d) || !(ray.t_min < ray.t_max) || !(t_min < nearest.t))
+    return hit_record(&nearest);
   uint instance = CAPLET_NONE;
 
   ulong stack[CAPLET_STACK_SIZE];

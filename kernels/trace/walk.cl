@@ -43,7 +43,8 @@
 // out of registers.
 typedef struct {
   uint node, mask;   // where the ray is, and that node's children to come: bit slot ^ octant
-  uint top, bottom;  // entries [bottom, top) of the stack are there, at their number modulo its size; those below were lost
+  uint top, bottom;  // entries [bottom, top) of the stack are there, at their number modulo its
+                     // size; those below were lost
   uint floor;        // entries from here on are of the tree of the instance
   uint instance;     // CAPLET_NONE: in the world
   int turns;         // 1: the ray is to be made anew
@@ -64,7 +65,8 @@ static inline uint walk_towards(const Tree* tree, const Walk* w, uint to, uint* 
   uint slot = 0, next = 0;
 #pragma unroll 1
   for (uint i = 0; i < CAPLET_WIDTH; i++) {
-    const uint child = (uint)packed_child(tree->nodes, w->node, i);  // of leaves and of none: greater than any node
+    const uint child = (uint)packed_child(tree->nodes, w->node,
+                                          i);  // of leaves and of none: greater than any node
     if (child <= to && child > next) {
       next = child;
       slot = i;
@@ -77,7 +79,8 @@ static inline uint walk_towards(const Tree* tree, const Walk* w, uint to, uint* 
 // Returns the ray in the space of the world or of an instance; its direction is not normalised, so
 // t stays the same. It is read anew each time: a compiler that kept it would keep it in registers,
 // all the way.
-static inline ShapeRay walk_ray(const Tree* tree, CAPLET_RAY_SPACE const RayRecord* ray, uint instance) {
+static inline ShapeRay walk_ray(const Tree* tree, CAPLET_RAY_SPACE const RayRecord* ray,
+                                uint instance) {
   volatile CAPLET_RAY_SPACE const RayRecord* read = ray;
   float3 o = (float3)(read->ox, read->oy, read->oz), d = (float3)(read->dx, read->dy, read->dz);
   const float t_min = read->t_min;
@@ -95,9 +98,11 @@ static inline ShapeRay walk_ray(const Tree* tree, CAPLET_RAY_SPACE const RayReco
 }
 
 // Recomputes the ray in the space where it goes on. Returns 0 if it is not valid in floats.
-static inline int walk_turn(const Tree* tree, CAPLET_RAY_SPACE const RayRecord* ray, Walk* w, ShapeRay* shape) {
+static inline int walk_turn(const Tree* tree, CAPLET_RAY_SPACE const RayRecord* ray, Walk* w,
+                            ShapeRay* shape) {
   *shape = walk_ray(tree, ray, w->instance);
-  const float3 o = (float3)(shape->ox, shape->oy, shape->oz), d = (float3)(shape->dx, shape->dy, shape->dz);
+  const float3 o = (float3)(shape->ox, shape->oy, shape->oz),
+               d = (float3)(shape->dx, shape->dy, shape->dz);
   w->box = box_ray(o, d);
   w->turns = 0;
   return line_is_valid(o, d);
@@ -105,7 +110,8 @@ static inline int walk_turn(const Tree* tree, CAPLET_RAY_SPACE const RayRecord* 
 
 // Starts the walk. Returns 0 if there is nothing to visit. Otherwise the first walk_next has to
 // visit the root.
-static inline int walk_begin(const Tree* tree, CAPLET_RAY_SPACE const RayRecord* ray, Walk* w, ShapeRay* shape, float t_best) {
+static inline int walk_begin(const Tree* tree, CAPLET_RAY_SPACE const RayRecord* ray, Walk* w,
+                             ShapeRay* shape, float t_best) {
   w->node = w->mask = w->top = w->bottom = w->floor = 0;
   w->instance = CAPLET_NONE;
   w->turns = CAPLET_WALK_TURNS;
@@ -123,15 +129,17 @@ static inline void walk_forget(Walk* w, uint2* stack) {
 
 // Returns the reference of the next leaf whose box the ray meets before t_best, in whose space
 // `shape` then is, or CAPLET_WALK_ENDS. `visit`: a node to begin with, -1: go on.
-static inline int walk_next(const Tree* tree, uint root, CAPLET_RAY_SPACE const RayRecord* ray, Walk* w, ShapeRay* shape, uint2* stack,
-                            float t_best, int visit) {
-  uint again = CAPLET_NONE, left = 0;  // the node that is to be come to again, and its children to come
+static inline int walk_next(const Tree* tree, uint root, CAPLET_RAY_SPACE const RayRecord* ray,
+                            Walk* w, ShapeRay* shape, uint2* stack, float t_best, int visit) {
+  uint again = CAPLET_NONE,
+       left = 0;  // the node that is to be come to again, and its children to come
   for (;;) {
     if (CAPLET_WALK_TURNS && w->turns && !walk_turn(tree, ray, w, shape)) visit = -1;
     const int placed = CAPLET_HAS_SHAPE(shape_instance) && w->instance != CAPLET_NONE;
     if (visit >= 0) {
       w->node = (uint)visit;
-      w->mask = packed_node_hits(tree->nodes, w->node, &w->box, shape->ox, shape->oy, shape->oz, shape->t_min, t_best);
+      w->mask = packed_node_hits(tree->nodes, w->node, &w->box, shape->ox, shape->oy, shape->oz,
+                                 shape->t_min, t_best);
       visit = -1;
       if (again == w->node) {
         w->mask = left;
@@ -146,7 +154,8 @@ static inline int walk_next(const Tree* tree, uint root, CAPLET_RAY_SPACE const 
       const uint slot = lowest_bit(w->mask) ^ w->box.octant;
       w->mask &= w->mask - 1u;
       const int next = packed_child(tree->nodes, w->node, slot);
-      const int of_instance = CAPLET_HAS_SHAPE(shape_instance) && next < 0 && CAPLET_LEAF_KIND(next) == shape_instance;
+      const int of_instance =
+          CAPLET_HAS_SHAPE(shape_instance) && next < 0 && CAPLET_LEAF_KIND(next) == shape_instance;
       if (next < 0 && !of_instance) return next;
       if (w->mask != 0) walk_push(w, stack, w->node, w->mask);
       w->mask = 0;

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// `ld` of the bundled PoCL. PoCL's compiler links kernels as it links any C program: with -lm, -lgcc and -lc, which only machines
-// with a C compiler have. This one hands LLVM's linker, `lld` beside it, everything but the libraries and their folders, and the
-// mathematical library that this very program runs with, which every machine has.
+// `ld` of the bundled PoCL. PoCL's compiler links kernels as it links any C program: with -lm,
+// -lgcc and -lc, which only machines with a C compiler have. This one hands LLVM's linker, `lld`
+// beside it, everything but the libraries and their folders, and the mathematical library that this
+// very program runs with, which every machine has.
 #include <dlfcn.h>
 #include <unistd.h>
 
@@ -31,7 +32,9 @@ std::string lld() {
 std::string libm() {
   double (*volatile function)(double) = &std::sin;  // called nowhere else
   Dl_info info{};
-  return ::dladdr(reinterpret_cast<void*>(function), &info) != 0 && info.dli_fname != nullptr ? info.dli_fname : "";
+  return ::dladdr(reinterpret_cast<void*>(function), &info) != 0 && info.dli_fname != nullptr
+             ? info.dli_fname
+             : "";
 }
 
 }  // namespace

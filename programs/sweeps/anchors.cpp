@@ -40,7 +40,8 @@ struct Score {
   std::uint64_t rays = 0, meets = 0;  // those that the reference says enter deeper than `clear`
   std::uint64_t lost = 0, false_hits = 0, outside = 0;
   std::uint64_t later = 0;        // hits of another crossing than the first
-  double worst = 0, t_worst = 0;  // distance of o + t d from the surface; of t from the nearest crossing, along unit directions
+  double worst = 0, t_worst = 0;  // distance of o + t d from the surface; of t from the nearest
+                                  // crossing, along unit directions
   std::vector<double> distances;
   void add(const Case& c, bool hit, double t, double clear) {
     ++rays;
@@ -74,15 +75,19 @@ struct Scores {
   bool held = true;
 };
 
-// Every ray through one shape. `clear`: what a ray must enter or miss by for a loss to count, beyond the stated bound.
-Scores score(const Device& device, const FlatPrimitive& shape, const std::vector<RayRecord>& rays, double clear) {
+// Every ray through one shape. `clear`: what a ray must enter or miss by for a loss to count,
+// beyond the stated bound.
+Scores score(const Device& device, const FlatPrimitive& shape, const std::vector<RayRecord>& rays,
+             double clear) {
   Scores out;
   const reference::Primitive reference = reference_of(shape);
   const std::vector<std::uint32_t> which(rays.size(), 0);
-  const auto listed = Probe(device, test_width(), std::vector<FlatPrimitive>{shape}).list(which, rays, 8);
+  const auto listed =
+      Probe(device, test_width(), std::vector<FlatPrimitive>{shape}).list(which, rays, 8);
   for (std::size_t i = 0; i < rays.size(); ++i) {
     const Case c = make_case(shape, reference, rays[i]);
-    out.ours.add(c, listed[i].nearest.slot != CAPLET_NONE, listed[i].nearest.t, std::max(clear, c.bound));
+    out.ours.add(c, listed[i].nearest.slot != CAPLET_NONE, listed[i].nearest.t,
+                 std::max(clear, c.bound));
     out.held = out.held && judge(c, listed[i], 8).wrong.empty();
   }
   out.held = out.held && out.ours.lost == 0 && out.ours.false_hits == 0 && out.ours.outside == 0;
@@ -98,8 +103,8 @@ Scores score(const Device& device, const FlatPrimitive& shape, const std::vector
 }
 
 std::string row(const std::string& what, Score& s, double unit) {
-  return fmt::format("| {} | {:.2g} | {:.2g} | {} of {} | {} |\n", what, s.p99() / unit, s.worst / unit, s.lost, s.meets,
-                     s.false_hits);
+  return fmt::format("| {} | {:.2g} | {:.2g} | {} of {} | {} |\n", what, s.p99() / unit,
+                     s.worst / unit, s.lost, s.meets, s.false_hits);
 }
 
 #ifdef CAPLET_EMBREE
@@ -115,18 +120,23 @@ std::string rows(const std::string& where, Scores& s, double unit) {
 }
 
 std::string head(const char* unit) {
-  return fmt::format("| | distance from the surface over {}: 99 % | worst | lost | invented |\n|---|---:|---:|---:|---:|\n",
-                     unit);
+  return fmt::format(
+      "| | distance from the surface over {}: 99 % | worst | lost | invented "
+      "|\n|---|---:|---:|---:|---:|\n",
+      unit);
 }
 
 void thin_curves(const Device& device, int rays, Anchors& out) {
   out.text +=
       "## Thin curves seen from several units: Embree issue 332\n\n"
-      "[RenderKit/embree#332](https://github.com/RenderKit/embree/issues/332), of `RTC_GEOMETRY_TYPE_ROUND_LINEAR_CURVE` and the "
+      "[RenderKit/embree#332](https://github.com/RenderKit/embree/issues/332), of "
+      "`RTC_GEOMETRY_TYPE_ROUND_LINEAR_CURVE` and the "
       "cone "
-      "kind: \"Each curve in my test has a constant radius of around 0.00375 and length of around 1.0. I trace rays from several "
+      "kind: \"Each curve in my test has a constant radius of around 0.00375 and length of around "
+      "1.0. I trace rays from several "
       "units "
-      "away. The actual results I got varies from 0.0036 to 0.0038. The error can be close to 5%.\"\n\nHere: capsules of that "
+      "away. The actual results I got varies from 0.0036 to 0.0038. The error can be close to "
+      "5%.\"\n\nHere: capsules of that "
       "radius and "
       "length, rays from 2 to 9 units away. Theirs to beat: 0.05.\n\n" +
       head("the radius");
@@ -135,7 +145,8 @@ void thin_curves(const Device& device, int rays, Anchors& out) {
     Scores all;
     for (int shape = 0; shape < 20; ++shape) {
       const dvec3 axis = maker.direction(), center = place * maker.direction();
-      const FlatPrimitive p = make_capsule(floats(center - 0.5 * axis), floats(center + 0.5 * axis), 0.00375f);
+      const FlatPrimitive p =
+          make_capsule(floats(center - 0.5 * axis), floats(center + 0.5 * axis), 0.00375f);
       const reference::Primitive reference = reference_of(p);
       std::vector<RayRecord> list;
       for (int i = 0; i < rays / 20; ++i) {
@@ -164,17 +175,23 @@ void thin_curves(const Device& device, int rays, Anchors& out) {
 void long_cylinders(const Device& device, int rays, Anchors& out) {
   out.text +=
       "## Long cylinders: OSPRay issue 600\n\n"
-      "[RenderKit/ospray#600](https://github.com/RenderKit/ospray/issues/600), of curves that Embree intersects: \"a cylinder "
+      "[RenderKit/ospray#600](https://github.com/RenderKit/ospray/issues/600), of curves that "
+      "Embree intersects: \"a cylinder "
       "rendering "
-      "issue in OSPRay 3.2.0, which seems to occur whenever the length of the cylinder exceeds a certain threshold. This is an "
+      "issue in OSPRay 3.2.0, which seems to occur whenever the length of the cylinder exceeds a "
+      "certain threshold. This is an "
       "animation "
-      "showing a cylinder that extends from (0,0,0) to (x,0,0) with x varying from 0 to 30,000. [...] We have noticed this "
+      "showing a cylinder that extends from (0,0,0) to (x,0,0) with x varying from 0 to 30,000. "
+      "[...] We have noticed this "
       "problem only "
-      "now, because in our application (OVITO), scenes are typically smaller than 10,000 length units.\"\n\nHere: from (0, 0, 0) "
+      "now, because in our application (OVITO), scenes are typically smaller than 10,000 length "
+      "units.\"\n\nHere: from (0, 0, 0) "
       "to (x, 0, "
-      "0), half of the rays from a tenth of the length to one length away, half of them from one to ten radii. The report names "
+      "0), half of the rays from a tenth of the length to one length away, half of them from one "
+      "to ten radii. The report names "
       "no radius; "
-      "these are 1 and 10. A ray counts as lost when the reference says that it enters deeper than the stated bound and a "
+      "these are 1 and 10. A ray counts as lost when the reference says that it enters deeper than "
+      "the stated bound and a "
       "hundredth of the "
       "radius.\n\n" +
       head("the radius");
@@ -182,11 +199,13 @@ void long_cylinders(const Device& device, int rays, Anchors& out) {
     for (const double x : {1e3, 1e4, 3e4, 1e5}) {
       const auto r = static_cast<float>(radius), end = static_cast<float>(x);
       const FlatPrimitive capsule = make_capsule({0, 0, 0}, {end, 0, 0}, r);
-      const FlatPrimitive cylinder = make_cylinder({0, 0, 0}, {end, 0, 0}, r, CAPLET_CAP_FLAT, CAPLET_CAP_FLAT);
+      const FlatPrimitive cylinder =
+          make_cylinder({0, 0, 0}, {end, 0, 0}, r, CAPLET_CAP_FLAT, CAPLET_CAP_FLAT);
       CaseMaker maker(12);
       std::vector<RayRecord> list;
       for (int i = 0; i < rays; ++i) {
-        const dvec3 n = perpendicular({1, 0, 0}, maker), on = maker.uniform(0, x) * dvec3(1, 0, 0) + radius * n;
+        const dvec3 n = perpendicular({1, 0, 0}, maker),
+                    on = maker.uniform(0, x) * dvec3(1, 0, 0) + radius * n;
         const dvec3 d = maker.direction();
         const double away = i % 2 == 0 ? x * maker.uniform(0.1, 1) : radius * maker.uniform(1, 10);
         list.push_back(make_ray(on - away * d, d));
@@ -202,7 +221,8 @@ void long_cylinders(const Device& device, int rays, Anchors& out) {
       Score flat;
       for (std::size_t i = 0; i < list.size(); ++i) {
         const Case c = make_case(cylinder, reference, list[i]);
-        flat.add(c, listed[i].nearest.slot != CAPLET_NONE, listed[i].nearest.t, std::max(0.01 * radius, c.bound));
+        flat.add(c, listed[i].nearest.slot != CAPLET_NONE, listed[i].nearest.t,
+                 std::max(0.01 * radius, c.bound));
         out.held = out.held && judge(c, listed[i], 8).wrong.empty();
       }
       out.held = out.held && flat.lost + flat.false_hits + flat.outside == 0;
@@ -214,17 +234,24 @@ void long_cylinders(const Device& device, int rays, Anchors& out) {
 void capsules_of_a_few_units(const Device& device, int rays, Anchors& out) {
   out.text +=
       "## Capsules of a few units: parry pull request 446\n\n"
-      "[dimforge/parry#446](https://github.com/dimforge/parry/pull/446), which replaces ray casts by GJK with a formula: \"The "
+      "[dimforge/parry#446](https://github.com/dimforge/parry/pull/446), which replaces ray casts "
+      "by GJK with a formula: \"The "
       "analytical "
-      "version's error is smaller, too. Could be better, though. In extreme corner cases errors of 1e-3 can be observed at "
+      "version's error is smaller, too. Could be better, though. In extreme corner cases errors of "
+      "1e-3 can be observed at "
       "scales of a few "
-      "units using f32.\"\n\nHere: capsules of radius 0.1 to 3 and length 0 to 6, rays from within 10 units, a third of them "
+      "units using f32.\"\n\nHere: capsules of radius 0.1 to 3 and length 0 to 6, rays from within "
+      "10 units, a third of them "
       "touching "
-      "within 1e-6 to 0.1 radii. The request does not say of what the error is. Where a ray touches, t moves by the root of "
+      "within 1e-6 to 0.1 radii. The request does not say of what the error is. Where a ray "
+      "touches, t moves by the root of "
       "twice the "
-      "radius times the displacement: single precision's 1e-7 of displacement alone are 4e-4 in t.\n\n"
-      "| | distance from the surface: 99 % | worst | error of t, unit directions, worst | of rays that enter deeper than 1e-3 "
-      "radii | of those: other crossing than the first | lost | invented |\n|---|---:|---:|---:|---:|---:|---:|---:|\n";
+      "radius times the displacement: single precision's 1e-7 of displacement alone are 4e-4 in "
+      "t.\n\n"
+      "| | distance from the surface: 99 % | worst | error of t, unit directions, worst | of rays "
+      "that enter deeper than 1e-3 "
+      "radii | of those: other crossing than the first | lost | invented "
+      "|\n|---|---:|---:|---:|---:|---:|---:|---:|\n";
   CaseMaker maker(13);
   Score ours[2], embree[2];
   for (int shape = 0; shape < 100; ++shape) {
@@ -241,8 +268,8 @@ void capsules_of_a_few_units(const Device& device, int rays, Anchors& out) {
       const double depth = touching ? std::pow(10.0, maker.uniform(-6, -1)) * radius : 0;
       list.push_back(make_ray(on - depth * n - maker.uniform(0, 10) * d, d));
     }
-    const auto listed =
-        Probe(device, test_width(), std::vector<FlatPrimitive>{p}).list(std::vector<std::uint32_t>(list.size(), 0), list, 8);
+    const auto listed = Probe(device, test_width(), std::vector<FlatPrimitive>{p})
+                            .list(std::vector<std::uint32_t>(list.size(), 0), list, 8);
 #ifdef CAPLET_EMBREE
     const auto hits = Peer(std::span(&p, 1), PeerMode::robust).closest(list);
 #endif
@@ -251,44 +278,56 @@ void capsules_of_a_few_units(const Device& device, int rays, Anchors& out) {
       // Embree does not see the same crossing for rays that begin at the surface or inside.
       if (c.value(0) <= 1e-3 * radius) continue;
       const bool deep = reference::margin(reference, c.ray) > 1e-3 * radius;
-      for (int k = 0; k <= deep; ++k) ours[k].add(c, listed[i].nearest.slot != CAPLET_NONE, listed[i].nearest.t, c.bound);
+      for (int k = 0; k <= deep; ++k)
+        ours[k].add(c, listed[i].nearest.slot != CAPLET_NONE, listed[i].nearest.t, c.bound);
       out.held = out.held && judge(c, listed[i], 8).wrong.empty();
 #ifdef CAPLET_EMBREE
-      for (int k = 0; k <= deep; ++k) embree[k].add(c, hits[i].id != CAPLET_NONE, hits[i].t, c.bound);
+      for (int k = 0; k <= deep; ++k)
+        embree[k].add(c, hits[i].id != CAPLET_NONE, hits[i].t, c.bound);
 #endif
     }
   }
   const auto line = [](const char* name, Score* s) {
-    return fmt::format("| {} | {:.2g} | {:.2g} | {:.2g} | {:.2g} | {} of {} | {} of {} | {} |\n", name, s[0].p99(), s[0].worst,
-                       s[0].t_worst, s[1].t_worst, s[1].later, s[1].rays, s[0].lost, s[0].meets, s[0].false_hits);
+    return fmt::format("| {} | {:.2g} | {:.2g} | {:.2g} | {:.2g} | {} of {} | {} of {} | {} |\n",
+                       name, s[0].p99(), s[0].worst, s[0].t_worst, s[1].t_worst, s[1].later,
+                       s[1].rays, s[0].lost, s[0].meets, s[0].false_hits);
   };
   out.text += line("Caplet", ours);
   if (has_embree) out.text += line("Embree", embree);
-  out.held = out.held && ours[0].lost + ours[0].false_hits + ours[0].outside == 0 && ours[0].worst < 1e-3;
+  out.held =
+      out.held && ours[0].lost + ours[0].false_hits + ours[0].outside == 0 && ours[0].worst < 1e-3;
   out.text += "\n";
 }
 
 void far_spheres(const Device& device, int rays, Anchors& out) {
   out.text +=
       "## A unit sphere 10,000 units from the origin: pbrt-v3 issue 44\n\n"
-      "[mmp/pbrt-v3#44](https://github.com/mmp/pbrt-v3/issues/44), of a version that takes the error of the discriminant into "
+      "[mmp/pbrt-v3#44](https://github.com/mmp/pbrt-v3/issues/44), of a version that takes the "
+      "error of the discriminant into "
       "account: "
-      "\"as they go farther from the origin, quadrics start to shrink--for example, for a unit sphere 10000 units from the "
+      "\"as they go farther from the origin, quadrics start to shrink--for example, for a unit "
+      "sphere 10000 units from the "
       "origin (with "
-      "the camera right next to it), what looks like the outer 15% or so of the sphere just disappears.\"\n\nHere: unit spheres "
+      "the camera right next to it), what looks like the outer 15% or so of the sphere just "
+      "disappears.\"\n\nHere: unit spheres "
       "10,000 "
-      "units from the origin, rays from 2 to 5 units beside them, by how far the ray passes from the centre; and the same with "
+      "units from the origin, rays from 2 to 5 units beside them, by how far the ray passes from "
+      "the centre; and the same with "
       "the ray's "
-      "origin where the coordinates begin.\n\n| rays pass the centre at | rays | Caplet: hit | worst distance from the surface |";
-  out.text += has_embree ? " Embree: hit | worst |\n|---|---:|---:|---:|---:|---:|\n" : "\n|---|---:|---:|---:|\n";
+      "origin where the coordinates begin.\n\n| rays pass the centre at | rays | Caplet: hit | "
+      "worst distance from the surface |";
+  out.text += has_embree ? " Embree: hit | worst |\n|---|---:|---:|---:|---:|---:|\n"
+                         : "\n|---|---:|---:|---:|\n";
   struct Ring {
     double low, high;
     bool inside;
     const char* text;
   };
   for (const bool near : {true, false})
-    for (const Ring& ring : {Ring{0, 0.85, true, "0 to 0.85"}, Ring{0.85, 0.99, true, "0.85 to 0.99"},
-                             Ring{0.99, 0.9999, true, "0.99 to 0.9999"}, Ring{1.0001, 1.01, false, "1.0001 to 1.01"}}) {
+    for (const Ring& ring :
+         {Ring{0, 0.85, true, "0 to 0.85"}, Ring{0.85, 0.99, true, "0.85 to 0.99"},
+          Ring{0.99, 0.9999, true, "0.99 to 0.9999"},
+          Ring{1.0001, 1.01, false, "1.0001 to 1.01"}}) {
       CaseMaker maker(14);
       Scores all;
       for (int shape = 0; shape < 20; ++shape) {
@@ -304,23 +343,28 @@ void far_spheres(const Device& device, int rays, Anchors& out) {
           if (!near) ray = make_ray(dvec3(0), past / 1e4);
           // As rounded, it has to pass where it is said to.
           const reference::Ray bits = reference_ray(ray);
-          const double passes = glm::length(glm::cross(exact - bits.origin, bits.direction)) / glm::length(bits.direction);
+          const double passes = glm::length(glm::cross(exact - bits.origin, bits.direction)) /
+                                glm::length(bits.direction);
           if (passes >= ring.low && passes <= ring.high) list.push_back(ray);
         }
         const Scores s = score(device, p, list, 0);
-        for (const auto& [to, from] : {std::pair{&all.ours, &s.ours}, std::pair{&all.embree, &s.embree}}) {
+        for (const auto& [to, from] :
+             {std::pair{&all.ours, &s.ours}, std::pair{&all.embree, &s.embree}}) {
           to->distances.insert(to->distances.end(), from->distances.begin(), from->distances.end());
           to->rays += from->rays;
           to->worst = std::max(to->worst, from->worst);
         }
         out.held = out.held && s.held;
       }
-      out.text += fmt::format("| {}, {} | {} | {} | {:.2g} |", ring.text, near ? "from beside it" : "from the origin",
-                              all.ours.rays, all.ours.distances.size(), all.ours.worst);
-      if (has_embree) out.text += fmt::format(" {} | {:.2g} |", all.embree.distances.size(), all.embree.worst);
+      out.text += fmt::format("| {}, {} | {} | {} | {:.2g} |", ring.text,
+                              near ? "from beside it" : "from the origin", all.ours.rays,
+                              all.ours.distances.size(), all.ours.worst);
+      if (has_embree)
+        out.text += fmt::format(" {} | {:.2g} |", all.embree.distances.size(), all.embree.worst);
       out.text += "\n";
       // From the origin the stated bound is 16 eps 10,000: 1e-2, within which a ray may be missed.
-      if (near) out.held = out.held && all.ours.distances.size() == (ring.inside ? all.ours.rays : 0u);
+      if (near)
+        out.held = out.held && all.ours.distances.size() == (ring.inside ? all.ours.rays : 0u);
     }
   out.text += "\n";
 }
@@ -329,7 +373,8 @@ void far_spheres(const Device& device, int rays, Anchors& out) {
 
 Anchors anchors(const Device& device, int rays) {
   Anchors out;
-  out.text = has_embree ? "Embree is 3.13, `rtcIntersect1`, on the same rays, with `RTC_SCENE_FLAG_ROBUST`: round linear curves "
+  out.text = has_embree ? "Embree is 3.13, `rtcIntersect1`, on the same rays, with "
+                          "`RTC_SCENE_FLAG_ROBUST`: round linear curves "
                           "and sphere points, "
                           "which have an outside alone, so that rays begin outside.\n\n"
                         : "";

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Settings in which other ray tracers are known to be inexact, as their trackers describe them: our kernels in them and, where
-// Embree 3 is installed, Embree on the same rays.
+// Settings in which other ray tracers are known to be inexact, as their trackers describe them: our
+// kernels in them and, where Embree 3 is installed, Embree on the same rays.
 #pragma once
 
 #include <string>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Renders the reference scenes at full quality, writes the table of docs/validation.md and difference images.
-// caplet_validate SAMPLES OUT.md IMAGE_FOLDER
+// Renders the reference scenes at full quality, writes the table of docs/validation.md and
+// difference images. caplet_validate SAMPLES OUT.md IMAGE_FOLDER
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -22,7 +22,8 @@ using namespace caplet;
 using namespace caplet::test;
 
 /// Ours, theirs and four times the difference around middle grey, side by side.
-void write_difference(const std::filesystem::path& path, const Picture& ours, const Picture& theirs) {
+void write_difference(const std::filesystem::path& path, const Picture& ours,
+                      const Picture& theirs) {
   LayeredImage out;
   out.width = out.data_width = 3 * ours.width;
   out.height = out.data_height = ours.height;
@@ -32,14 +33,17 @@ void write_difference(const std::filesystem::path& path, const Picture& ours, co
       for (int x = 0; x < 3 * ours.width; ++x) {
         const std::size_t at = static_cast<std::size_t>(y * ours.width + x % ours.width) * 3 + c;
         const float a = ours.rgb[at], b = theirs.rgb[at];
-        channel.floats.push_back(x < ours.width ? a : x < 2 * ours.width ? b : 0.2f + 4 * (a - b) / (b + 0.05f) * 0.2f);
+        channel.floats.push_back(x < ours.width       ? a
+                                 : x < 2 * ours.width ? b
+                                                      : 0.2f + 4 * (a - b) / (b + 0.05f) * 0.2f);
       }
     out.channels.push_back(channel);
   }
   write_preview(path, out);
 }
 
-/// Image mean of the Cornell box of the scene collection against Tungsten's picture of it, which was rendered in RGB.
+/// Image mean of the Cornell box of the scene collection against Tungsten's picture of it, which
+/// was rendered in RGB.
 std::string cornell_box_row(int samples, bool& within) {
   const auto folder = data_folder() / "scenes_pbrt" / "cornell-box";
   const Rendered ours = render_file(folder / "scene-v4.pbrt", samples, [](Scene& scene) {
@@ -51,12 +55,16 @@ std::string cornell_box_row(int samples, bool& within) {
     for (const float value : picture.rgb) sum += static_cast<double>(value);
     return sum / static_cast<double>(picture.rgb.size());
   };
-  const double difference = mean(picture_of(ours.image)) / mean(picture_of(read_exr(folder / "TungstenRender.exr"))) - 1;
+  const double difference =
+      mean(picture_of(ours.image)) / mean(picture_of(read_exr(folder / "TungstenRender.exr"))) - 1;
   within = std::abs(difference) < 0.015;
   return fmt::format(
-      "\nThe standard deviation of z is below 1 because Caplet states the variance of independent samples,\n"
-      "which is an upper bound for low-discrepancy ones. The rows of environment images stand where Mitsuba\n"
-      "puts them ([lights](lights.md#image-light)).\n\nThe image mean of `scenes_pbrt/cornell-box` at depth 65, 256 x 256 "
+      "\nThe standard deviation of z is below 1 because Caplet states the variance of independent "
+      "samples,\n"
+      "which is an upper bound for low-discrepancy ones. The rows of environment images stand "
+      "where Mitsuba\n"
+      "puts them ([lights](lights.md#image-light)).\n\nThe image mean of `scenes_pbrt/cornell-box` "
+      "at depth 65, 256 x 256 "
       "pixels, {} samples differs by\n{:+.2f} % from "
       "`TungstenRender.exr` (an RGB render; within 1.5 %: {}).\n",
       samples, 100 * difference, within ? "yes" : "NO");
@@ -69,7 +77,8 @@ int main(int argc, char** argv) {
   const int samples = std::atoi(argv[1]);
   const std::filesystem::path document = argv[2], images = argv[3];
   if (samples < 1) return std::cerr << "caplet_validate: SAMPLES must be a positive number\n", 2;
-  if (data_folder().empty()) return std::cerr << "caplet_validate: needs the shared data folder\n", 2;
+  if (data_folder().empty())
+    return std::cerr << "caplet_validate: needs the shared data folder\n", 2;
   std::filesystem::create_directories(images);
   const auto folder = data_folder() / "reference" / "mitsuba";
   // The page's lines as they stand in it.
@@ -101,22 +110,27 @@ last with {} samples a pixel or more on {} ({}). A scene is "within" when all of
 )",
       samples, test_device().info().name, test_device().info().driver);
   std::string pictures =
-      "\nEach picture shows Caplet's, Mitsuba's, and their difference around grey. A fifth of full scale is a\nrelative "
+      "\nEach picture shows Caplet's, Mitsuba's, and their difference around grey. A fifth of full "
+      "scale is a\nrelative "
       "difference of a quarter.\n";
   bool all = true;
   for (const ReferenceScene& scene : reference_scenes()) {
     const int effort = samples * scene.effort;
-    const Rendered ours = render_file(folder / (scene.name + ".pbrt"), effort, place_rows_as_mitsuba);
-    const Picture a = picture_of(ours.image), b = picture_of(read_exr(folder / (scene.name + ".exr")));
+    const Rendered ours =
+        render_file(folder / (scene.name + ".pbrt"), effort, place_rows_as_mitsuba);
+    const Picture a = picture_of(ours.image),
+                  b = picture_of(read_exr(folder / (scene.name + ".exr")));
     const Figures f = compare(a, b);
     bool within = std::abs(f.mean) < scene.mean && f.blocks < scene.blocks;
-    if (!scene.spectral) within = within && std::abs(f.z_mean) < allowed_z_mean && f.beyond_3 < allowed_beyond_3;
+    if (!scene.spectral)
+      within = within && std::abs(f.z_mean) < allowed_z_mean && f.beyond_3 < allowed_beyond_3;
     all = all && within;
-    const std::string z =
-        scene.spectral ? " | | " : fmt::format("{:+.2f} | {:.2f} | {:.2f} %", f.z_mean, f.z_sd, 100 * f.beyond_3);
-    text +=
-        fmt::format("| {}{} | {} | {:+.2f} % | {:.2f} % | {} | {:.0f} | {} |\n", scene.name, scene.spectral ? " (spectral)" : "",
-                    effort, 100 * f.mean, 100 * f.blocks, z, ours.result.render_seconds, within ? "yes" : "NO");
+    const std::string z = scene.spectral ? " | | "
+                                         : fmt::format("{:+.2f} | {:.2f} | {:.2f} %", f.z_mean,
+                                                       f.z_sd, 100 * f.beyond_3);
+    text += fmt::format("| {}{} | {} | {:+.2f} % | {:.2f} % | {} | {:.0f} | {} |\n", scene.name,
+                        scene.spectral ? " (spectral)" : "", effort, 100 * f.mean, 100 * f.blocks,
+                        z, ours.result.render_seconds, within ? "yes" : "NO");
     write_difference(images / (scene.name + ".png"), a, b);
     pictures += fmt::format("\n![{0}](images/validation/{0}.png)\n", scene.name);
     std::cerr << scene.name << (within ? " agrees\n" : " DISAGREES\n");
@@ -131,6 +145,7 @@ last with {} samples a pixel or more on {} ({}). A scene is "within" when all of
   std::ofstream out(document);
   out << text << pictures << page.substr(sections);
   std::cout << text;
-  if (!out) return std::cerr << "caplet_validate: " << document.string() << " cannot be written\n", 1;
+  if (!out)
+    return std::cerr << "caplet_validate: " << document.string() << " cannot be written\n", 1;
   return all && tungsten ? 0 : 1;
 }

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// What the files of the binding share. Arrays come as the package's Python has checked them: of 32- or 64-bit floats or of 32-bit
-// unsigned integers, with any strides; what they hold is for the library to check.
+// What the files of the binding share. Arrays come as the package's Python has checked them: of 32-
+// or 64-bit floats or of 32-bit unsigned integers, with any strides; what they hold is for the
+// library to check.
 #pragma once
 
 #include <caplet/error.h>
@@ -27,7 +28,8 @@ void bind_scene(nb::module_& m);
 void bind_render(nb::module_& m);
 void bind_trace(nb::module_& m);
 
-/// bool, numbers, text, arrays of 64-bit floats, lists of texts, and tuples of a word and numbers: ("texture", 3),
+/// bool, numbers, text, arrays of 64-bit floats, lists of texts, and tuples of a word and numbers:
+/// ("texture", 3),
 /// ("materials", 0, 1), ("blackbody", 5000.0), ("rgb", r, g, b), ("pixels", array).
 caplet::Parameters parameters_of(const nb::dict& given);
 
@@ -38,7 +40,8 @@ caplet::Transform transform_of(const Array& rows);
 template <class From, class Use>
 void with_rows(const Array& array, Use&& use) {
   const auto* data = static_cast<const From*>(array.data());
-  const std::int64_t row = array.ndim() > 0 ? array.stride(0) : 0, column = array.ndim() > 1 ? array.stride(1) : 0;
+  const std::int64_t row = array.ndim() > 0 ? array.stride(0) : 0,
+                     column = array.ndim() > 1 ? array.stride(1) : 0;
   use([=](std::size_t i, std::size_t k) {
     return data[static_cast<std::int64_t>(i) * row + static_cast<std::int64_t>(k) * column];
   });
@@ -70,7 +73,8 @@ std::vector<std::uint32_t> numbers_of(const Array& array);
 
 /// An array that owns the vector.
 template <class T, std::size_t N>
-nb::ndarray<nb::numpy, T, nb::ndim<N>> array_of(std::vector<T> values, const std::array<std::size_t, N>& shape) {
+nb::ndarray<nb::numpy, T, nb::ndim<N>> array_of(std::vector<T> values,
+                                                const std::array<std::size_t, N>& shape) {
   auto* held = new std::vector<T>(std::move(values));
   nb::capsule owner(held, [](void* p) noexcept { delete static_cast<std::vector<T>*>(p); });
   return nb::ndarray<nb::numpy, T, nb::ndim<N>>(held->data(), N, shape.data(), owner);

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// caplet._caplet: the library's public classes for the package's Python, which is what programs use.
+// caplet._caplet: the library's public classes for the package's Python, which is what programs
+// use.
 #include <caplet/log.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
@@ -18,7 +19,8 @@ namespace {
 void raise(const char* name, const std::vector<std::string>& messages) {
   nb::list list;
   for (const std::string& message : messages)
-    list.append(nb::steal<nb::str>(PyUnicode_DecodeUTF8(message.data(), static_cast<Py_ssize_t>(message.size()), "replace")));
+    list.append(nb::steal<nb::str>(
+        PyUnicode_DecodeUTF8(message.data(), static_cast<Py_ssize_t>(message.size()), "replace")));
   const nb::object type = nb::module_::import_("caplet.errors").attr(name);
   const nb::object error = type(list);
   PyErr_SetObject(type.ptr(), error.ptr());
@@ -34,10 +36,13 @@ void bind_errors(nb::module_& m) {
         } catch (const caplet::InputError& error) {
           raise("InputError", error.messages());
         } catch (const caplet::RunError& error) {
-          if (PyErr_CheckSignals() != 0) return;  // the kernels' compiler fails where it hears a signal: that is the reason then
+          if (PyErr_CheckSignals() != 0)
+            return;  // the kernels' compiler fails where it hears a signal: that is the reason then
           raise("RunError", {error.what()});
-        } catch (const std::bad_cast&) {  // of nb::cast: a text with half a surrogate, a number that has no place
-          PyErr_SetString(PyExc_TypeError, "an argument is of a type, or has a value, that is not taken here");
+        } catch (const std::bad_cast&) {  // of nb::cast: a text with half a surrogate, a number
+                                          // that has no place
+          PyErr_SetString(PyExc_TypeError,
+                          "an argument is of a type, or has a value, that is not taken here");
         }
       },
       nullptr);

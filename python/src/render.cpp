@@ -39,8 +39,8 @@ nb::dict told(const caplet::DeviceInfo& info) {
   return out;
 }
 
-caplet::VerifyReport verified(const std::optional<caplet::Scene>& scene, const std::string& choice, std::uint64_t rays,
-                              std::uint64_t seed) {
+caplet::VerifyReport verified(const std::optional<caplet::Scene>& scene, const std::string& choice,
+                              std::uint64_t rays, std::uint64_t seed) {
   caplet::VerifyReport report;
   std::atomic<bool> stopped = false;
   struct Stopped {};
@@ -52,7 +52,8 @@ caplet::VerifyReport verified(const std::optional<caplet::Scene>& scene, const s
                                               if (stopped) throw Stopped{};
                                             }};
         try {
-          report = scene ? caplet::verify(*scene, devices, options) : caplet::verify(devices, options);
+          report =
+              scene ? caplet::verify(*scene, devices, options) : caplet::verify(devices, options);
         } catch (const Stopped&) {
         }
       },
@@ -77,7 +78,8 @@ void bind_devices(nb::module_& m) {
   m.def(
       "verify",
       [](HeldScene* scene, const std::string& devices, std::uint64_t rays, std::uint64_t seed) {
-        const caplet::VerifyReport report = verified(scene ? std::optional(scene->now()) : std::nullopt, devices, rays, seed);
+        const caplet::VerifyReport report =
+            verified(scene ? std::optional(scene->now()) : std::nullopt, devices, rays, seed);
         nb::list of_devices;
         for (const auto& one : report.devices) {
           nb::dict row = told(one.device);
@@ -92,7 +94,9 @@ void bind_devices(nb::module_& m) {
       },
       nb::arg("scene").none(), nb::arg("devices"), nb::arg("rays"), nb::arg("seed"));
 
-  nb::class_<caplet::Device>(m, "Device").def_prop_ro("info", [](const caplet::Device& device) { return told(device.info()); });
+  nb::class_<caplet::Device>(m, "Device").def_prop_ro("info", [](const caplet::Device& device) {
+    return told(device.info());
+  });
   m.def("choose_devices", [](const std::string& choice) {
     const Released released;
     return choice.empty() ? std::vector{caplet::choose_device()} : caplet::choose_devices(choice);
@@ -109,7 +113,8 @@ void bind_film(nb::module_& m) {
       .def("samples",
            [](const Film& film) {
              std::vector<std::pair<std::uint32_t, std::uint32_t>> out;
-             for (const caplet::SampleRange& range : film.samples()) out.emplace_back(range.first, range.count);
+             for (const caplet::SampleRange& range : film.samples())
+               out.emplace_back(range.first, range.count);
              return out;
            })
       .def("copy", [](const Film& film) { return Film(film); })
@@ -128,7 +133,8 @@ void bind_film(nb::module_& m) {
       .def("channels", &Film::channels, nb::call_guard<Released>())
       .def("values",
            [](const Film& film, const std::string& channel) {
-             const auto shape = std::array{static_cast<std::size_t>(film.height()), static_cast<std::size_t>(film.width())};
+             const auto shape = std::array{static_cast<std::size_t>(film.height()),
+                                           static_cast<std::size_t>(film.width())};
              std::vector<float> values;
              {
                const Released released;
@@ -138,7 +144,8 @@ void bind_film(nb::module_& m) {
            })
       .def("ids",
            [](const Film& film, const std::string& channel) {
-             const auto shape = std::array{static_cast<std::size_t>(film.height()), static_cast<std::size_t>(film.width())};
+             const auto shape = std::array{static_cast<std::size_t>(film.height()),
+                                           static_cast<std::size_t>(film.width())};
              std::vector<std::uint32_t> ids;
              {
                const Released released;
@@ -151,13 +158,15 @@ void bind_film(nb::module_& m) {
              const Released released;
              film.write_exr(file);
            })
-      .def("write_preview", [](const Film& film, const std::string& file, const caplet::OverlayOptions& drawn) {
-        const Released released;
-        film.write_preview(file, drawn);
-      });
+      .def("write_preview",
+           [](const Film& film, const std::string& file, const caplet::OverlayOptions& drawn) {
+             const Released released;
+             film.write_preview(file, drawn);
+           });
   m.def("overlays", [] {
     std::vector<std::tuple<std::string, std::string, std::string>> out;
-    for (const caplet::Overlay& one : caplet::overlays()) out.emplace_back(one.name, one.values, one.help);
+    for (const caplet::Overlay& one : caplet::overlays())
+      out.emplace_back(one.name, one.values, one.help);
     return out;
   });
 }
@@ -183,7 +192,8 @@ void bind_session(nb::module_& m) {
            })
       .def(
           "render",
-          [](HeldSession& held, int samples, std::optional<double> time_limit, const nb::object& progress) {
+          [](HeldSession& held, int samples, std::optional<double> time_limit,
+             const nb::object& progress) {
             int done = 0;
             std::atomic<double> fraction = 0, speed = 0;
             std::mutex mutex;  // of these two

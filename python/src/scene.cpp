@@ -25,7 +25,8 @@ namespace {
 
 /// (height, width, channels).
 std::shared_ptr<const caplet::Pixels> pixels_of(const Array& array) {
-  if (array.ndim() != 3 || array.dtype() != nb::dtype<float>()) throw nb::type_error("an image of 32-bit floats");
+  if (array.ndim() != 3 || array.dtype() != nb::dtype<float>())
+    throw nb::type_error("an image of 32-bit floats");
   auto out = std::make_shared<caplet::Pixels>();
   const std::size_t tall = array.shape(0), wide = array.shape(1), channels = array.shape(2);
   if (tall > std::size_t{1} << 20 || wide > std::size_t{1} << 20 || channels > 4)
@@ -36,7 +37,8 @@ std::shared_ptr<const caplet::Pixels> pixels_of(const Array& array) {
   out->values.resize(tall * wide * channels);
   const auto* data = static_cast<const float*>(array.data());
   const auto at = [&](std::size_t y, std::size_t x, std::size_t c) {
-    return data[static_cast<std::int64_t>(y) * array.stride(0) + static_cast<std::int64_t>(x) * array.stride(1) +
+    return data[static_cast<std::int64_t>(y) * array.stride(0) +
+                static_cast<std::int64_t>(x) * array.stride(1) +
                 static_cast<std::int64_t>(c) * array.stride(2)];
   };
   std::size_t i = 0;
@@ -49,7 +51,8 @@ std::shared_ptr<const caplet::Pixels> pixels_of(const Array& array) {
 caplet::Parameter parameter_of(nb::handle value) {
   if (nb::isinstance<nb::bool_>(value)) return nb::cast<bool>(value);
   if (nb::isinstance<nb::str>(value)) return nb::cast<std::string>(value);
-  if (nb::isinstance<nb::float_>(value) || nb::isinstance<nb::int_>(value)) return nb::cast<double>(value);
+  if (nb::isinstance<nb::float_>(value) || nb::isinstance<nb::int_>(value))
+    return nb::cast<double>(value);
   if (nb::isinstance<nb::list>(value)) return nb::cast<std::vector<std::string>>(value);
   if (nb::isinstance<nb::tuple>(value)) {
     const auto tuple = nb::cast<nb::tuple>(value);
@@ -57,9 +60,12 @@ caplet::Parameter parameter_of(nb::handle value) {
     if (word == "texture") return caplet::TextureNumber{nb::cast<std::uint32_t>(tuple[1])};
     if (word == "blackbody") return caplet::Blackbody{nb::cast<double>(tuple[1])};
     if (word == "materials")
-      return std::array<std::uint32_t, 2>{nb::cast<std::uint32_t>(tuple[1]), nb::cast<std::uint32_t>(tuple[2])};
+      return std::array<std::uint32_t, 2>{nb::cast<std::uint32_t>(tuple[1]),
+                                          nb::cast<std::uint32_t>(tuple[2])};
     if (word == "pixels") return pixels_of(nb::cast<Array>(tuple[1]));
-    if (word == "rgb") return caplet::Rgb{nb::cast<double>(tuple[1]), nb::cast<double>(tuple[2]), nb::cast<double>(tuple[3])};
+    if (word == "rgb")
+      return caplet::Rgb{nb::cast<double>(tuple[1]), nb::cast<double>(tuple[2]),
+                         nb::cast<double>(tuple[3])};
   }
   if (nb::ndarray_check(value)) {
     const auto array = nb::cast<Array>(value);
@@ -71,7 +77,8 @@ caplet::Parameter parameter_of(nb::handle value) {
     return numbers;
   }
   throw nb::type_error(
-      "a parameter is a number, a text, a switch, an array, a list of texts or a tuple of a word and what it is of");
+      "a parameter is a number, a text, a switch, an array, a list of texts or a tuple of a word "
+      "and what it is of");
 }
 
 /// The same of values for many shapes, which stay in their array.
@@ -98,7 +105,8 @@ caplet::ShapeOptions options_of(const nb::dict& given) {
   if (has("emission")) out.emission = parameters_of(nb::cast<nb::dict>(given["emission"]));
   if (has("inside")) out.inside = nb::cast<std::uint32_t>(given["inside"]);
   if (has("outside")) out.outside = nb::cast<std::uint32_t>(given["outside"]);
-  if (has("reverse_orientation")) out.reverse_orientation = nb::cast<bool>(given["reverse_orientation"]);
+  if (has("reverse_orientation"))
+    out.reverse_orientation = nb::cast<bool>(given["reverse_orientation"]);
   return out;
 }
 
@@ -113,8 +121,10 @@ std::vector<caplet::Transform> transforms_of(const Array& array) {
   return out;
 }
 
-caplet::CapsuleArrays capsules_of(const Array& p0, const Array& p1, const Array& radius0, const std::optional<Array>& radius1,
-                                  const std::optional<Array>& materials, const std::optional<Array>& u, std::size_t count) {
+caplet::CapsuleArrays capsules_of(const Array& p0, const Array& p1, const Array& radius0,
+                                  const std::optional<Array>& radius1,
+                                  const std::optional<Array>& materials,
+                                  const std::optional<Array>& u, std::size_t count) {
   caplet::CapsuleArrays out;
   out.p0 = rows_of<3>(p0, count);
   out.p1 = rows_of<3>(p1, count);
@@ -126,7 +136,8 @@ caplet::CapsuleArrays capsules_of(const Array& p0, const Array& p1, const Array&
 }
 
 template <std::size_t K>
-nb::ndarray<nb::numpy, float, nb::ndim<2>> rows_array(const std::vector<std::array<float, K>>& rows) {
+nb::ndarray<nb::numpy, float, nb::ndim<2>> rows_array(
+    const std::vector<std::array<float, K>>& rows) {
   std::vector<float> flat(K * rows.size());
   for (std::size_t i = 0; i < rows.size(); ++i)
     std::copy(rows[i].begin(), rows[i].end(), flat.begin() + static_cast<std::ptrdiff_t>(K * i));
@@ -142,10 +153,12 @@ nb::ndarray<nb::numpy, double, nb::ndim<2>> transform_array(const caplet::Transf
 caplet::Statement statement_named(const std::string& name) {
   using caplet::Statement;
   static const std::vector<std::pair<const char*, Statement>> names = {
-      {"shape", Statement::shape},       {"light", Statement::light},     {"emission", Statement::emission},
-      {"medium", Statement::medium},     {"camera", Statement::camera},   {"film", Statement::film},
-      {"filter", Statement::filter},     {"sampler", Statement::sampler}, {"integrator", Statement::integrator},
-      {"material", Statement::material}, {"texture", Statement::texture}};
+      {"shape", Statement::shape},           {"light", Statement::light},
+      {"emission", Statement::emission},     {"medium", Statement::medium},
+      {"camera", Statement::camera},         {"film", Statement::film},
+      {"filter", Statement::filter},         {"sampler", Statement::sampler},
+      {"integrator", Statement::integrator}, {"material", Statement::material},
+      {"texture", Statement::texture}};
   for (const auto& [known, statement] : names)
     if (name == known) return statement;
   throw nb::value_error("no such kind of statement");
@@ -197,7 +210,8 @@ caplet::Transform transform_of(const Array& rows) {
 }
 
 std::vector<float> floats_of(const Array& array, std::size_t count) {
-  if (array.ndim() != 1 || (array.shape(0) != count && array.shape(0) != 1)) throw nb::value_error("an array of another shape");
+  if (array.ndim() != 1 || (array.shape(0) != count && array.shape(0) != 1))
+    throw nb::value_error("an array of another shape");
   std::vector<float> out(count);
   const std::size_t step = array.shape(0) == 1 ? 0 : 1;
   with_floats(array, [&](auto read) {
@@ -222,10 +236,12 @@ using caplet::Scene;
 
 /// Binds what is known without a scene: types and parameters of statements, formats, files.
 void bind_lists(nb::module_& m) {
-  m.def("statement_types", [](const std::string& kind) { return caplet::statement_types(statement_named(kind)); });
+  m.def("statement_types",
+        [](const std::string& kind) { return caplet::statement_types(statement_named(kind)); });
   m.def("statement_parameters", [](const std::string& kind, const std::string& type) {
     nb::list out;
-    for (const caplet::KnownParameter& one : caplet::statement_parameters(statement_named(kind), type)) {
+    for (const caplet::KnownParameter& one :
+         caplet::statement_parameters(statement_named(kind), type)) {
       nb::dict row;
       row["name"] = one.name;
       row["types"] = one.types;
@@ -248,7 +264,8 @@ void bind_lists(nb::module_& m) {
   });
   m.def("formats", [] {
     std::vector<std::pair<std::string, std::vector<std::string>>> out;
-    for (const caplet::SceneFormat& format : caplet::scene_formats()) out.emplace_back(format.name, format.extensions);
+    for (const caplet::SceneFormat& format : caplet::scene_formats())
+      out.emplace_back(format.name, format.extensions);
     return out;
   });
   m.def(
@@ -258,7 +275,8 @@ void bind_lists(nb::module_& m) {
         run_interruptibly([&] { scene = caplet::import_scene(file, options); }, [] {}, [] {});
         return HeldScene(*std::move(scene));
       },
-      nb::arg("file"), nb::arg("options") = std::map<std::string, std::string>(), "Reads a scene of any known format.");
+      nb::arg("file"), nb::arg("options") = std::map<std::string, std::string>(),
+      "Reads a scene of any known format.");
 }
 
 /// Binds copies, counts, options, size and camera of a scene.
@@ -288,7 +306,8 @@ void bind_settings(nb::class_<HeldScene>& held) {
       .def("set_size", in_turn(&Scene::set_size))
       .def("set_crop", in_turn(&Scene::set_crop))
       .def("widen_to_least", in_turn(&Scene::widen_to_least))
-      .def_prop_rw("spp", in_turn(&Scene::samples_per_pixel), in_turn(&Scene::set_samples_per_pixel))
+      .def_prop_rw("spp", in_turn(&Scene::samples_per_pixel),
+                   in_turn(&Scene::set_samples_per_pixel))
       .def_prop_rw("max_depth", in_turn(&Scene::max_depth), in_turn(&Scene::set_max_depth))
       .def_prop_rw("seed", in_turn(&Scene::seed), in_turn(&Scene::set_seed))
       .def_prop_ro("lights", in_turn(&Scene::lights))
@@ -302,51 +321,67 @@ void bind_settings(nb::class_<HeldScene>& held) {
       .def_prop_ro("fov", in_turn(&Scene::fov))
       .def("set_fov", in_turn(&Scene::set_fov))
       .def("camera", in_turn([](const Scene& scene) { return transform_array(scene.camera()); }))
-      .def("set_camera", in_turn([](Scene& scene, const std::string& type, const nb::dict& given, const Array& transform) {
+      .def("set_camera", in_turn([](Scene& scene, const std::string& type, const nb::dict& given,
+                                    const Array& transform) {
              scene.set_camera(type, parameters_of(given), transform_of(transform));
            }))
       .def_prop_rw("unit", in_turn(&Scene::unit), in_turn(&Scene::set_unit))
       .def("set_color_bar", in_turn(&Scene::set_color_bar))
       .def("set_camera_medium", in_turn(&Scene::set_camera_medium), nb::arg("medium").none())
-      .def("set_option", in_turn([](Scene& scene, const std::string& kind, const std::string& type, const nb::dict& given) {
+      .def("set_option", in_turn([](Scene& scene, const std::string& kind, const std::string& type,
+                                    const nb::dict& given) {
              scene.set_option(statement_named(kind), type, parameters_of(given));
            }));
 }
 
 /// Binds places, materials, textures, media and lights.
 void bind_statements(nb::class_<HeldScene>& held) {
-  held.def("transform", in_turn([](const Scene& scene, std::uint32_t shape) { return transform_array(scene.transform(shape)); }))
-      .def("set_transform",
-           in_turn([](Scene& scene, std::uint32_t shape, const Array& to) { scene.set_transform(shape, transform_of(to)); }))
-      .def("instance", in_turn([](const Scene& scene, std::uint32_t number) { return transform_array(scene.instance(number)); }))
-      .def("set_instance",
-           in_turn([](Scene& scene, std::uint32_t number, const Array& to) { scene.set_instance(number, transform_of(to)); }))
-      .def("add_instances", in_turn([](Scene& scene, const std::string& object, const Array& transforms) {
+  held.def("transform", in_turn([](const Scene& scene, std::uint32_t shape) {
+             return transform_array(scene.transform(shape));
+           }))
+      .def("set_transform", in_turn([](Scene& scene, std::uint32_t shape, const Array& to) {
+             scene.set_transform(shape, transform_of(to));
+           }))
+      .def("instance", in_turn([](const Scene& scene, std::uint32_t number) {
+             return transform_array(scene.instance(number));
+           }))
+      .def("set_instance", in_turn([](Scene& scene, std::uint32_t number, const Array& to) {
+             scene.set_instance(number, transform_of(to));
+           }))
+      .def("add_instances",
+           in_turn([](Scene& scene, const std::string& object, const Array& transforms) {
              return scene.add_instances(object, transforms_of(transforms));
            }))
-      .def("add_material", in_turn([](Scene& scene, const std::string& name, const std::string& type, const nb::dict& given) {
+      .def("add_material", in_turn([](Scene& scene, const std::string& name,
+                                      const std::string& type, const nb::dict& given) {
              return scene.add_material(name, caplet::NamedMaterial{type, parameters_of(given)});
            }))
-      .def("set_material", in_turn([](Scene& scene, std::uint32_t number, const std::string& type, const nb::dict& given) {
+      .def("set_material", in_turn([](Scene& scene, std::uint32_t number, const std::string& type,
+                                      const nb::dict& given) {
              scene.set_material(number, caplet::NamedMaterial{type, parameters_of(given)});
            }))
-      .def("add_texture",
-           in_turn([](Scene& scene, const std::string& type, bool is_float, const nb::dict& given, const Array& transform) {
-             return scene.add_texture({type, is_float, parameters_of(given), transform_of(transform)}).number;
+      .def("add_texture", in_turn([](Scene& scene, const std::string& type, bool is_float,
+                                     const nb::dict& given, const Array& transform) {
+             return scene
+                 .add_texture({type, is_float, parameters_of(given), transform_of(transform)})
+                 .number;
            }))
-      .def("add_medium", in_turn([](Scene& scene, const std::string& name, const std::string& type, const nb::dict& given,
-                                    const Array& transform) {
+      .def("add_medium", in_turn([](Scene& scene, const std::string& name, const std::string& type,
+                                    const nb::dict& given, const Array& transform) {
              return scene.add_medium(name, type, parameters_of(given), transform_of(transform));
            }))
-      .def("add_light", in_turn([](Scene& scene, const std::string& type, const nb::dict& given, const Array& transform) {
+      .def("add_light", in_turn([](Scene& scene, const std::string& type, const nb::dict& given,
+                                   const Array& transform) {
              return scene.add_light(type, parameters_of(given), transform_of(transform));
            }))
       .def("remove_lights", in_turn(&Scene::remove_lights))
       .def("light_scale", in_turn(&Scene::light_scale))
-      .def("set_light", in_turn([](Scene& scene, std::uint32_t light, const std::array<double, 3>& rgb, double scale) {
+      .def("set_light", in_turn([](Scene& scene, std::uint32_t light,
+                                   const std::array<double, 3>& rgb, double scale) {
              scene.set_light(light, caplet::Rgb{rgb[0], rgb[1], rgb[2]}, scale);
            }))
-      .def("set_emission", in_turn([](Scene& scene, std::uint32_t shape, const std::array<double, 3>& rgb, double scale) {
+      .def("set_emission", in_turn([](Scene& scene, std::uint32_t shape,
+                                      const std::array<double, 3>& rgb, double scale) {
              scene.set_emission(shape, caplet::Rgb{rgb[0], rgb[1], rgb[2]}, scale);
            }))
       .def("set_shape_materials", in_turn(&Scene::set_shape_materials));
@@ -354,12 +389,15 @@ void bind_statements(nb::class_<HeldScene>& held) {
 
 /// Binds shapes by parameters, and capsules by arrays.
 void bind_shapes(nb::class_<HeldScene>& held) {
-  held.def("add_shape", in_turn([](Scene& scene, const std::string& type, const nb::dict& given, const nb::dict& options) {
+  held.def("add_shape", in_turn([](Scene& scene, const std::string& type, const nb::dict& given,
+                                   const nb::dict& options) {
              return scene.add_shape(type, parameters_of(given), options_of(options));
            }))
       .def("add_shapes",
-           in_turn([](Scene& scene, const std::string& type, std::size_t count, const nb::dict& shared, const nb::dict& each,
-                      const std::optional<Array>& transforms, const std::optional<Array>& materials, const nb::dict& options) {
+           in_turn([](Scene& scene, const std::string& type, std::size_t count,
+                      const nb::dict& shared, const nb::dict& each,
+                      const std::optional<Array>& transforms, const std::optional<Array>& materials,
+                      const nb::dict& options) {
              const caplet::Parameters of_all = parameters_of(shared), of_each = each_of(each);
              const caplet::ShapeOptions given = options_of(options);
              std::vector<caplet::Transform> places;
@@ -369,27 +407,30 @@ void bind_shapes(nb::class_<HeldScene>& held) {
              const Released released;
              return scene.add_shapes(type, count, of_all, of_each, places, numbers, given);
            }),
-           nb::arg("type"), nb::arg("count"), nb::arg("shared"), nb::arg("each"), nb::arg("transforms").none(),
-           nb::arg("materials").none(), nb::arg("options"))
+           nb::arg("type"), nb::arg("count"), nb::arg("shared"), nb::arg("each"),
+           nb::arg("transforms").none(), nb::arg("materials").none(), nb::arg("options"))
       .def("add_capsules",
-           in_turn([](Scene& scene, std::size_t count, const Array& p0, const Array& p1, const Array& radius0,
-                      const std::optional<Array>& radius1, const std::optional<Array>& materials, const std::optional<Array>& u,
+           in_turn([](Scene& scene, std::size_t count, const Array& p0, const Array& p1,
+                      const Array& radius0, const std::optional<Array>& radius1,
+                      const std::optional<Array>& materials, const std::optional<Array>& u,
                       const nb::dict& options) {
              const caplet::ShapeOptions given = options_of(options);
              const Released released;
-             return scene.add_capsules(capsules_of(p0, p1, radius0, radius1, materials, u, count), given);
+             return scene.add_capsules(capsules_of(p0, p1, radius0, radius1, materials, u, count),
+                                       given);
            }),
-           nb::arg("count"), nb::arg("p0"), nb::arg("p1"), nb::arg("radius0"), nb::arg("radius1").none(),
-           nb::arg("materials").none(), nb::arg("u").none(), nb::arg("options"))
-      .def(
-          "set_capsules",
-          in_turn([](Scene& scene, std::uint32_t shape, std::size_t count, const Array& p0, const Array& p1, const Array& radius0,
-                     const std::optional<Array>& radius1, const std::optional<Array>& materials, const std::optional<Array>& u) {
-            const Released released;
-            scene.set_capsules(shape, capsules_of(p0, p1, radius0, radius1, materials, u, count));
-          }),
-          nb::arg("shape"), nb::arg("count"), nb::arg("p0"), nb::arg("p1"), nb::arg("radius0"), nb::arg("radius1").none(),
-          nb::arg("materials").none(), nb::arg("u").none())
+           nb::arg("count"), nb::arg("p0"), nb::arg("p1"), nb::arg("radius0"),
+           nb::arg("radius1").none(), nb::arg("materials").none(), nb::arg("u").none(),
+           nb::arg("options"))
+      .def("set_capsules",
+           in_turn([](Scene& scene, std::uint32_t shape, std::size_t count, const Array& p0,
+                      const Array& p1, const Array& radius0, const std::optional<Array>& radius1,
+                      const std::optional<Array>& materials, const std::optional<Array>& u) {
+             const Released released;
+             scene.set_capsules(shape, capsules_of(p0, p1, radius0, radius1, materials, u, count));
+           }),
+           nb::arg("shape"), nb::arg("count"), nb::arg("p0"), nb::arg("p1"), nb::arg("radius0"),
+           nb::arg("radius1").none(), nb::arg("materials").none(), nb::arg("u").none())
       .def("capsule_arrays", in_turn([](const Scene& scene, std::uint32_t shape) {
              caplet::CapsuleArrays arrays = scene.capsule_arrays(shape);
              if (arrays.radius1.empty()) arrays.radius1 = arrays.radius0;
@@ -397,15 +438,17 @@ void bind_shapes(nb::class_<HeldScene>& held) {
              return nb::make_tuple(rows_array(arrays.p0), rows_array(arrays.p1),
                                    array_of<float, 1>(std::move(arrays.radius0), {count}),
                                    array_of<float, 1>(std::move(arrays.radius1), {count}),
-                                   array_of<std::uint32_t, 1>(std::move(arrays.materials), {named}), rows_array(arrays.u));
+                                   array_of<std::uint32_t, 1>(std::move(arrays.materials), {named}),
+                                   rows_array(arrays.u));
            }));
 }
 
 /// Binds meshes by arrays.
 void bind_meshes(nb::class_<HeldScene>& held) {
   held.def("add_mesh",
-           in_turn([](Scene& scene, const Array& positions, const Array& triangles, const std::optional<Array>& normals,
-                      const std::optional<Array>& uvs, const nb::dict& options) {
+           in_turn([](Scene& scene, const Array& positions, const Array& triangles,
+                      const std::optional<Array>& normals, const std::optional<Array>& uvs,
+                      const nb::dict& options) {
              const caplet::ShapeOptions given = options_of(options);
              caplet::MeshArrays mesh;
              mesh.positions = rows_of<3>(positions, positions.shape(0));
@@ -417,7 +460,8 @@ void bind_meshes(nb::class_<HeldScene>& held) {
              const Released released;
              return scene.add_mesh(mesh, given);
            }),
-           nb::arg("positions"), nb::arg("triangles"), nb::arg("normals").none(), nb::arg("uvs").none(), nb::arg("options"));
+           nb::arg("positions"), nb::arg("triangles"), nb::arg("normals").none(),
+           nb::arg("uvs").none(), nb::arg("options"));
 }
 
 }  // namespace

@@ -25,8 +25,9 @@ struct UnderWay {
 std::atomic<UnderWay*> under_way = new UnderWay;
 std::atomic<int> forks = 0;  // since the process with the first ancestor that has this module
 
-/// Ends the process without what libraries of the parent do at an exit. Some wait there for threads that a child does not have:
-/// log4cplus, which Debian 12's OpenImageIO brings by way of OpenVDB. Python itself has ended before.
+/// Ends the process without what libraries of the parent do at an exit. Some wait there for threads
+/// that a child does not have: log4cplus, which Debian 12's OpenImageIO brings by way of OpenVDB.
+/// Python itself has ended before.
 void leave(int status, void*) {
   std::fflush(nullptr);
   ::_exit(status);
@@ -48,9 +49,12 @@ void in_child() {
   throw nb::python_error();
 }
 
-bool is_ending(const UnderWay& now) { return now.exiting && *now.exiting != std::this_thread::get_id(); }
+bool is_ending(const UnderWay& now) {
+  return now.exiting && *now.exiting != std::this_thread::get_id();
+}
 
-/// Ends what is under way in daemon threads: Python is about to end them, and the process to take OpenCL down beneath them.
+/// Ends what is under way in daemon threads: Python is about to end them, and the process to take
+/// OpenCL down beneath them.
 void at_exit() {
   UnderWay& now = *under_way;
   {
@@ -62,7 +66,9 @@ void at_exit() {
     {
       Released released;  // is among them itself
       std::unique_lock lock(now.mutex);
-      if (now.ended.wait_for(lock, std::chrono::milliseconds(50), [&] { return now.all.size() == 1; })) return;
+      if (now.ended.wait_for(lock, std::chrono::milliseconds(50),
+                             [&] { return now.all.size() == 1; }))
+        return;
     }
     if (PyErr_CheckSignals() != 0) throw nb::python_error();
   }
@@ -129,7 +135,8 @@ bool Lock::try_lock() {
 void Lock::lock() {
   if (try_lock()) return;
   if (fork_ != forks)
-    throw caplet::RunError("another thread was using this when the process was forked: it is not to be had here");
+    throw caplet::RunError(
+        "another thread was using this when the process was forked: it is not to be had here");
   mutex_.lock();
   fork_ = forks.load();
 }

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Work without the interpreter's lock, in threads that signals, the interpreter's end and fork(2) may come upon.
+// Work without the interpreter's lock, in threads that signals, the interpreter's end and fork(2)
+// may come upon.
 #pragma once
 
 #include <caplet/error.h>
@@ -21,16 +22,19 @@ namespace caplet_python {
 
 namespace nb = nanobind;
 
-/// The end of the interpreter waits for work that is under way (docs/python.md). Has Python call what waits.
+/// The end of the interpreter waits for work that is under way (docs/python.md). Has Python call
+/// what waits.
 void bind_threads(nb::module_& m);
 
-/// Where Python before 3.14 ends a daemon thread: the thread stays here until the process ends. Its frames cannot be unwound, as
-/// Python would have it, for those of the binding catch all exceptions.
+/// Where Python before 3.14 ends a daemon thread: the thread stays here until the process ends. Its
+/// frames cannot be unwound, as Python would have it, for those of the binding catch all
+/// exceptions.
 [[noreturn]] void stay_here();
 
-/// Calls `use`, in which Python may end the thread. A forced unwinding is caught by a reference to nothing, which UBSan would
-/// report. It leaves the stack marked as that of the frames it has ended: ASan, which clears the marks before a call that does
-/// not return, reads some of them there and would report those.
+/// Calls `use`, in which Python may end the thread. A forced unwinding is caught by a reference to
+/// nothing, which UBSan would report. It leaves the stack marked as that of the frames it has
+/// ended: ASan, which clears the marks before a call that does not return, reads some of them there
+/// and would report those.
 template <class Use>
 __attribute__((noinline, no_sanitize("address", "undefined"))) void unless_ended(Use&& use) {
   try {
@@ -40,8 +44,9 @@ __attribute__((noinline, no_sanitize("address", "undefined"))) void unless_ended
   }
 }
 
-/// Lets other threads of Python run as long as the object lives. The interpreter's end calls `stop`, from its thread, and waits
-/// until the object is gone or has ended(). Raises SystemExit in a daemon thread that comes after that.
+/// Lets other threads of Python run as long as the object lives. The interpreter's end calls
+/// `stop`, from its thread, and waits until the object is gone or has ended(). Raises SystemExit in
+/// a daemon thread that comes after that.
 class Released {
  public:
   explicit Released(std::function<void()> stop = {});
@@ -66,7 +71,8 @@ class Released {
     give();
   }
 
-  /// Whether this process was forked while the object lived: other threads that had to do with it are not here.
+  /// Whether this process was forked while the object lived: other threads that had to do with it
+  /// are not here.
   bool is_forked() const;
 
   /// Raises what signals raise in Python, and SystemExit where the interpreter ends.
@@ -80,8 +86,8 @@ class Released {
   PyThreadState* state_ = nullptr;
 };
 
-/// A mutex that is waited for without the interpreter's lock. Where a thread held it when the process was forked, which the child
-/// does not have, the child gets a RunError.
+/// A mutex that is waited for without the interpreter's lock. Where a thread held it when the
+/// process was forked, which the child does not have, the child gets a RunError.
 class Lock {
  public:
   void lock();
@@ -105,8 +111,9 @@ class Turn {
   Lock& lock_;
 };
 
-/// Runs `work` on a thread of its own, the interpreter's lock released, and looks 20 times a second for signals: one that raises
-/// calls `stop`, and is raised when the work has ended. `tick` is called with the lock as often.
+/// Runs `work` on a thread of its own, the interpreter's lock released, and looks 20 times a second
+/// for signals: one that raises calls `stop`, and is raised when the work has ended. `tick` is
+/// called with the lock as often.
 template <class Work, class Stop, class Tick>
 void run_interruptibly(Work&& work, Stop&& stop, Tick&& tick) {
   std::mutex mutex;
@@ -142,9 +149,12 @@ void run_interruptibly(Work&& work, Stop&& stop, Tick&& tick) {
         raised = std::current_exception();
       }
       if (released.is_forked()) {
-        new std::thread(std::move(worker));  // the parent's, which cannot be waited for: its object may not be destroyed
+        new std::thread(std::move(
+            worker));  // the parent's, which cannot be waited for: its object may not be destroyed
         if (raised) std::rethrow_exception(raised);
-        throw caplet::RunError("this process was forked while a call of caplet was under way, which does not go on in it");
+        throw caplet::RunError(
+            "this process was forked while a call of caplet was under way, which does not go on in "
+            "it");
       }
       if (raised) stop();
     }

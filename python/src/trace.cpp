@@ -35,10 +35,12 @@ constexpr std::size_t rays_in_a_chunk = std::size_t{1} << 18;
 /// Rays [first, first + count) of arrays whose first dimension may be 1, which is repeated.
 class Rays {
  public:
-  Rays(std::size_t count, const Array& origins, const Array& directions, const Array& t_min, const Array& t_max)
+  Rays(std::size_t count, const Array& origins, const Array& directions, const Array& t_min,
+       const Array& t_max)
       : count_(count), origins_(origins), directions_(directions), t_min_(t_min), t_max_(t_max) {
     for (const Array* points : {&origins, &directions})
-      if (points->ndim() != 2 || points->shape(1) != 3 || (points->shape(0) != count && points->shape(0) != 1))
+      if (points->ndim() != 2 || points->shape(1) != 3 ||
+          (points->shape(0) != count && points->shape(0) != 1))
         throw nb::value_error("rays are arrays of shape (n, 3)");
     for (const Array* ends : {&t_min, &t_max})
       if (ends->ndim() != 1 || (ends->shape(0) != count && ends->shape(0) != 1))
@@ -54,17 +56,20 @@ class Rays {
   }
 
  private:
-  static void points(const Array& from, std::size_t first, std::span<Ray> out, std::array<float, 3> Ray::*to) {
+  static void points(const Array& from, std::size_t first, std::span<Ray> out,
+                     std::array<float, 3> Ray::*to) {
     const std::size_t step = from.shape(0) == 1 ? 0 : 1;
     with_floats(from, [&](auto read) {
       for (std::size_t i = 0; i < out.size(); ++i)
-        for (std::size_t k = 0; k < 3; ++k) (out[i].*to)[k] = static_cast<float>(read((first + i) * step, k));
+        for (std::size_t k = 0; k < 3; ++k)
+          (out[i].*to)[k] = static_cast<float>(read((first + i) * step, k));
     });
   }
   static void ends(const Array& from, std::size_t first, std::span<Ray> out, float Ray::*to) {
     const std::size_t step = from.shape(0) == 1 ? 0 : 1;
     with_floats(from, [&](auto read) {
-      for (std::size_t i = 0; i < out.size(); ++i) out[i].*to = static_cast<float>(read((first + i) * step, 0));
+      for (std::size_t i = 0; i < out.size(); ++i)
+        out[i].*to = static_cast<float>(read((first + i) * step, 0));
     });
   }
 
@@ -74,8 +79,9 @@ class Rays {
 
 /// `out`: bytes of as many crossings, which a structured array lends.
 template <class Owner>
-void nearest(Owner& held, std::size_t count, const Array& origins, const Array& directions, const Array& t_min,
-             const Array& t_max, nb::ndarray<std::uint8_t, nb::ndim<1>, nb::c_contig, nb::device::cpu>& out) {
+void nearest(Owner& held, std::size_t count, const Array& origins, const Array& directions,
+             const Array& t_min, const Array& t_max,
+             nb::ndarray<std::uint8_t, nb::ndim<1>, nb::c_contig, nb::device::cpu>& out) {
   const Rays rays(count, origins, directions, t_min, t_max);
   if (out.shape(0) != count * sizeof(Crossing)) throw nb::value_error("room for other rays");
   std::uint8_t* const to = out.data();
@@ -89,22 +95,23 @@ void nearest(Owner& held, std::size_t count, const Array& origins, const Array& 
     rays.read(first, chunk);
     hits.resize(chunk.size());
     held.session.nearest(chunk, hits);
-    for (std::size_t i = 0; i < hits.size(); ++i) hits[i].ray = static_cast<std::uint32_t>(first + i);
+    for (std::size_t i = 0; i < hits.size(); ++i)
+      hits[i].ray = static_cast<std::uint32_t>(first + i);
     std::memcpy(to + first * sizeof(Crossing), hits.data(), hits.size() * sizeof(Crossing));
   }
 }
 
 template <class Owner>
-auto crossings(Owner& held, std::size_t count, const Array& origins, const Array& directions, const Array& t_min,
-               const Array& t_max, std::size_t most) {
+auto crossings(Owner& held, std::size_t count, const Array& origins, const Array& directions,
+               const Array& t_min, const Array& t_max, std::size_t most) {
   const Rays rays(count, origins, directions, t_min, t_max);
   std::vector<std::uint8_t> bytes;
   {
     Released released;
     const auto turn = turn_of(held);
     std::vector<Ray> chunk;
-    const std::size_t at_once =
-        std::clamp<std::size_t>((std::size_t{1} << 22) / std::max<std::size_t>(most, 1), 1, rays_in_a_chunk);
+    const std::size_t at_once = std::clamp<std::size_t>(
+        (std::size_t{1} << 22) / std::max<std::size_t>(most, 1), 1, rays_in_a_chunk);
     for (std::size_t first = 0; first < count; first += at_once) {
       if (first > 0) released.check_signals();
       chunk.resize(std::min(at_once, count - first));
@@ -113,7 +120,8 @@ auto crossings(Owner& held, std::size_t count, const Array& origins, const Array
       for (Crossing& hit : hits) hit.ray += static_cast<std::uint32_t>(first);
       const std::size_t before = bytes.size();
       bytes.resize(before + hits.size() * sizeof(Crossing));
-      if (!hits.empty()) std::memcpy(bytes.data() + before, hits.data(), hits.size() * sizeof(Crossing));
+      if (!hits.empty())
+        std::memcpy(bytes.data() + before, hits.data(), hits.size() * sizeof(Crossing));
     }
   }
   const std::size_t size = bytes.size();
@@ -143,7 +151,8 @@ void bind_trace(nb::module_& m) {
   m.attr("crossing_bytes") = sizeof(Crossing);
   m.def("crossing_layout", [] {
     nb::list out;
-    for (const auto& [name, type, count, offset] : layout()) out.append(nb::make_tuple(name, type, count, offset));
+    for (const auto& [name, type, count, offset] : layout())
+      out.append(nb::make_tuple(name, type, count, offset));
     return out;
   });
   nb::class_<HeldPicker>(m, "Picker")

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Temporary files of processes that were killed: the next one that writes to the same name removes them, and no others.
+// Temporary files of processes that were killed: the next one that writes to the same name removes
+// them, and no others.
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -32,11 +33,14 @@ std::string text_of(const fs::path& file) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-void put(const fs::path& file, const std::string& text) { std::ofstream(file, std::ios::binary) << text; }
+void put(const fs::path& file, const std::string& text) {
+  std::ofstream(file, std::ios::binary) << text;
+}
 
 std::vector<std::string> names_in(const fs::path& folder) {
   std::vector<std::string> out;
-  for (const auto& entry : fs::directory_iterator(folder)) out.push_back(entry.path().filename().string());
+  for (const auto& entry : fs::directory_iterator(folder))
+    out.push_back(entry.path().filename().string());
   std::ranges::sort(out);
   return out;
 }
@@ -103,12 +107,13 @@ TEST(Leftovers, OfLivingProcessesStay) {
 
 TEST(Leftovers, AreNoFilesOfOtherNames) {
   const fs::path folder = test::temporary_folder();
-  const std::vector<std::string> others = {".a.1.part.exr",       ".a.1.2.3.part.exr",   ".a.1.x.part.exr",  ".a..1.part.exr",
-                                           ".a.1.2.part.png",     ".a.1.2.part",         ".ab.1.2.part.exr", "a.1.2.part.exr",
-                                           "..a.1.2.part.exr",    ".a.1.2.part.exr.exr", ".a.-1.2.part.exr", ".a.1. 2.part.exr",
-                                           ".A.1.2.part.exr",     ".a.1.2.exr",          ".1.2.part.exr",    ".a.1.2.parted.exr",
-                                           ".a.1.2.partexr",      ".b.a.1.2.part.exr",   ".part.exr",        ".a.part.exr",
-                                           ".a.1.2.part.1.2.exr", ".a.1.2.part.part",    ".a.1.2.part.exr.x"};
+  const std::vector<std::string> others = {
+      ".a.1.part.exr",       ".a.1.2.3.part.exr",   ".a.1.x.part.exr",  ".a..1.part.exr",
+      ".a.1.2.part.png",     ".a.1.2.part",         ".ab.1.2.part.exr", "a.1.2.part.exr",
+      "..a.1.2.part.exr",    ".a.1.2.part.exr.exr", ".a.-1.2.part.exr", ".a.1. 2.part.exr",
+      ".A.1.2.part.exr",     ".a.1.2.exr",          ".1.2.part.exr",    ".a.1.2.parted.exr",
+      ".a.1.2.partexr",      ".b.a.1.2.part.exr",   ".part.exr",        ".a.part.exr",
+      ".a.1.2.part.1.2.exr", ".a.1.2.part.part",    ".a.1.2.part.exr.x"};
   for (const std::string& name : others) put(folder / name, "of somebody");
   fs::create_directory(folder / ".a.1.3.part.exr");
   put(folder / "kept", "kept");
@@ -117,7 +122,8 @@ TEST(Leftovers, AreNoFilesOfOtherNames) {
   put(folder / ".a.1.6.part.exr", "left");
   write_bytes(folder / "a.exr", "whole");
   std::vector<std::string> there = others;
-  there.insert(there.end(), {".a.1.3.part.exr", ".a.1.4.part.exr", ".a.1.5.part.exr", "kept", "a.exr"});
+  there.insert(there.end(),
+               {".a.1.3.part.exr", ".a.1.4.part.exr", ".a.1.5.part.exr", "kept", "a.exr"});
   EXPECT_THAT(names_in(folder), UnorderedElementsAreArray(there));
   EXPECT_EQ(text_of(folder / "kept"), "kept");
 }
@@ -131,7 +137,8 @@ TEST(Leftovers, OfTheSameNumbersAreNotInTheWay) {
   const int number = std::stoi(name.substr(begin, end - begin));
   std::vector<int> held;
   for (int i = 1; i <= 3; ++i) {
-    const fs::path next = folder / (name.substr(0, begin) + std::to_string(number + i) + name.substr(end));
+    const fs::path next =
+        folder / (name.substr(0, begin) + std::to_string(number + i) + name.substr(end));
     held.push_back(::open(next.c_str(), O_CREAT | O_WRONLY, 0600));
     ASSERT_EQ(::flock(held.back(), LOCK_EX | LOCK_NB), 0);
   }

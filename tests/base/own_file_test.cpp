@@ -20,13 +20,15 @@ namespace fs = std::filesystem;
 
 TEST(OwnFile, IsThisProgram) { EXPECT_EQ(own_file(), fs::read_symlink("/proc/self/exe")); }
 
-/// The program starts itself under the name of another file, as the script `caplet` of a wheel does.
+/// The program starts itself under the name of another file, as the script `caplet` of a wheel
+/// does.
 TEST(OwnFile, IsNotWhatTheProgramIsCalledBy) {
   if (std::getenv("CAPLET_OWN_FILE") != nullptr) {
     EXPECT_EQ(own_file(), fs::read_symlink("/proc/self/exe"));
     return;
   }
-  std::string script = (test::temporary_folder() / "caplet").string(), filter = "--gtest_filter=OwnFile.IsNotWhat*";
+  std::string script = (test::temporary_folder() / "caplet").string(),
+              filter = "--gtest_filter=OwnFile.IsNotWhat*";
   std::ofstream(script) << "#!/bin/sh\n";
   const pid_t child = ::fork();
   if (child == 0) {

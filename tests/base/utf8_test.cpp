@@ -42,12 +42,14 @@ TEST(ValidUtf8, LeavesGoodTextAlone) {
 TEST(ValidUtf8, HasAReplacementForEveryBrokenPart) {
   for (const test::Broken& one : test::broken_utf8) {
     EXPECT_EQ(valid_utf8(one.bytes), one.valid) << one.what;
-    EXPECT_EQ(valid_utf8("a" + std::string(one.bytes) + "z"), "a" + std::string(one.valid) + "z") << one.what;
+    EXPECT_EQ(valid_utf8("a" + std::string(one.bytes) + "z"), "a" + std::string(one.valid) + "z")
+        << one.what;
     EXPECT_EQ(valid_utf8(valid_utf8(one.bytes)), one.valid) << one.what;
   }
 }
 
-/// All text of one and two bytes, and much of up to six, of bytes that sequences begin and go on with.
+/// All text of one and two bytes, and much of up to six, of bytes that sequences begin and go on
+/// with.
 TEST(ValidUtf8, IsWhatJsonHas) {
   const auto check = [](const std::string& text) {
     const nlohmann::json written = text;
@@ -60,14 +62,17 @@ TEST(ValidUtf8, IsWhatJsonHas) {
   };
   for (int first = 0; first < 256; ++first) {
     check({static_cast<char>(first)});
-    for (int second = 0; second < 256; ++second) check({static_cast<char>(first), static_cast<char>(second)});
+    for (int second = 0; second < 256; ++second)
+      check({static_cast<char>(first), static_cast<char>(second)});
   }
   std::mt19937 engine(9);
-  constexpr std::array<std::uint8_t, 20> telling{'a',  0x7f, 0x80, 0x8f, 0x90, 0x9f, 0xa0, 0xbf, 0xc0, 0xc2,
-                                                 0xdf, 0xe0, 0xe1, 0xed, 0xef, 0xf0, 0xf1, 0xf4, 0xf5, 0xff};
+  constexpr std::array<std::uint8_t, 20> telling{'a',  0x7f, 0x80, 0x8f, 0x90, 0x9f, 0xa0,
+                                                 0xbf, 0xc0, 0xc2, 0xdf, 0xe0, 0xe1, 0xed,
+                                                 0xef, 0xf0, 0xf1, 0xf4, 0xf5, 0xff};
   for (int i = 0; i < 100000; ++i) {
     std::string text;
-    for (auto k = 1 + engine() % 6; k > 0; --k) text += static_cast<char>(telling[engine() % telling.size()]);
+    for (auto k = 1 + engine() % 6; k > 0; --k)
+      text += static_cast<char>(telling[engine() % telling.size()]);
     check(text);
   }
 }

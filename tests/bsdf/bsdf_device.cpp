@@ -114,14 +114,17 @@ std::vector<float> flat(const std::vector<Direction>& directions) {
 }  // namespace
 
 std::vector<float> BsdfParameters::values() const {
-  return {reflectance, eta,           k,   alpha_u,   alpha_v, transmittance, coat_eta, coat_alpha_u, coat_alpha_v,
-          thickness,   albedo,        g,   max_depth, samples, tilt,          metallic, transmission, roughness,
-          tint,        normal_tinted, coat};
+  return {reflectance,  eta,           k,        alpha_u,
+          alpha_v,      transmittance, coat_eta, coat_alpha_u,
+          coat_alpha_v, thickness,     albedo,   g,
+          max_depth,    samples,       tilt,     metallic,
+          transmission, roughness,     tint,     normal_tinted,
+          coat};
 }
 
 Direction direction(double theta, double phi) {
-  return {static_cast<float>(std::sin(theta) * std::cos(phi)), static_cast<float>(std::sin(theta) * std::sin(phi)),
-          static_cast<float>(std::cos(theta))};
+  return {static_cast<float>(std::sin(theta) * std::cos(phi)),
+          static_cast<float>(std::sin(theta) * std::sin(phi)), static_cast<float>(std::cos(theta))};
 }
 
 std::vector<float> random_numbers(std::size_t count, unsigned seed) {
@@ -132,9 +135,11 @@ std::vector<float> random_numbers(std::size_t count, unsigned seed) {
 }
 
 BsdfOnDevice::BsdfOnDevice(const RowMasks& rows)
-    : device_(test_device()), program_(Program::from_source(device_, "bsdf_test", flatten_kernels(kernels, rows), "")) {}
+    : device_(test_device()),
+      program_(Program::from_source(device_, "bsdf_test", flatten_kernels(kernels, rows), "")) {}
 
-cl::Kernel BsdfOnDevice::kernel(const char* name, const BsdfParameters& bsdf, const Buffer<float>& values) const {
+cl::Kernel BsdfOnDevice::kernel(const char* name, const BsdfParameters& bsdf,
+                                const Buffer<float>& values) const {
   cl::Kernel kernel = program_.kernel(name);
   kernel.setArg(0, cl_uint{bsdf.kind});
   kernel.setArg(1, cl_uint{bsdf.flags});
@@ -143,7 +148,8 @@ cl::Kernel BsdfOnDevice::kernel(const char* name, const BsdfParameters& bsdf, co
   return kernel;
 }
 
-std::vector<SampleRow> BsdfOnDevice::sample(const BsdfParameters& bsdf, const Direction& wo, const std::vector<float>& u) const {
+std::vector<SampleRow> BsdfOnDevice::sample(const BsdfParameters& bsdf, const Direction& wo,
+                                            const std::vector<float>& u) const {
   const std::size_t count = u.size() / 3;
   const Buffer<float> numbers(device_, std::span<const float>(u));
   const Buffer<float> out(device_, 12 * count);
@@ -164,7 +170,8 @@ std::vector<SampleRow> BsdfOnDevice::sample(const BsdfParameters& bsdf, const Di
   return rows;
 }
 
-std::vector<EvalRow> BsdfOnDevice::evaluate(const BsdfParameters& bsdf, const std::vector<Direction>& wo,
+std::vector<EvalRow> BsdfOnDevice::evaluate(const BsdfParameters& bsdf,
+                                            const std::vector<Direction>& wo,
                                             const std::vector<Direction>& wi) const {
   const std::size_t count = wo.size();
   const std::vector<float> wo_values = flat(wo), wi_values = flat(wi);
@@ -181,12 +188,13 @@ std::vector<EvalRow> BsdfOnDevice::evaluate(const BsdfParameters& bsdf, const st
   launch(device_, run, count, 64);
   const std::vector<float> values = out.read();
   std::vector<EvalRow> rows(count);
-  for (std::size_t i = 0; i < count; ++i) rows[i] = {values[4 * i], values[4 * i + 1], values[4 * i + 2], values[4 * i + 3]};
+  for (std::size_t i = 0; i < count; ++i)
+    rows[i] = {values[4 * i], values[4 * i + 1], values[4 * i + 2], values[4 * i + 3]};
   return rows;
 }
 
-std::vector<float> BsdfOnDevice::integrate(const BsdfParameters& bsdf, const Direction& wo, int rows, int columns,
-                                           int steps) const {
+std::vector<float> BsdfOnDevice::integrate(const BsdfParameters& bsdf, const Direction& wo,
+                                           int rows, int columns, int steps) const {
   const auto count = static_cast<std::size_t>(rows * columns);
   const Buffer<float> out(device_, 2 * count);
   const std::vector<float> values_of_bsdf = bsdf.values();

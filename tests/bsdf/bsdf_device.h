@@ -20,9 +20,11 @@ struct BsdfParameters {
   uint kind = material_diffuse, flags = 0;
   float reflectance = 1, eta = 1.5f, k = 0, alpha_u = 0, alpha_v = 0;
   float transmittance = 0;
-  float coat_eta = 1.5f, coat_alpha_u = 0, coat_alpha_v = 0, thickness = 0.01f, albedo = 0, g = 0, max_depth = 100, samples = 1;
+  float coat_eta = 1.5f, coat_alpha_u = 0, coat_alpha_v = 0, thickness = 0.01f, albedo = 0, g = 0,
+        max_depth = 100, samples = 1;
   float tilt = 0;  // radians
-  // Principled uses reflectance as base colour, k as sheen, albedo as the coat's colour, coat_alpha_u as the coat's roughness.
+  // Principled uses reflectance as base colour, k as sheen, albedo as the coat's colour,
+  // coat_alpha_u as the coat's roughness.
   float metallic = 0, transmission = 0, roughness = 0, tint = 0, normal_tinted = 0, coat = 0;
 
   /// All of them in the order in which kernels take them.
@@ -52,15 +54,19 @@ class BsdfOnDevice {
   /// Kernels: for the rows of the lists that a mask names.
   explicit BsdfOnDevice(const RowMasks& rows = {});
   /// u: three numbers (component, u.x, u.y) a sample.
-  std::vector<SampleRow> sample(const BsdfParameters& bsdf, const Direction& wo, const std::vector<float>& u) const;
+  std::vector<SampleRow> sample(const BsdfParameters& bsdf, const Direction& wo,
+                                const std::vector<float>& u) const;
   std::vector<EvalRow> evaluate(const BsdfParameters& bsdf, const std::vector<Direction>& wo,
                                 const std::vector<Direction>& wi) const;
-  /// Integrals of the density and of f |cos| over cells of the sphere: `rows` of polar angle times `columns` of azimuth, by the
-  /// midpoint rule over `steps` times `steps` points a cell. First the densities, then the values.
-  std::vector<float> integrate(const BsdfParameters& bsdf, const Direction& wo, int rows, int columns, int steps) const;
+  /// Integrals of the density and of f |cos| over cells of the sphere: `rows` of polar angle times
+  /// `columns` of azimuth, by the midpoint rule over `steps` times `steps` points a cell. First the
+  /// densities, then the values.
+  std::vector<float> integrate(const BsdfParameters& bsdf, const Direction& wo, int rows,
+                               int columns, int steps) const;
 
  private:
-  cl::Kernel kernel(const char* name, const BsdfParameters& bsdf, const Buffer<float>& values) const;
+  cl::Kernel kernel(const char* name, const BsdfParameters& bsdf,
+                    const Buffer<float>& values) const;
   Device device_;
   Program program_;
 };

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Which material stands where a mix is, and what hair makes of its colour: from the scene to the device.
+// Which material stands where a mix is, and what hair makes of its colour: from the scene to the
+// device.
 #include <gtest/gtest.h>
 
 #include <bit>
@@ -41,7 +42,8 @@ std::vector<float> look(const std::vector<Material>& materials, std::size_t coun
   FlatScene flat = lower(scene);
   flat.spectrum_tables.push_back(0);  // never empty
   const Device& device = test_device();
-  static const Program program = Program::from_source(device, "choice", flatten_kernels(kernel_text), "");
+  static const Program program =
+      Program::from_source(device, "choice", flatten_kernels(kernel_text), "");
   const Buffer<MaterialRecord> records(device, std::span<const MaterialRecord>(flat.materials));
   const Buffer<SpectrumRecord> spectra(device, std::span<const SpectrumRecord>(flat.spectra));
   const Buffer<float> tables(device, std::span<const float>(flat.spectrum_tables)),
@@ -65,9 +67,10 @@ Material of(decltype(Material::model) model) {
 
 // A quarter of material 1, and of the rest (a mix again) three fifths are of 3 and two fifths of 2.
 TEST(Mix, ChoosesByItsAmount) {
-  const std::vector<Material> materials = {of(MixMaterial{{4, 1}, 0.25}), of(DiffuseMaterial{ConstantSpectrum{0.1}}),
-                                           of(DiffuseMaterial{ConstantSpectrum{0.2}}), of(DiffuseMaterial{ConstantSpectrum{0.3}}),
-                                           of(MixMaterial{{2, 3}, 0.6})};
+  const std::vector<Material> materials = {
+      of(MixMaterial{{4, 1}, 0.25}), of(DiffuseMaterial{ConstantSpectrum{0.1}}),
+      of(DiffuseMaterial{ConstantSpectrum{0.2}}), of(DiffuseMaterial{ConstantSpectrum{0.3}}),
+      of(MixMaterial{{2, 3}, 0.6})};
   const std::size_t count = 4000;
   const std::vector<float> rows = look(materials, count);
   std::map<int, int> counts;
@@ -83,12 +86,14 @@ TEST(Mix, ChoosesByItsAmount) {
 
 TEST(Mix, AllOfOne) {
   for (const double amount : {0.0, 1.0}) {
-    const std::vector<float> rows = look({of(MixMaterial{{1, 2}, amount}), of(DiffuseMaterial{}), of(DiffuseMaterial{})}, 1000);
+    const std::vector<float> rows =
+        look({of(MixMaterial{{1, 2}, amount}), of(DiffuseMaterial{}), of(DiffuseMaterial{})}, 1000);
     for (std::size_t i = 0; i < 1000; ++i) EXPECT_EQ(rows[3 * i], amount == 0 ? 1.0f : 2.0f);
   }
 }
 
-// Chiang et al. 2016, equation 9, at beta_n 0.3: 5.969 - 0.215 b + 2.532 b^2 - 10.73 b^3 + 5.574 b^4 + 0.245 b^5 = 5.88841.
+// Chiang et al. 2016, equation 9, at beta_n 0.3: 5.969 - 0.215 b + 2.532 b^2 - 10.73 b^3 + 5.574
+// b^4 + 0.245 b^5 = 5.88841.
 TEST(Hair, ColourBecomesAbsorption) {
   HairMaterial colored;
   colored.reflectance = ConstantSpectrum{0.4};

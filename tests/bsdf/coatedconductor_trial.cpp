@@ -23,9 +23,9 @@ BsdfTrial coatedconductor_trial() {
   BsdfParameters under_haze = metal("coatedconductor under haze", 0.2f, 0, 0);
   under_haze.thickness = 0.5f;
   under_haze.albedo = 0.8f;
-  for (const BsdfParameters& one :
-       {metal("coatedconductor clear", 0, 0.3f, 0.3f), metal("coatedconductor rough", 0.2f, 0.2f, 0.4f),
-        metal("coatedconductor mirror", 0.2f, 0, 0), under_haze})
+  for (const BsdfParameters& one : {metal("coatedconductor clear", 0, 0.3f, 0.3f),
+                                    metal("coatedconductor rough", 0.2f, 0.2f, 0.4f),
+                                    metal("coatedconductor mirror", 0.2f, 0, 0), under_haze})
     trial.cases.push_back({one, thetas});
   // No interface: the metal alone.
   for (const float alpha : {0.2f, 0.5f}) {
@@ -34,7 +34,8 @@ BsdfTrial coatedconductor_trial() {
     bare.thickness = 1e-30f;
     for (const auto& [o, i] : {std::pair(0.2, 0.5), std::pair(1.1, 0.8), std::pair(0.6, 1.4)}) {
       const Direction wo = direction(o, 0.3), wi = direction(i, 2.6);
-      trial.values.push_back({bare, wo, wi, microfacets(wo, wi, double{alpha}, double{alpha}, {0.2, 3.9}), 0, 1e-4});
+      trial.values.push_back(
+          {bare, wo, wi, microfacets(wo, wi, double{alpha}, double{alpha}, {0.2, 3.9}), 0, 1e-4});
     }
   }
   CoatedConductorMaterial model;
@@ -42,7 +43,9 @@ BsdfTrial coatedconductor_trial() {
   model.k = ConstantSpectrum{3.9};
   trial.model.model = model;
   trial.most = [](const BsdfParameters&, bool) { return 1.0; };
-  trial.steps = [](const BsdfParameters&, double cos_theta) { return std::abs(cos_theta) < 0.3 ? 40 : 20; };
+  trial.steps = [](const BsdfParameters&, double cos_theta) {
+    return std::abs(cos_theta) < 0.3 ? 40 : 20;
+  };
   return trial;
 }
 

@@ -24,12 +24,13 @@ inline double fresnel(double cos_i, double eta) {
   const double sin2_t = (1 - cos_i * cos_i) / (eta * eta);
   if (sin2_t >= 1) return 1;
   const double cos_t = std::sqrt(1 - sin2_t);
-  const double parallel = (eta * cos_i - cos_t) / (eta * cos_i + cos_t), across = (cos_i - eta * cos_t) / (cos_i + eta * cos_t);
+  const double parallel = (eta * cos_i - cos_t) / (eta * cos_i + cos_t),
+               across = (cos_i - eta * cos_t) / (cos_i + eta * cos_t);
   return 0.5 * (parallel * parallel + across * across);
 }
 
-/// What of diffuse light within an index of eta is reflected back by the boundary: 1 - (1 - r) / eta^2, where r is the
-/// reflectance of diffuse light outside, by the midpoint rule.
+/// What of diffuse light within an index of eta is reflected back by the boundary: 1 - (1 - r) /
+/// eta^2, where r is the reflectance of diffuse light outside, by the midpoint rule.
 inline double internal_reflectance(double eta) {
   const int steps = 100000;
   double outside = 0;

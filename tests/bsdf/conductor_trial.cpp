@@ -26,7 +26,8 @@ BsdfParameters metal(float alpha_u, float alpha_v) {
 
 BsdfTrial conductor_trial() {
   BsdfTrial trial;
-  for (const auto& [u, v] : roughnesses) trial.cases.push_back({metal(u, v), {0.0, 0.7, 1.3, 1.52, std::numbers::pi - 0.7}});
+  for (const auto& [u, v] : roughnesses)
+    trial.cases.push_back({metal(u, v), {0.0, 0.7, 1.3, 1.52, std::numbers::pi - 0.7}});
   for (const auto& [u, v] : roughnesses) {
     BsdfParameters more = metal(u, v);
     more.name += " multiscatter";
@@ -37,13 +38,18 @@ BsdfTrial conductor_trial() {
   trial.unlike = {{uneven, metal(0.1f, 0.45f)}, {uneven, metal(0.4f, 0.1f)}};
   for (const MitsubaRow& row : mitsuba_rows)
     if (row.kind == material_conductor)
-      trial.values.push_back({metal(row.alpha_u, row.alpha_v), row.wo, row.wi,
-                              row.value * correlated_over_separable(row.wo, row.wi, double{row.alpha_u}, double{row.alpha_v}),
-                              row.pdf, mitsuba_tolerance});
+      trial.values.push_back(
+          {metal(row.alpha_u, row.alpha_v), row.wo, row.wi,
+           row.value *
+               correlated_over_separable(row.wo, row.wi, double{row.alpha_u}, double{row.alpha_v}),
+           row.pdf, mitsuba_tolerance});
   for (const auto& [u, v] : roughnesses)
-    for (const auto& [o, i] : {std::pair(0.2, 0.5), std::pair(1.1, 0.8), std::pair(0.6, 1.4), std::pair(1.45, 1.3)}) {
+    for (const auto& [o, i] :
+         {std::pair(0.2, 0.5), std::pair(1.1, 0.8), std::pair(0.6, 1.4), std::pair(1.45, 1.3)}) {
       const Direction wo = direction(o, 0.3), wi = direction(i, 2.9);
-      trial.values.push_back({metal(u, v), wo, wi, microfacets(wo, wi, double{u}, double{v}, {0.2, 3.9}), -1, mitsuba_tolerance});
+      trial.values.push_back({metal(u, v), wo, wi,
+                              microfacets(wo, wi, double{u}, double{v}, {0.2, 3.9}), -1,
+                              mitsuba_tolerance});
     }
   ConductorMaterial model;
   model.eta = ConstantSpectrum{0.2};

@@ -28,7 +28,8 @@ BsdfTrial dielectric_trial() {
   BsdfTrial trial;
   trial.bends = true;
   for (const auto& [u, v] : roughnesses)
-    trial.cases.push_back({glass(u, v), {0.0, 0.7, 1.3, 1.52, std::numbers::pi - 0.4, std::numbers::pi - 1.2}});
+    trial.cases.push_back(
+        {glass(u, v), {0.0, 0.7, 1.3, 1.52, std::numbers::pi - 0.4, std::numbers::pi - 1.2}});
   for (const auto& [u, v] : {std::pair(0.3f, 0.3f), std::pair(0.8f, 0.8f), std::pair(0.1f, 0.4f)}) {
     BsdfParameters more = glass(u, v);
     more.name += " multiscatter";
@@ -38,11 +39,14 @@ BsdfTrial dielectric_trial() {
   trial.unlike = {{glass(0.3f, 0.3f), glass(0.3f, 0.3f, 1.55f)}};
   for (const MitsubaRow& row : mitsuba_rows)
     if (row.kind == material_dielectric)
-      trial.values.push_back({glass(row.alpha_u, row.alpha_v), row.wo, row.wi,
-                              row.value * correlated_over_separable(row.wo, row.wi, double{row.alpha_u}, double{row.alpha_v}),
-                              row.pdf, mitsuba_tolerance});
+      trial.values.push_back(
+          {glass(row.alpha_u, row.alpha_v), row.wo, row.wi,
+           row.value *
+               correlated_over_separable(row.wo, row.wi, double{row.alpha_u}, double{row.alpha_v}),
+           row.pdf, mitsuba_tolerance});
   trial.model.model = DielectricMaterial{};
-  // Radiance that enters the medium of lower index is greater there by the square of their ratio's inverse.
+  // Radiance that enters the medium of lower index is greater there by the square of their ratio's
+  // inverse.
   trial.most = [](const BsdfParameters& bsdf, bool inside) {
     const double into = inside ? 1 / double{bsdf.eta} : double{bsdf.eta};
     return std::max(1.0, 1 / (into * into));

@@ -28,8 +28,10 @@ BsdfTrial diffusetransmission_trial() {
     for (const double theta : {0.1, 0.8, 1.4, 2.0, 3.0}) {
       const Direction wo = direction(theta_o, 0.4), wi = direction(theta, 2);
       const bool reflected = wo[2] * wi[2] > 0;
-      const double cosine = std::abs(double{wi[2]}) / std::numbers::pi, r = double{0.3f}, t = double{0.6f};
-      trial.values.push_back({leaf, wo, wi, cosine * (reflected ? r : t), cosine * (reflected ? r : t) / (r + t), 8 * 0x1p-24});
+      const double cosine = std::abs(double{wi[2]}) / std::numbers::pi, r = double{0.3f},
+                   t = double{0.6f};
+      trial.values.push_back({leaf, wo, wi, cosine * (reflected ? r : t),
+                              cosine * (reflected ? r : t) / (r + t), 8 * 0x1p-24});
     }
   trial.model.model = DiffuseTransmissionMaterial{};
   trial.most = [](const BsdfParameters& bsdf, bool) {

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Materials whose values are estimates: their means against closed forms; the weights of samples against the values over cells of
-// the sphere; reciprocity; what a white one gives back; the same numbers for the same key.
+// Materials whose values are estimates: their means against closed forms; the weights of samples
+// against the values over cells of the sphere; reciprocity; what a white one gives back; the same
+// numbers for the same key.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -26,10 +27,12 @@ Mean mean_of(const std::vector<double>& values) {
   return {sum / n, std::sqrt(std::max(0.0, squares / n - sum * sum / (n * n)) / (n - 1))};
 }
 
-Mean mean_value(const BsdfParameters& bsdf, const Direction& wo, const Direction& wi, std::size_t count) {
+Mean mean_value(const BsdfParameters& bsdf, const Direction& wo, const Direction& wi,
+                std::size_t count) {
   const std::vector<Direction> all_wo(count, wo), all_wi(count, wi);
   std::vector<double> values;
-  for (const EvalRow& row : bsdf_on_device().evaluate(bsdf, all_wo, all_wi)) values.push_back(double{row.value});
+  for (const EvalRow& row : bsdf_on_device().evaluate(bsdf, all_wo, all_wi))
+    values.push_back(double{row.value});
   return mean_of(values);
 }
 
@@ -47,15 +50,17 @@ TEST(BsdfEstimates, MeansAreClosedForms) {
     for (const KnownValue& known : material.trial.values) {
       if (!material.trial.estimates) continue;
       const Mean seen = mean_value(known.bsdf, known.wo, known.wi, 100000);
-      EXPECT_NEAR(seen.value, known.value, 5 * seen.error + known.tolerance * known.value) << known.bsdf.name;
+      EXPECT_NEAR(seen.value, known.value, 5 * seen.error + known.tolerance * known.value)
+          << known.bsdf.name;
       EXPECT_LT(seen.error, 0.01 * known.value) << known.bsdf.name;
     }
 }
 
 constexpr int rows = 32, columns = 32, coarse = 8;
 
-// What samples weigh in each of 8 x 8 cells of the sphere is the integral of the values over it: 60 cells of a case, six
-// deviations each, to which the noise of the integral is added, of eight repetitions. What is delta is in no value.
+// What samples weigh in each of 8 x 8 cells of the sphere is the integral of the values over it: 60
+// cells of a case, six deviations each, to which the noise of the integral is added, of eight
+// repetitions. What is delta is in no value.
 TEST(BsdfEstimates, WeightsAreOfTheValues) {
   constexpr std::size_t count = 100000, repetitions = 8;
   BsdfOnDevice device;
@@ -71,8 +76,9 @@ TEST(BsdfEstimates, WeightsAreOfTheValues) {
       const double polar = std::acos(std::clamp(double{row.wi[2]}, -1.0, 1.0));
       double azimuth = std::atan2(double{row.wi[1]}, double{row.wi[0]});
       if (azimuth < 0) azimuth += 2 * std::numbers::pi;
-      const std::size_t at = cell(std::min(rows - 1, static_cast<int>(polar / std::numbers::pi * rows)),
-                                  std::min(columns - 1, static_cast<int>(azimuth / (2 * std::numbers::pi) * columns)));
+      const std::size_t at =
+          cell(std::min(rows - 1, static_cast<int>(polar / std::numbers::pi * rows)),
+               std::min(columns - 1, static_cast<int>(azimuth / (2 * std::numbers::pi) * columns)));
       sums[at] += double{row.weight};
       squares[at] += double{row.weight} * double{row.weight};
     }
@@ -84,7 +90,8 @@ TEST(BsdfEstimates, WeightsAreOfTheValues) {
       std::vector<double> cells(coarse * coarse, 0.0);
       for (int row = 0; row < rows; ++row)
         for (int column = 0; column < columns; ++column)
-          cells[cell(row, column)] += double{fine[static_cast<std::size_t>(rows * columns + row * columns + column)]};
+          cells[cell(row, column)] +=
+              double{fine[static_cast<std::size_t>(rows * columns + row * columns + column)]};
       for (std::size_t i = 0; i < cells.size(); ++i) integrals[i].push_back(cells[i]);
     }
     double total_seen = 0, total = 0, total_variance = 0;
@@ -98,7 +105,8 @@ TEST(BsdfEstimates, WeightsAreOfTheValues) {
       total += expected.value;
       total_variance += variance;
     }
-    EXPECT_NEAR(total_seen, total, 5 * std::sqrt(total_variance) + 2e-3 * total) << bsdf.name << " at " << theta;
+    EXPECT_NEAR(total_seen, total, 5 * std::sqrt(total_variance) + 2e-3 * total)
+        << bsdf.name << " at " << theta;
     EXPECT_GT(total, 0.02) << bsdf.name;
   });
 }
@@ -109,10 +117,12 @@ TEST(BsdfEstimates, AreReciprocal) {
       for (const BsdfTrial::Case& one : material.trial.cases)
         for (const auto& [o, i] : {std::pair(0.3, 1.1), std::pair(1.3, 0.7)}) {
           const Direction wo = direction(o, 0.3), wi = direction(i, 2.9);
-          const Mean forward = mean_value(one.bsdf, wo, wi, 200000), backward = mean_value(one.bsdf, wi, wo, 200000);
+          const Mean forward = mean_value(one.bsdf, wo, wi, 200000),
+                     backward = mean_value(one.bsdf, wi, wo, 200000);
           const double cos_i = double{wi[2]}, cos_o = double{wo[2]};
           EXPECT_NEAR(forward.value / cos_i, backward.value / cos_o,
-                      5 * std::hypot(forward.error / cos_i, backward.error / cos_o) + 2e-3 * forward.value / cos_i)
+                      5 * std::hypot(forward.error / cos_i, backward.error / cos_o) +
+                          2e-3 * forward.value / cos_i)
               << one.bsdf.name;
         }
 }
@@ -128,7 +138,8 @@ TEST(BsdfEstimates, AWhiteBaseUnderAClearCoatGivesAllBack) {
   fog.g = 0.6f;
   for (const BsdfParameters& one : {white, fog})
     for (const double theta : {0.1, 1.2, 2.3})
-      for (const SampleRow& row : bsdf_on_device().sample(one, direction(theta, 1), random_numbers(3000, 5))) {
+      for (const SampleRow& row :
+           bsdf_on_device().sample(one, direction(theta, 1), random_numbers(3000, 5))) {
         ASSERT_EQ(row.scattered, 1) << theta;
         ASSERT_NEAR(row.weight, 1, 1e-5) << theta;
       }
@@ -138,7 +149,8 @@ TEST(BsdfEstimates, AWhiteBaseUnderAClearCoatGivesAllBack) {
 TEST(BsdfEstimates, StatedLosses) {
   const auto kept = [](const BsdfParameters& bsdf) {
     std::vector<double> weights;
-    for (const SampleRow& row : bsdf_on_device().sample(bsdf, direction(0.4, 1), random_numbers(300000, 5)))
+    for (const SampleRow& row :
+         bsdf_on_device().sample(bsdf, direction(0.4, 1), random_numbers(300000, 5)))
       weights.push_back(double{row.weight});
     return mean_of(weights);
   };
@@ -146,7 +158,8 @@ TEST(BsdfEstimates, StatedLosses) {
   BsdfParameters white = coat("white", material_coateddiffuse, 0);
   white.thickness = 1e-30f;
   white.max_depth = 10;
-  const double in = 1 - fresnel(std::cos(0.4), 1.5), lost = in * std::pow(internal_reflectance(1.5), 5);
+  const double in = 1 - fresnel(std::cos(0.4), 1.5),
+               lost = in * std::pow(internal_reflectance(1.5), 5);
   const Mean seen = kept(white);
   EXPECT_NEAR(seen.value, 1 - lost, 5 * seen.error + 1e-5);
   // Mirror under glass: F + T^2 a (1 + F a + ...), where a is what passes both ways.
@@ -155,7 +168,8 @@ TEST(BsdfEstimates, StatedLosses) {
   mirror.k = 1e4f;
   mirror.thickness = 0.3f;
   mirror.max_depth = 100;
-  const double f = 1 - in, cos_t = std::sqrt(1 - std::pow(std::sin(0.4) / 1.5, 2)), a = std::exp(-2 * double{0.3f} / cos_t);
+  const double f = 1 - in, cos_t = std::sqrt(1 - std::pow(std::sin(0.4) / 1.5, 2)),
+               a = std::exp(-2 * double{0.3f} / cos_t);
   const Mean reflected = kept(mirror);
   EXPECT_NEAR(reflected.value, f + in * in * a / (1 - f * a), 5 * reflected.error + 1e-3);
 }

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Kernels for some materials of the list alone, and the data of a material by the names of its fields.
+// Kernels for some materials of the list alone, and the data of a material by the names of its
+// fields.
 #include <gtest/gtest.h>
 
 #include <bit>
@@ -14,8 +15,8 @@
 namespace caplet::test {
 namespace {
 
-// What a renderer builds for a scene of one material says what the kernels of all materials say, and what is built for all others
-// knows nothing of it.
+// What a renderer builds for a scene of one material says what the kernels of all materials say,
+// and what is built for all others knows nothing of it.
 TEST(BsdfKernels, OfOneMaterialSayTheSameAndThoseOfAllOthersNothing) {
   const std::vector<float> u = random_numbers(3000, 5);
   for (const MaterialOnTrial& material : materials_on_trial()) {
@@ -23,7 +24,8 @@ TEST(BsdfKernels, OfOneMaterialSayTheSameAndThoseOfAllOthersNothing) {
     const BsdfOnDevice alone({{"materials", own}}), others({{"materials", ~own}});
     for (const BsdfTrial::Case& one : material.trial.cases) {
       const Direction wo = direction(one.thetas[0], 1);
-      const std::vector<SampleRow> expected = bsdf_on_device().sample(one.bsdf, wo, u), seen = alone.sample(one.bsdf, wo, u);
+      const std::vector<SampleRow> expected = bsdf_on_device().sample(one.bsdf, wo, u),
+                                   seen = alone.sample(one.bsdf, wo, u);
       int scattered = 0;
       for (std::size_t i = 0; i < expected.size(); ++i) {
         scattered += expected[i].scattered != 0;
@@ -34,7 +36,8 @@ TEST(BsdfKernels, OfOneMaterialSayTheSameAndThoseOfAllOthersNothing) {
         ASSERT_EQ(seen[i].value_pdf, expected[i].value_pdf) << one.bsdf.name;
       }
       EXPECT_GT(scattered, 100);
-      for (const SampleRow& row : others.sample(one.bsdf, wo, u)) ASSERT_EQ(row.scattered, 0) << one.bsdf.name;
+      for (const SampleRow& row : others.sample(one.bsdf, wo, u))
+        ASSERT_EQ(row.scattered, 0) << one.bsdf.name;
     }
   }
 }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Values of Mitsuba 3.9.1's principled plugin, variant scalar_rgb, base colours grey. Its directions are named the other way
-// round: its si.wi is wo here.
+// Values of Mitsuba 3.9.1's principled plugin, variant scalar_rgb, base colours grey. Its
+// directions are named the other way round: its si.wi is wo here.
 #pragma once
 
 #include <algorithm>
@@ -14,10 +14,11 @@
 
 namespace caplet::test {
 
-/// What principled_make makes of parameters: roughness, anisotropy, index, the part that is metal and of the rest the part that
-/// is glass.
-inline BsdfParameters principled(const std::string& name, float base, float roughness, float anisotropic = 0, float eta = 1.5f,
-                                 float metallic = 0, float spec_trans = 0, float spec_tint = 0, float sheen = 0) {
+/// What principled_make makes of parameters: roughness, anisotropy, index, the part that is metal
+/// and of the rest the part that is glass.
+inline BsdfParameters principled(const std::string& name, float base, float roughness,
+                                 float anisotropic = 0, float eta = 1.5f, float metallic = 0,
+                                 float spec_trans = 0, float spec_tint = 0, float sheen = 0) {
   BsdfParameters out;
   out.name = name;
   out.kind = material_principled;
@@ -43,22 +44,27 @@ struct PrincipledRow {
   double value;  // f |cos wi|
 };
 
-/// The part of a row's value that its facets have, with Mitsuba's separable masking (its principled.cpp, eval): all of metal and
-/// glass; of the rest what the interface reflects, of Fresnel's and the tinted reflectance.
+/// The part of a row's value that its facets have, with Mitsuba's separable masking (its
+/// principled.cpp, eval): all of metal and glass; of the rest what the interface reflects, of
+/// Fresnel's and the tinted reflectance.
 inline double facets_of_mitsuba(const PrincipledRow& row) {
   const BsdfParameters& b = row.bsdf;
-  const double metallic = double{b.metallic}, glass = double{b.transmission}, rest = 1 - metallic - glass;
+  const double metallic = double{b.metallic}, glass = double{b.transmission},
+               rest = 1 - metallic - glass;
   if (rest == 0 || row.wi[2] * row.wo[2] < 0) return row.value;
   double length = 0, cos_m = 0;
   for (std::size_t c = 0; c < 3; ++c) length += std::pow(double{row.wo[c]} + double{row.wi[c]}, 2);
-  for (std::size_t c = 0; c < 3; ++c) cos_m += (double{row.wo[c]} + double{row.wi[c]}) / std::sqrt(length) * double{row.wo[c]};
+  for (std::size_t c = 0; c < 3; ++c)
+    cos_m += (double{row.wo[c]} + double{row.wi[c]}) / std::sqrt(length) * double{row.wo[c]};
   const double schlick = std::pow(1 - cos_m, 5), fresnel = metal_reflectance(cos_m, double{b.eta});
   const double tinted = double{b.normal_tinted} + (1 - double{b.normal_tinted}) * schlick;
-  const double reflectance = metallic * (double{b.reflectance} + (1 - double{b.reflectance}) * schlick) + glass * fresnel +
-                             rest * ((1 - double{b.tint}) * fresnel + double{b.tint} * tinted);
+  const double reflectance =
+      metallic * (double{b.reflectance} + (1 - double{b.reflectance}) * schlick) + glass * fresnel +
+      rest * ((1 - double{b.tint}) * fresnel + double{b.tint} * tinted);
   // The microfacets of a metal that reflects all, without the masking that they have.
   const double lobe = microfacets(row.wo, row.wi, double{b.alpha_u}, double{b.alpha_v}, {0, 1e9});
-  return reflectance * lobe / correlated_over_separable(row.wo, row.wi, double{b.alpha_u}, double{b.alpha_v});
+  return reflectance * lobe /
+         correlated_over_separable(row.wo, row.wi, double{b.alpha_u}, double{b.alpha_v});
 }
 
 // clang-format off

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Values of Mitsuba 3.9.1, variant scalar_rgb: roughconductor (eta 0.2, k 3.9) and roughdielectric (int_ior 1.5, radiance),
-// distribution ggx. Its directions are named the other way round: its si.wi is wo here.
+// Values of Mitsuba 3.9.1, variant scalar_rgb: roughconductor (eta 0.2, k 3.9) and roughdielectric
+// (int_ior 1.5, radiance), distribution ggx. Its directions are named the other way round: its
+// si.wi is wo here.
 #pragma once
 
 #include <cmath>
@@ -17,14 +18,17 @@ inline double ggx_lambda(const Direction& w, double alpha_u, double alpha_v) {
   return 0.5 * (std::sqrt(1 + (x * x + y * y) / (z * z)) - 1);
 }
 
-/// Height-correlated masking, 1 / (1 + Lambda(wo) + Lambda(wi)), over the separable form that Mitsuba has, 1 / ((1 + Lambda(wo))
-/// (1 + Lambda(wi))) (Heitz 2014, 99 and 98): what values of Mitsuba are multiplied by. Densities have no part of it.
-inline double correlated_over_separable(const Direction& wo, const Direction& wi, double alpha_u, double alpha_v) {
+/// Height-correlated masking, 1 / (1 + Lambda(wo) + Lambda(wi)), over the separable form that
+/// Mitsuba has, 1 / ((1 + Lambda(wo)) (1 + Lambda(wi))) (Heitz 2014, 99 and 98): what values of
+/// Mitsuba are multiplied by. Densities have no part of it.
+inline double correlated_over_separable(const Direction& wo, const Direction& wi, double alpha_u,
+                                        double alpha_v) {
   const double o = ggx_lambda(wo, alpha_u, alpha_v), i = ggx_lambda(wi, alpha_u, alpha_v);
   return (1 + o) * (1 + i) / (1 + o + i);
 }
 
-/// Both in floats from half vectors that lose up to 4e-7 / alpha (refraction three times that), to the fourth power.
+/// Both in floats from half vectors that lose up to 4e-7 / alpha (refraction three times that), to
+/// the fourth power.
 inline constexpr double mitsuba_tolerance = 2e-4;
 
 struct MitsubaRow {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// What BSDFs obey whatever their parameters: weights, reciprocity, Fresnel's closed forms, finite numbers; and values of
-// Mitsuba 3.
+// What BSDFs obey whatever their parameters: weights, reciprocity, Fresnel's closed forms, finite
+// numbers; and values of Mitsuba 3.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -42,7 +42,8 @@ TEST(BsdfTrials, EveryMaterialOfTheModelIsOnTrial) {
   for (const MaterialOnTrial& material : materials_on_trial()) {
     EXPECT_FALSE(material.trial.cases.empty() && material.trial.samples.empty()) << material.name;
     EXPECT_FALSE(material.trial.values.empty() && material.trial.samples.empty()) << material.name;
-    EXPECT_EQ(material.trial.estimates, (material_traits[material.kind] & trait_stochastic) != 0) << material.name;
+    EXPECT_EQ(material.trial.estimates, (material_traits[material.kind] & trait_stochastic) != 0)
+        << material.name;
     for (const BsdfTrial::Case& one : material.trial.cases)
       EXPECT_EQ(one.bsdf.kind, static_cast<uint>(material.kind)) << material.name;
     Scene scene;
@@ -54,17 +55,20 @@ TEST(BsdfTrials, EveryMaterialOfTheModelIsOnTrial) {
   EXPECT_EQ(models.size(), std::variant_size_v<decltype(Material::model)> - choices);
 }
 
-// The weight is computed without dividing by the density; eval computes the half vector anew from wo and wi, which moves it by
-// 2e-7 and the density by about 8 * 2e-7 / alpha relative; refraction near eta 1.5 magnifies that by 1.5 / 0.5 squared: 3e-4, and
-// ten times that is allowed as cosines near grazing lose digits too.
+// The weight is computed without dividing by the density; eval computes the half vector anew from
+// wo and wi, which moves it by 2e-7 and the density by about 8 * 2e-7 / alpha relative; refraction
+// near eta 1.5 magnifies that by 1.5 / 0.5 squared: 3e-4, and ten times that is allowed as cosines
+// near grazing lose digits too.
 TEST(BsdfSampling, WeightIsValueOverDensity) {
   for (const auto& [trial, bsdf] : rough_ones())
     for (const double theta : {0.1, 0.9, 1.4, 2.0, 3.0})
-      for (const SampleRow& row : bsdf_on_device().sample(bsdf, direction(theta, 2), random_numbers(6000, 1))) {
+      for (const SampleRow& row :
+           bsdf_on_device().sample(bsdf, direction(theta, 2), random_numbers(6000, 1))) {
         if (row.scattered == 0) continue;
         ASSERT_GT(row.pdf, 0);
         ASSERT_NEAR(row.value_pdf / row.pdf, 1, 3e-3) << bsdf.name << " at " << theta;
-        ASSERT_NEAR(row.value / row.value_pdf, row.weight, 3e-3 * row.weight) << bsdf.name << " at " << theta;
+        ASSERT_NEAR(row.value / row.value_pdf, row.weight, 3e-3 * row.weight)
+            << bsdf.name << " at " << theta;
         ASSERT_EQ(row.transmitted, row.wi[2] * std::cos(theta) < 0 ? 1.0f : 0.0f);
         ASSERT_EQ(row.specular, 0) << bsdf.name << " at " << theta;
         const float squared = trial->bends && row.transmitted != 0 ? bsdf.eta * bsdf.eta : 1;
@@ -72,8 +76,9 @@ TEST(BsdfSampling, WeightIsValueOverDensity) {
       }
 }
 
-// f(wo, wi) = f(wi, wo) for reflection, and n_i^2 f(wo, wi) = n_o^2 f(wi, wo) for refraction of radiance (Veach 1997, 5.2). Both
-// sides come from the same half vector to rounding: 1e-5 of relative error over alpha squared at the worst.
+// f(wo, wi) = f(wi, wo) for reflection, and n_i^2 f(wo, wi) = n_o^2 f(wi, wo) for refraction of
+// radiance (Veach 1997, 5.2). Both sides come from the same half vector to rounding: 1e-5 of
+// relative error over alpha squared at the worst.
 TEST(BsdfReciprocity, ReflectionAndRefraction) {
   std::mt19937 random(9);
   std::normal_distribution<float> normal;
@@ -106,7 +111,8 @@ TEST(BsdfReciprocity, ReflectionAndRefraction) {
 
 /// Reflectance at n + i k by complex arithmetic in double.
 double reflectance(double cos_i, std::complex<double> index) {
-  const std::complex<double> sin2 = 1 - cos_i * cos_i, cos_t = std::sqrt(1.0 - sin2 / (index * index));
+  const std::complex<double> sin2 = 1 - cos_i * cos_i,
+                             cos_t = std::sqrt(1.0 - sin2 / (index * index));
   const std::complex<double> s = (cos_i - index * cos_t) / (cos_i + index * cos_t),
                              p = (index * cos_i - cos_t) / (index * cos_i + cos_t);
   return 0.5 * (std::norm(s) + std::norm(p));
@@ -117,15 +123,19 @@ SampleRow first_sample(const BsdfParameters& bsdf, double theta, float component
 }
 
 TEST(BsdfFresnel, SmoothMetal) {
-  const std::pair<double, double> metals[] = {{0.2, 3.9}, {1.5, 7.6}, {0.05, 4.4}, {2.9, 3.0}, {1.5, 0.0}, {4.0, 0.01}};
+  const std::pair<double, double> metals[] = {{0.2, 3.9}, {1.5, 7.6}, {0.05, 4.4},
+                                              {2.9, 3.0}, {1.5, 0.0}, {4.0, 0.01}};
   for (const auto& [n, k] : metals)
     for (const double theta : {0.0, 0.3, 0.9, 1.3, 1.5, 1.57}) {
-      const BsdfParameters metal = {"", material_conductor, 0, 1, static_cast<float>(n), static_cast<float>(k)};
+      const BsdfParameters metal = {"", material_conductor,    0,
+                                    1,  static_cast<float>(n), static_cast<float>(k)};
       const SampleRow row = first_sample(metal, theta, 0.5f);
       ASSERT_EQ(row.scattered, 1);
       EXPECT_EQ(row.specular, 1);
-      // e = n^2 - k^2 - sin^2 cancels to 1e-7 of n^2 + k^2, and its root to the square root of that where n or k vanishes.
-      EXPECT_NEAR(row.weight, reflectance(double{direction(theta, 0.4)[2]}, {n, k}), k < 0.1 ? 2e-4 : 2e-5)
+      // e = n^2 - k^2 - sin^2 cancels to 1e-7 of n^2 + k^2, and its root to the square root of that
+      // where n or k vanishes.
+      EXPECT_NEAR(row.weight, reflectance(double{direction(theta, 0.4)[2]}, {n, k}),
+                  k < 0.1 ? 2e-4 : 2e-5)
           << n << ' ' << k << ' ' << theta;
       EXPECT_EQ(row.value, 0);  // nothing but a delta
     }
@@ -136,7 +146,8 @@ TEST(BsdfFresnel, ClearGlass) {
     for (const double theta : {0.0, 0.5, 1.0, 1.4, 1.7, 2.2, 2.8, 3.1}) {
       const BsdfParameters glass = {"", material_dielectric, 0, 1, eta, 0};
       const double cos_o = std::cos(theta), relative = cos_o > 0 ? double{eta} : 1 / double{eta};
-      const double sin_t = std::sin(theta) / relative, expected = sin_t < 1 ? reflectance(std::abs(cos_o), relative) : 1;
+      const double sin_t = std::sin(theta) / relative,
+                   expected = sin_t < 1 ? reflectance(std::abs(cos_o), relative) : 1;
       const SampleRow mirrored = first_sample(glass, theta, 0);
       ASSERT_EQ(mirrored.scattered, 1);
       EXPECT_NEAR(mirrored.pdf, expected, 1e-5);
@@ -163,12 +174,15 @@ TEST(BsdfFresnel, ClearGlass) {
 TEST(BsdfFresnel, RoughnessTowardsZeroIsSmooth) {
   const BsdfParameters rough = {"", material_conductor, 0, 1, 0.2f, 3.9f, 2e-3f, 2e-3f};
   const double expected = reflectance(std::cos(0.9), {0.2, 3.9});
-  for (const SampleRow& row : bsdf_on_device().sample(rough, direction(0.9, 0.4), random_numbers(3000, 2))) {
+  for (const SampleRow& row :
+       bsdf_on_device().sample(rough, direction(0.9, 0.4), random_numbers(3000, 2))) {
     ASSERT_EQ(row.scattered, 1);
     ASSERT_EQ(row.specular, 0);
-    ASSERT_NEAR(row.weight, expected, 3e-3);  // masking is 1 - O(alpha^2), Fresnel's slope times the lobe's width
+    ASSERT_NEAR(row.weight, expected,
+                3e-3);  // masking is 1 - O(alpha^2), Fresnel's slope times the lobe's width
   }
-  BsdfParameters matched = {"", material_dielectric, 0, 1, 1, 0, 0.5f, 0.5f};  // no interface at all
+  BsdfParameters matched = {"",  material_dielectric, 0, 1, 1, 0, 0.5f,
+                            0.5f};  // no interface at all
   const SampleRow row = first_sample(matched, 0.9, 0.5f);
   EXPECT_EQ(row.specular, 1);
   EXPECT_EQ(row.transmitted, 1);
@@ -176,7 +190,8 @@ TEST(BsdfFresnel, RoughnessTowardsZeroIsSmooth) {
 }
 
 TEST(BsdfDispersion, HeroWavelengthAlone) {
-  BsdfParameters glass = {"", material_dielectric, CAPLET_MATERIAL_DISPERSIVE, 1, 1.5f, 0, 0.2f, 0.2f};
+  BsdfParameters glass = {"",  material_dielectric, CAPLET_MATERIAL_DISPERSIVE, 1, 1.5f, 0, 0.2f,
+                          0.2f};
   SampleRow row = first_sample(glass, 0.3, 0.9f);
   EXPECT_GT(row.weight, 0);
   EXPECT_EQ(row.weight_second, 0);
@@ -191,12 +206,15 @@ TEST(BsdfRobustness, FiniteAndBoundedForAnyInput) {
   std::mt19937 random(4);
   std::uniform_real_distribution<float> uniform(0, 1);
   const float alphas[] = {0, 1e-4f, 9e-4f, 1e-3f, 0.01f, 0.1f, 1.0f},
-              etas[] = {1e-2f, 0.5f, 1.0f, 1.0001f, 1.0002f, 1.5f, 3.0f, 1e2f}, extinctions[] = {0, 1e-3f, 1, 1e4f};
+              etas[] = {1e-2f, 0.5f, 1.0f, 1.0001f, 1.0002f, 1.5f, 3.0f, 1e2f},
+              extinctions[] = {0, 1e-3f, 1, 1e4f};
   const float edges[] = {0, 0x1p-24f, 0.5f, 1 - 0x1p-24f};
-  const double thetas[] = {0, 1e-4, 0.5, 1.57, 1.5707, 1.570796, 1.5708, 1.571, 2.5, std::numbers::pi};
+  const double thetas[] = {0,        1e-4,   0.5,   1.57, 1.5707,
+                           1.570796, 1.5708, 1.571, 2.5,  std::numbers::pi};
   for (int i = 0; i < 400; ++i) {
     BsdfParameters bsdf;
-    const MaterialOnTrial& material = materials_on_trial()[static_cast<std::size_t>(i) % materials_on_trial().size()];
+    const MaterialOnTrial& material =
+        materials_on_trial()[static_cast<std::size_t>(i) % materials_on_trial().size()];
     bsdf.kind = static_cast<uint>(material.kind);
     bsdf.alpha_u = alphas[random() % 7];
     bsdf.alpha_v = alphas[random() % 7];
@@ -227,7 +245,8 @@ TEST(BsdfRobustness, FiniteAndBoundedForAnyInput) {
       bsdf.eta = std::max(bsdf.eta, 1.001f);
       bsdf.coat_eta = std::max(bsdf.coat_eta, 1.0f);
       bsdf.k = std::min(bsdf.k, 1.0f);
-      for (float* alpha : {&bsdf.alpha_u, &bsdf.alpha_v, &bsdf.coat_alpha_u}) *alpha = std::max(*alpha, CAPLET_ALPHA_SMOOTH);
+      for (float* alpha : {&bsdf.alpha_u, &bsdf.alpha_v, &bsdf.coat_alpha_u})
+        *alpha = std::max(*alpha, CAPLET_ALPHA_SMOOTH);
       bsdf.roughness = std::sqrt(bsdf.alpha_u);
       bsdf.metallic = std::array{0.0f, 0.5f, 1.0f}[random() % 3];
       bsdf.transmission = (1 - bsdf.metallic) * std::array{0.0f, 0.5f, 1.0f}[random() % 3];
@@ -241,7 +260,8 @@ TEST(BsdfRobustness, FiniteAndBoundedForAnyInput) {
     const double most = heaviest * material.trial.most(bsdf, wo[2] < 0);
     std::vector<Direction> other, same;
     for (const SampleRow& row : bsdf_on_device().sample(bsdf, wo, u)) {
-      for (const float value : {row.wi[0], row.wi[1], row.wi[2], row.pdf, row.weight, row.value, row.value_pdf, row.eta_scale})
+      for (const float value : {row.wi[0], row.wi[1], row.wi[2], row.pdf, row.weight, row.value,
+                                row.value_pdf, row.eta_scale})
         ASSERT_TRUE(std::isfinite(value)) << i;
       ASSERT_GE(row.weight, 0) << i;
       ASSERT_LE(row.weight, most * 1.00001) << i;
@@ -276,7 +296,8 @@ TEST(BsdfAgainstMitsuba, ValuesAndDensities) {
 TEST(BsdfKnownSamples, OfDeltaScattering) {
   for (const MaterialOnTrial& material : materials_on_trial())
     for (const KnownSample& known : material.trial.samples) {
-      const SampleRow row = bsdf_on_device().sample(known.bsdf, known.wo, {known.u_component, 0.3f, 0.6f}).front();
+      const SampleRow row =
+          bsdf_on_device().sample(known.bsdf, known.wo, {known.u_component, 0.3f, 0.6f}).front();
       ASSERT_EQ(row.scattered, 1) << known.bsdf.name;
       EXPECT_EQ(row.specular, 1) << known.bsdf.name;
       EXPECT_EQ(row.transmitted, known.wo[2] * known.wi[2] < 0 ? 1.0f : 0.0f) << known.bsdf.name;
@@ -284,7 +305,8 @@ TEST(BsdfKnownSamples, OfDeltaScattering) {
       EXPECT_EQ(row.value, 0) << known.bsdf.name;
       EXPECT_NEAR(row.weight, known.weight, known.tolerance) << known.bsdf.name;
       EXPECT_NEAR(row.pdf, known.pdf, known.tolerance) << known.bsdf.name;
-      for (std::size_t c = 0; c < 3; ++c) EXPECT_NEAR(row.wi[c], known.wi[c], 1e-6) << known.bsdf.name;
+      for (std::size_t c = 0; c < 3; ++c)
+        EXPECT_NEAR(row.wi[c], known.wi[c], 1e-6) << known.bsdf.name;
     }
 }
 

@@ -50,7 +50,8 @@ Straight straight_back(double alpha_u, double alpha_v) {
   FlatScene flat = lower(scene);
   flat.spectrum_tables.push_back(0);  // never empty
   const Device& device = test_device();
-  static const Program program = Program::from_source(device, "roughness", flatten_kernels(kernel_text), "");
+  static const Program program =
+      Program::from_source(device, "roughness", flatten_kernels(kernel_text), "");
   const Buffer<MaterialRecord> materials(device, std::span<const MaterialRecord>(flat.materials));
   const Buffer<SpectrumRecord> spectra(device, std::span<const SpectrumRecord>(flat.spectra));
   const Buffer<float> tables(device, std::span<const float>(flat.spectrum_tables)),
@@ -67,25 +68,33 @@ Straight straight_back(double alpha_u, double alpha_v) {
   return {values[0], values[1] != 0};
 }
 
-// The density of visible normals at normal incidence is D = 1 / (pi alpha_u alpha_v), and that of directions a quarter of it.
-double expected(double alpha_u, double alpha_v) { return 1 / (4 * std::numbers::pi * alpha_u * alpha_v); }
+// The density of visible normals at normal incidence is D = 1 / (pi alpha_u alpha_v), and that of
+// directions a quarter of it.
+double expected(double alpha_u, double alpha_v) {
+  return 1 / (4 * std::numbers::pi * alpha_u * alpha_v);
+}
 
 TEST(Roughness, IsTakenAsItIsDownToAThousandth) {
-  for (const auto& [u, v] : {std::pair(0.3, 0.3), std::pair(0.005, 0.02), std::pair(0.002, 0.002), std::pair(0.001, 0.001),
-                             std::pair(0.3, 0.0005), std::pair(0.0002, 0.001)}) {
+  for (const auto& [u, v] :
+       {std::pair(0.3, 0.3), std::pair(0.005, 0.02), std::pair(0.002, 0.002),
+        std::pair(0.001, 0.001), std::pair(0.3, 0.0005), std::pair(0.0002, 0.001)}) {
     const Straight found = straight_back(u, v);
     EXPECT_FALSE(found.mirror) << u << ' ' << v;
-    EXPECT_NEAR(found.density, expected(u, v), 1e-5 * expected(u, v)) << u << ' ' << v;  // some twenty roundings
+    EXPECT_NEAR(found.density, expected(u, v), 1e-5 * expected(u, v))
+        << u << ' ' << v;  // some twenty roundings
   }
 }
 
 // pbrt-v4: smooth where both are below 1e-3, otherwise 1e-4 at least.
 TEST(Roughness, HasTheFloorsOfPbrt) {
-  for (const auto& [u, v] : {std::pair(0.0, 0.0), std::pair(0.0009, 0.0), std::pair(0.00099, 0.00099)})
+  for (const auto& [u, v] :
+       {std::pair(0.0, 0.0), std::pair(0.0009, 0.0), std::pair(0.00099, 0.00099)})
     EXPECT_TRUE(straight_back(u, v).mirror) << u << ' ' << v;
   for (const double small : {0.0, 0.00005}) {
-    EXPECT_NEAR(straight_back(small, 0.3).density, expected(1e-4, 0.3), 1e-5 * expected(1e-4, 0.3)) << small;
-    EXPECT_NEAR(straight_back(0.3, small).density, expected(0.3, 1e-4), 1e-5 * expected(0.3, 1e-4)) << small;
+    EXPECT_NEAR(straight_back(small, 0.3).density, expected(1e-4, 0.3), 1e-5 * expected(1e-4, 0.3))
+        << small;
+    EXPECT_NEAR(straight_back(0.3, small).density, expected(0.3, 1e-4), 1e-5 * expected(0.3, 1e-4))
+        << small;
   }
 }
 

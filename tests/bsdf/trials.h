@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// What each material of kernels/shared/materials.def brings to the tests that all of them pass: one function a material, in
-// NAME_trial.cpp. A row of the list without its function does not link.
+// What each material of kernels/shared/materials.def brings to the tests that all of them pass: one
+// function a material, in NAME_trial.cpp. A row of the list without its function does not link.
 #pragma once
 
 #include <array>
@@ -33,8 +33,8 @@ struct KnownSample {
 };
 
 struct BsdfTrial {
-  /// Values are estimates and densities approximate (trait_stochastic): means are compared, and weights with values
-  /// (estimates_test.cpp).
+  /// Values are estimates and densities approximate (trait_stochastic): means are compared, and
+  /// weights with values (estimates_test.cpp).
   bool estimates = false;
   bool bends = false;  // transmission scales radiance by the index squared
   bool reciprocal = true;
@@ -58,7 +58,8 @@ struct BsdfTrial {
 };
 
 /// The roughnesses along u and v that rough materials are tried at.
-inline constexpr std::array<std::array<float, 2>, 4> roughnesses = {{{0.05f, 0.05f}, {0.3f, 0.3f}, {0.8f, 0.8f}, {0.1f, 0.4f}}};
+inline constexpr std::array<std::array<float, 2>, 4> roughnesses = {
+    {{0.05f, 0.05f}, {0.3f, 0.3f}, {0.8f, 0.8f}, {0.1f, 0.4f}}};
 
 /// A material of the list and its trial.
 struct MaterialOnTrial {

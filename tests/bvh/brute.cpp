@@ -21,8 +21,12 @@ Vec cross(const Vec& a, const Vec& b) {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
 double length(const Vec& a) { return std::sqrt(dot(a, a)); }
-Vec at(const DoubleRay& ray, double t) { return {ray.o[0] + t * ray.d[0], ray.o[1] + t * ray.d[1], ray.o[2] + t * ray.d[2]}; }
-Vec data3(const FlatPrimitive& p, int i) { return {double(p.data[i]), double(p.data[i + 1]), double(p.data[i + 2])}; }
+Vec at(const DoubleRay& ray, double t) {
+  return {ray.o[0] + t * ray.d[0], ray.o[1] + t * ray.d[1], ray.o[2] + t * ray.d[2]};
+}
+Vec data3(const FlatPrimitive& p, int i) {
+  return {double(p.data[i]), double(p.data[i + 1]), double(p.data[i + 2])};
+}
 
 bool solid(const FlatPrimitive& p) {
   return p.shape == shape_sphere || p.shape == shape_capsule || p.shape == shape_tapered_capsule;
@@ -36,7 +40,8 @@ struct Hull {
 Hull hull(const FlatPrimitive& p) {
   const Vec c0 = data3(p, 0);
   if (p.shape == shape_sphere) return {c0, c0, double(p.data[3]), double(p.data[3])};
-  return {c0, data3(p, 3), double(p.data[6]), double(p.shape == shape_capsule ? p.data[6] : p.data[7])};
+  return {c0, data3(p, 3), double(p.data[6]),
+          double(p.shape == shape_capsule ? p.data[6] : p.data[7])};
 }
 
 /// Least of |x - c(s)| - r(s) over the sphere centres c(s) between both ends: where d/ds is 0.
@@ -46,7 +51,8 @@ double hull_distance(const Hull& h, const Vec& x) {
   double s = h.r1 > h.r0 ? 1 : 0;  // no axis: the larger sphere
   if (l > 0) {
     const double along = dot(w, axis) / l;
-    const Vec across = {w[0] - along * axis[0] / l, w[1] - along * axis[1] / l, w[2] - along * axis[2] / l};
+    const Vec across = {w[0] - along * axis[0] / l, w[1] - along * axis[1] / l,
+                        w[2] - along * axis[2] / l};
     const double k = (h.r1 - h.r0) / l;
     if (std::abs(k) >= 1)
       s = k > 0 ? 1 : 0;
@@ -66,7 +72,8 @@ Span span_of(const Hull& h, const DoubleRay& ray, double depth) {
   const auto value = [&](double t) { return hull_distance(h, at(ray, t)) + depth; };
   const double speed = length(ray.d);
   const double middle = -dot(sub(ray.o, h.c0), ray.d) / dot(ray.d, ray.d);
-  const double reach = (length(sub(h.c1, h.c0)) + 2 * std::max(h.r0, h.r1) + std::abs(depth)) / speed;
+  const double reach =
+      (length(sub(h.c1, h.c0)) + 2 * std::max(h.r0, h.r1) + std::abs(depth)) / speed;
   double a = middle - reach, b = middle + reach;
   double low = a, high = b;
   for (int i = 0; i < 120; i++) {
@@ -127,8 +134,10 @@ double size_of(const FlatPrimitive& p) {
 }  // namespace
 
 DoubleRay widen(const RayRecord& r) {
-  return {
-      {double(r.ox), double(r.oy), double(r.oz)}, {double(r.dx), double(r.dy), double(r.dz)}, double(r.t_min), double(r.t_max)};
+  return {{double(r.ox), double(r.oy), double(r.oz)},
+          {double(r.dx), double(r.dy), double(r.dz)},
+          double(r.t_min),
+          double(r.t_max)};
 }
 
 double surface_distance(const FlatPrimitive& p, const Vec& x) {
@@ -165,39 +174,45 @@ double latest_hit(const FlatPrimitive& p, const DoubleRay& ray, double error) {
   const double margin = error + slack * length(ray.d);  // in the plane
   const Vec x = at(ray, t);
   if (!(t - slack > ray.t_min)) return inf;
-  if (p.shape == shape_disk) return length(sub(x, data3(p, 0))) < double(p.data[6]) - margin ? t + slack : inf;
+  if (p.shape == shape_disk)
+    return length(sub(x, data3(p, 0))) < double(p.data[6]) - margin ? t + slack : inf;
   const auto edges = edge_distances(p, n, x);
   return std::min({edges[0], edges[1], edges[2]}) > margin ? t + slack : inf;
 }
 
-std::string disagreement(std::span<const FlatPrimitive> primitives, std::span<const std::uint32_t> slots, const RayRecord& record,
+std::string disagreement(std::span<const FlatPrimitive> primitives,
+                         std::span<const std::uint32_t> slots, const RayRecord& record,
                          const HitRecord& hit) {
   const DoubleRay ray = widen(record);
   const double t = hit.slot == CAPLET_NONE ? inf : double(hit.t);
   if (hit.slot != CAPLET_NONE) {
-    if (!(hit.t > record.t_min && hit.t < record.t_max)) return fmt::format("t {} outside ({}, {})", t, ray.t_min, ray.t_max);
+    if (!(hit.t > record.t_min && hit.t < record.t_max))
+      return fmt::format("t {} outside ({}, {})", t, ray.t_min, ray.t_max);
     const auto found = std::find(slots.begin(), slots.end(), hit.slot);
     if (found == slots.end()) return fmt::format("slot {} belongs to no primitive", hit.slot);
     const FlatPrimitive& p = primitives[static_cast<std::size_t>(found - slots.begin())];
-    // Grazing an open shape, a point off the plane by `error` is off the rim by error / cos; the plane is checked alone then.
+    // Grazing an open shape, a point off the plane by `error` is off the rim by error / cos; the
+    // plane is checked alone then.
     const double error = claimed_error(p, ray);
     const double distance = surface_distance(p, at(ray, t));
     if (std::abs(distance) > error)
-      return fmt::format("point at t {} is {} off shape {}, the bound is {}", t, distance, p.shape, error);
+      return fmt::format("point at t {} is {} off shape {}, the bound is {}", t, distance, p.shape,
+                         error);
     if (solid(p)) {
       const bool leaving = (hit.surface >> 16 & 1u) != 0;
       const Span inside = span_of(hull(p), ray, 0);
       const double middle = 0.5 * (inside.enter + inside.exit);
       const double depth = -hull_distance(hull(p), at(ray, middle));
       if (inside.enter < inside.exit && depth > 2 * error && leaving != (t > middle))
-        return fmt::format("leaving is {} at t {} of the span {} to {}", leaving, t, inside.enter, inside.exit);
+        return fmt::format("leaving is {} at t {} of the span {} to {}", leaving, t, inside.enter,
+                           inside.exit);
     }
   }
   for (std::size_t i = 0; i < primitives.size(); i++) {
     const double latest = latest_hit(primitives[i], ray, claimed_error(primitives[i], ray));
     if (t > latest && latest < ray.t_max)
-      return fmt::format("reported t {} but primitive {} (shape {}) is hit by t {} at the latest", t, i, primitives[i].shape,
-                         latest);
+      return fmt::format("reported t {} but primitive {} (shape {}) is hit by t {} at the latest",
+                         t, i, primitives[i].shape, latest);
   }
   return {};
 }

@@ -11,8 +11,9 @@ namespace caplet::test {
 
 using bench::DeviceTracer;
 
-/// Asks both, of one scene, for the nearest and for any hit of the rays, and fails where they do not answer alike to the bit. The
-/// hits.
-std::vector<HitRecord> same_hits(DeviceTracer& seen_by, DeviceTracer& expected_of, const std::vector<RayRecord>& rays);
+/// Asks both, of one scene, for the nearest and for any hit of the rays, and fails where they do
+/// not answer alike to the bit. The hits.
+std::vector<HitRecord> same_hits(DeviceTracer& seen_by, DeviceTracer& expected_of,
+                                 const std::vector<RayRecord>& rays);
 
 }  // namespace caplet::test

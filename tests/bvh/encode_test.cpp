@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// The flat arrays: slots lead back to the data given, boxes hold the primitives with room to spare, limits are errors.
+// The flat arrays: slots lead back to the data given, boxes hold the primitives with room to spare,
+// limits are errors.
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 
@@ -34,7 +35,8 @@ std::vector<FlatPrimitive> mixed(unsigned count) {
   for (unsigned i = 0; i < count; i++) {
     FlatPrimitive p{i % shape_instance, 1000 + i, {}};
     for (float& x : p.data) x = u(engine);
-    if (p.shape == shape_disk) std::copy_n(std::array{0.0f, 0.0f, 1.0f}.data(), 3, p.data + disk_at_n);
+    if (p.shape == shape_disk)
+      std::copy_n(std::array{0.0f, 0.0f, 1.0f}.data(), 3, p.data + disk_at_n);
     out.push_back(p);
   }
   return out;
@@ -51,7 +53,8 @@ TEST(Encode, SlotsLeadToTheDataGiven) {
     ASSERT_GE(slot, 16u);
     EXPECT_EQ(std::bit_cast<std::uint32_t>(leaves[slot]), primitives[i].id);
     for (std::uint32_t j = 1; j < rows_by_count[primitives[i].shape]; j++)
-      EXPECT_EQ(leaves[slot + 8 * j], primitives[i].data[j - 1]) << "shape " << primitives[i].shape << " row " << j;
+      EXPECT_EQ(leaves[slot + 8 * j], primitives[i].data[j - 1])
+          << "shape " << primitives[i].shape << " row " << j;
   }
 }
 
@@ -87,7 +90,8 @@ TEST(Encode, InstancesGetALeafEach) {
   for (const std::uint32_t slot : tree.slots) EXPECT_EQ(slot % 8, 0u);
 }
 
-/// Points of the surfaces, pushed out by the error the kernels claim for rays from nearby, are inside the boxes.
+/// Points of the surfaces, pushed out by the error the kernels claim for rays from nearby, are
+/// inside the boxes.
 TEST(Encode, BoxesHoldWhatTheKernelsMayReport) {
   std::mt19937 engine(5);
   std::uniform_real_distribution<float> u(-1, 1);
@@ -104,7 +108,8 @@ TEST(Encode, BoxesHoldWhatTheKernelsMayReport) {
         const double error = 16 * 0x1p-24 * (high - low);
         EXPECT_LE(double(tree.min[k]), low - error);
         EXPECT_GE(double(tree.max[k]), high + error);
-        EXPECT_LT(double(tree.max[k]) - high, 1e-5 * (std::abs(double(shift)) + 8));  // and not much larger
+        EXPECT_LT(double(tree.max[k]) - high,
+                  1e-5 * (std::abs(double(shift)) + 8));  // and not much larger
       }
     }
   }

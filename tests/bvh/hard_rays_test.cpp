@@ -49,7 +49,8 @@ TEST_P(HardRays, AlongAxesWithZeroAndNegativeZeroComponents) {
     std::vector<RayRecord> rays;
     for (int i = 0; i < 600; i++) {
       const float zero = i % 2 == 0 ? 0.0f : -0.0f, sign = i % 4 < 2 ? 1.0f : -1.0f;
-      float o[3] = {random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)}, d[3] = {zero, zero, zero};
+      float o[3] = {random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)},
+            d[3] = {zero, zero, zero};
       d[i % 3] = sign;
       o[i % 3] = -2 * sign;
       if (i % 5 == 0) d[(i + 1) % 3] = 0.5f;
@@ -65,8 +66,10 @@ TEST_P(HardRays, ParallelToTheCapsule) {
   std::vector<RayRecord> rays;
   Random random(43);
   for (int i = 0; i < 2000; i++) {
-    const float tilt = i % 2 == 0 ? 0.0f : random.uniform(-1, 1) * std::exp2(random.uniform(-40, -2));
-    const float x = random.uniform(-0.3f, 0.5f), z = random.uniform(-0.2f, 0.6f), y = i % 3 == 0 ? random.uniform(-1, 1) : -3.0f;
+    const float tilt =
+        i % 2 == 0 ? 0.0f : random.uniform(-1, 1) * std::exp2(random.uniform(-40, -2));
+    const float x = random.uniform(-0.3f, 0.5f), z = random.uniform(-0.2f, 0.6f),
+                y = i % 3 == 0 ? random.uniform(-1, 1) : -3.0f;
     rays.push_back({x, y, z, 0, tilt, 1, -tilt * 0.5f, inf});
   }
   EXPECT_GT(check(primitives, rays), 500);
@@ -79,7 +82,8 @@ TEST_P(HardRays, GrazingASilhouette) {
   std::vector<RayRecord> rays;
   Random random(44);
   for (int i = 0; i < 3000; i++) {
-    const float off = 0.25f * (1 + (i % 2 == 0 ? 1.0f : -1.0f) * std::exp2(random.uniform(-26, -8)));
+    const float off =
+        0.25f * (1 + (i % 2 == 0 ? 1.0f : -1.0f) * std::exp2(random.uniform(-26, -8)));
     rays.push_back({-2, random.uniform(-1, 1), off, 0, 1, random.uniform(-0.3f, 0.3f), 0, inf});
   }
   for (const unsigned shape : {unsigned(shape_capsule), unsigned(shape_tapered_capsule)}) {
@@ -91,7 +95,8 @@ TEST_P(HardRays, GrazingASilhouette) {
 }
 
 TEST_P(HardRays, OriginInsideReportsLeaving) {
-  for (const unsigned shape : {unsigned(shape_sphere), unsigned(shape_capsule), unsigned(shape_tapered_capsule)}) {
+  for (const unsigned shape :
+       {unsigned(shape_sphere), unsigned(shape_capsule), unsigned(shape_tapered_capsule)}) {
     FlatPrimitive p = capsule(0, -1, 0, 0, 1, 0, 0.25f);
     p.shape = shape;
     p.data[7] = 0.2f;
@@ -101,20 +106,23 @@ TEST_P(HardRays, OriginInsideReportsLeaving) {
     Random random(45);
     std::vector<RayRecord> rays;
     for (int i = 0; i < 500; i++)
-      rays.push_back({random.uniform(-0.1f, 0.1f), random.uniform(-0.1f, 0.1f), random.uniform(-0.1f, 0.1f), 0,
-                      random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1), inf});
+      rays.push_back({random.uniform(-0.1f, 0.1f), random.uniform(-0.1f, 0.1f),
+                      random.uniform(-0.1f, 0.1f), 0, random.uniform(-1, 1), random.uniform(-1, 1),
+                      random.uniform(-1, 1), inf});
     EXPECT_EQ(check({p}, rays), 500);
     for (const HitRecord& h : tracer_.closest(rays)) EXPECT_EQ(h.surface, 1u << 16);
   }
 }
 
-/// Length to radius 1e4 at any angle: the quadratic's discriminant would lose everything (eps L^2 / r = 6 r).
+/// Length to radius 1e4 at any angle: the quadratic's discriminant would lose everything (eps L^2 /
+/// r = 6 r).
 TEST_P(HardRays, ThinCapsules) {
   std::vector<FlatPrimitive> primitives;
   std::vector<RayRecord> rays;
   Random random(46);
   for (int i = 0; i < 100 * test_scale(); i++) {
-    FlatPrimitive p = random_primitive(random, i % 2 == 0 ? shape_capsule : shape_tapered_capsule, 1);
+    FlatPrimitive p =
+        random_primitive(random, i % 2 == 0 ? shape_capsule : shape_tapered_capsule, 1);
     p.data[6] = p.data[7] = 1e-4f;
     if (i % 4 == 1) p.data[7] = 3e-5f;
     primitives.push_back(p);
@@ -125,14 +133,16 @@ TEST_P(HardRays, ThinCapsules) {
         to[k] = p.data[k] + s * (p.data[3 + k] - p.data[k]) + random.uniform(-1, 1) * 1e-4f;
         from[k] = to[k] + random.uniform(-1, 1) * reach;
       }
-      rays.push_back({from[0], from[1], from[2], 0, to[0] - from[0], to[1] - from[1], to[2] - from[2], inf});
+      rays.push_back(
+          {from[0], from[1], from[2], 0, to[0] - from[0], to[1] - from[1], to[2] - from[2], inf});
     }
   }
   EXPECT_GT(check(primitives, rays), 1000);
 }
 
 TEST_P(HardRays, FarOrigin) {
-  for (const unsigned shape : {unsigned(shape_sphere), unsigned(shape_capsule), unsigned(shape_tapered_capsule)}) {
+  for (const unsigned shape :
+       {unsigned(shape_sphere), unsigned(shape_capsule), unsigned(shape_tapered_capsule)}) {
     const auto primitives = random_scene(47, shape, 50, 0.5f);
     Random random(48);
     std::vector<RayRecord> rays;
@@ -166,11 +176,13 @@ TEST_P(HardRays, FarFromTheWorldsOrigin) {
 
 TEST_P(HardRays, DegenerateShapes) {
   const std::vector<FlatPrimitive> primitives = {
-      capsule(0, 0, 0, 0, 0, 0, 0.3f),                                   // no axis: a sphere
-      {shape_tapered_capsule, 0, {1, 0, 0, 1, 0, 0, 0.2f, 0.3f, 0}},     // likewise
-      {shape_tapered_capsule, 0, {0, 1, 0, 0.1f, 1, 0, 0.5f, 0.1f, 0}},  // one sphere inside the other
-      {shape_tapered_capsule, 0, {-1, 0, 0, -1, 1, 0, 0.2f, 0, 0}},      // a pointed end
-      capsule(-1, -1, 0, 1, -1, 0, 1e-20f)};                             // thinner than any ray can resolve
+      capsule(0, 0, 0, 0, 0, 0, 0.3f),                                // no axis: a sphere
+      {shape_tapered_capsule, 0, {1, 0, 0, 1, 0, 0, 0.2f, 0.3f, 0}},  // likewise
+      {shape_tapered_capsule,
+       0,
+       {0, 1, 0, 0.1f, 1, 0, 0.5f, 0.1f, 0}},                        // one sphere inside the other
+      {shape_tapered_capsule, 0, {-1, 0, 0, -1, 1, 0, 0.2f, 0, 0}},  // a pointed end
+      capsule(-1, -1, 0, 1, -1, 0, 1e-20f)};  // thinner than any ray can resolve
   EXPECT_GT(check(primitives, random_rays(51, 3000 * test_scale())), 300);
 }
 
@@ -185,7 +197,8 @@ TEST_P(HardRays, DegenerateTrianglesNeverReportNan) {
   for (const HitRecord& h : tracer_.closest(rays)) EXPECT_FALSE(std::isnan(h.t));
 }
 
-/// A displaced closed mesh: no ray from the outside through the middle may slip through an edge or a vertex.
+/// A displaced closed mesh: no ray from the outside through the middle may slip through an edge or
+/// a vertex.
 TEST_P(HardRays, ClosedMeshIsWatertight) {
   constexpr int n = 48;
   std::vector<float> vertices;
@@ -196,7 +209,8 @@ TEST_P(HardRays, ClosedMeshIsWatertight) {
   vertices.resize(static_cast<std::size_t>(3 * (2 + (n - 1) * n)));
   for (int i = 0; i <= n; i++)
     for (int j = 0; j < n; j++) {
-      const float a = 3.14159265f * static_cast<float>(i) / n, b = 6.2831853f * static_cast<float>(j) / n;
+      const float a = 3.14159265f * static_cast<float>(i) / n,
+                  b = 6.2831853f * static_cast<float>(j) / n;
       const float r = (i == 0 || i == n) ? 1.0f : 1 + 0.1f * random.uniform(-1, 1);
       float* v = &vertices[vertex(i, j)];
       v[0] = r * std::sin(a) * std::cos(b);
@@ -237,8 +251,8 @@ TEST_P(HardRays, ClosedMeshIsWatertight) {
   EXPECT_EQ(escaped, 0);
 }
 
-/// Leaving a surface from a hit point moved outward by the claimed error, in any outward direction, hits nothing of a convex
-/// body.
+/// Leaving a surface from a hit point moved outward by the claimed error, in any outward direction,
+/// hits nothing of a convex body.
 TEST_P(HardRays, NoHitAgainWhenLeaving) {
   const FlatPrimitive p = capsule(0.3f, -1, 0.1f, -0.2f, 1, 0.4f, 0.25f);
   const Encoded scene = encode({p});
@@ -259,16 +273,19 @@ TEST_P(HardRays, NoHitAgainWhenLeaving) {
       below[k] -= 1e-6;
       n[k] = (surface_distance(p, above) - surface_distance(p, below)) / 2e-6;
     }
-    // Twice the claim: the point's error and that of the ray that leaves it; and the rounding of the point.
+    // Twice the claim: the point's error and that of the ray that leaves it; and the rounding of
+    // the point.
     const double off = 2 * claimed_error(p, ray) + 4e-7 - std::min(0.0, surface_distance(p, x));
-    Vec d = {double(random.uniform(-1, 1)), double(random.uniform(-1, 1)), double(random.uniform(-1, 1))};
+    Vec d = {double(random.uniform(-1, 1)), double(random.uniform(-1, 1)),
+             double(random.uniform(-1, 1))};
     const double side = d[0] * n[0] + d[1] * n[1] + d[2] * n[2];
     for (std::size_t k = 0; k < 3; k++) {
       x[k] += off * n[k];
       if (side < 0) d[k] = -d[k];
     }
-    out.push_back({static_cast<float>(x[0]), static_cast<float>(x[1]), static_cast<float>(x[2]), 0, static_cast<float>(d[0]),
-                   static_cast<float>(d[1]), static_cast<float>(d[2]), inf});
+    out.push_back({static_cast<float>(x[0]), static_cast<float>(x[1]), static_cast<float>(x[2]), 0,
+                   static_cast<float>(d[0]), static_cast<float>(d[1]), static_cast<float>(d[2]),
+                   inf});
   }
   ASSERT_GT(out.size(), 500u);
   for (const HitRecord& h : tracer_.closest(out)) EXPECT_EQ(h.slot, CAPLET_NONE);

@@ -40,7 +40,8 @@ TEST(Instances, AgreeWithBruteForceInObjectSpace) {
       for (unsigned j = 0; j <= instances.size(); j++) {
         const bool placed = j < instances.size();
         DoubleRay local = ray;
-        double rounding = 0;  // of the ray's transform: 4 products and sums a component, each within eps of its terms
+        double rounding = 0;  // of the ray's transform: 4 products and sums a component, each
+                              // within eps of its terms
         if (placed) {
           const float* m = instances[j].object_from_world;
           for (std::size_t k = 0; k < 3; k++) {
@@ -61,11 +62,13 @@ TEST(Instances, AgreeWithBruteForceInObjectSpace) {
           const double error = claimed_error(tested[p], local) + rounding;
           const std::uint32_t slot = placed ? object.slots[p] : world.slots[p];
           if (hit.slot == slot && hit.instance == (placed ? j : CAPLET_NONE)) {
-            const Vec x = {local.o[0] + t * local.d[0], local.o[1] + t * local.d[1], local.o[2] + t * local.d[2]};
+            const Vec x = {local.o[0] + t * local.d[0], local.o[1] + t * local.d[1],
+                           local.o[2] + t * local.d[2]};
             EXPECT_LE(std::abs(surface_distance(tested[p], x)), error) << "ray " << i;
           }
           const double latest = latest_hit(tested[p], local, error);
-          EXPECT_TRUE(t <= latest || latest >= ray.t_max) << "ray " << i << " passed primitive " << p << " of instance " << j;
+          EXPECT_TRUE(t <= latest || latest >= ray.t_max)
+              << "ray " << i << " passed primitive " << p << " of instance " << j;
         }
       }
     }
@@ -76,7 +79,8 @@ TEST(Instances, AgreeWithBruteForceInObjectSpace) {
 
 TEST(Instances, EqualHitsGoToTheWorldThenToTheFirstInstance) {
   Encoded scene;
-  const EncodedTree object = encode_tree(random_scene(31, shape_sphere, 20, 1), scene.nodes, scene.leaves);
+  const EncodedTree object =
+      encode_tree(random_scene(31, shape_sphere, 20, 1), scene.nodes, scene.leaves);
   std::vector<InstanceRecord> instances(5);
   std::vector<FlatPrimitive> top;
   for (unsigned i = 0; i < instances.size(); i++) {

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Hit lists: every crossing of every primitive as the reference finds it, in order; capacity and overflow; ties.
+// Hit lists: every crossing of every primitive as the reference finds it, in order; capacity and
+// overflow; ties.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <tbb/parallel_for.h>
@@ -61,7 +62,8 @@ std::vector<FlatPrimitive> mixed_primitives(unsigned seed, unsigned count, float
   return out;
 }
 
-/// A scene of primitives in the world and, where `placements` are given, of as many instances of all of them.
+/// A scene of primitives in the world and, where `placements` are given, of as many instances of
+/// all of them.
 struct ListScene {
   std::vector<FlatPrimitive> primitives;
   std::vector<reference::Primitive> references;
@@ -69,7 +71,8 @@ struct ListScene {
   std::vector<std::uint32_t> slots;
   FlatScene flat;
 
-  explicit ListScene(std::vector<FlatPrimitive> list, const std::vector<dmat4>& placements = {}, uint flags = 0)
+  explicit ListScene(std::vector<FlatPrimitive> list, const std::vector<dmat4>& placements = {},
+                     uint flags = 0)
       : primitives(std::move(list)) {
     for (FlatPrimitive& p : primitives) {
       p.id = static_cast<std::uint32_t>(references.size());
@@ -77,8 +80,8 @@ struct ListScene {
       GeometryRecord geometry{};
       geometry.shape = p.shape;
       geometry.primitive_begin = p.id;
-      geometry.light_offset = geometry.normal_begin = geometry.uv_begin = geometry.surface_begin = geometry.uv_space =
-          CAPLET_NONE;
+      geometry.light_offset = geometry.normal_begin = geometry.uv_begin = geometry.surface_begin =
+          geometry.uv_space = CAPLET_NONE;
       geometry.index_begin = 3 * p.id;
       flat.geometries.push_back(geometry);
       flat.primitive_geometry.push_back(p.id);
@@ -128,7 +131,8 @@ double size_of(const reference::Primitive& p) { return 3 * reference::bounding_b
 /// Primitives are numbered as they are given, and all instances have the object number 0.
 bool before(const ListScene& scene, const HitRecord& a, const HitRecord& b) {
   const auto key = [&](const HitRecord& hit) {
-    return std::tuple(hit.t, !is_leaving(hit), std::bit_cast<std::uint32_t>(scene.flat.leaves[hit.slot]), hit.instance,
+    return std::tuple(hit.t, !is_leaving(hit),
+                      std::bit_cast<std::uint32_t>(scene.flat.leaves[hit.slot]), hit.instance,
                       hit.surface);
   };
   return key(a) < key(b);
@@ -140,12 +144,15 @@ struct Tally {
   void fail(const std::string& what, const RayRecord& r) {
     const std::lock_guard lock(mutex);
     if (failures++ < 5)
-      ADD_FAILURE() << what << fmt::format("\nray {:a} {:a} {:a}  {:a} {:a} {:a}", r.ox, r.oy, r.oz, r.dx, r.dy, r.dz);
+      ADD_FAILURE() << what
+                    << fmt::format("\nray {:a} {:a} {:a}  {:a} {:a} {:a}", r.ox, r.oy, r.oz, r.dx,
+                                   r.dy, r.dz);
   }
 };
 
 /// The whole list of a ray against the crossings of each primitive by itself.
-void check_list(const ListScene& scene, const RayRecord& record, const RayList& list, Tally& tally) {
+void check_list(const ListScene& scene, const RayRecord& record, const RayList& list,
+                Tally& tally) {
   if (list.overflow) return tally.fail("the list overflows", record);
   if (list.any != !list.hits.empty()) tally.fail("any hit is not whether the list has one", record);
   for (std::size_t k = 0; k + 1 < list.hits.size(); ++k)
@@ -153,12 +160,16 @@ void check_list(const ListScene& scene, const RayRecord& record, const RayList& 
       tally.fail(fmt::format("crossings {} and {} are out of order", k, k + 1), record);
   std::map<std::pair<std::uint32_t, std::uint32_t>, std::vector<HitRecord>> by_primitive;
   for (const HitRecord& hit : list.hits) {
-    if (!(hit.t > record.t_min && hit.t < record.t_max)) tally.fail(fmt::format("t {} is out of range", hit.t), record);
+    if (!(hit.t > record.t_min && hit.t < record.t_max))
+      tally.fail(fmt::format("t {} is out of range", hit.t), record);
     by_primitive[{hit.slot, hit.instance}].push_back(hit);
   }
   std::size_t accounted = 0;
   for (std::size_t place = 0; place < scene.places(); ++place) {
-    reference::Ray ray{{record.ox, record.oy, record.oz}, {record.dx, record.dy, record.dz}, record.t_min, record.t_max};
+    reference::Ray ray{{record.ox, record.oy, record.oz},
+                       {record.dx, record.dy, record.dz},
+                       record.t_min,
+                       record.t_max};
     double rounding = 0;
     if (!scene.object_from_world.empty()) {
       const dmat4& m = scene.object_from_world[place];
@@ -171,9 +182,11 @@ void check_list(const ListScene& scene, const RayRecord& record, const RayList& 
     }
     for (std::size_t i = 0; i < scene.primitives.size(); ++i) {
       const reference::Primitive& reference = scene.references[i];
-      const std::uint32_t instance = scene.object_from_world.empty() ? CAPLET_NONE : static_cast<std::uint32_t>(place);
+      const std::uint32_t instance =
+          scene.object_from_world.empty() ? CAPLET_NONE : static_cast<std::uint32_t>(place);
       const auto found = by_primitive.find({scene.slots[i], instance});
-      const std::vector<HitRecord> hits = found == by_primitive.end() ? std::vector<HitRecord>{} : found->second;
+      const std::vector<HitRecord> hits =
+          found == by_primitive.end() ? std::vector<HitRecord>{} : found->second;
       accounted += hits.size();
       std::vector<reference::Crossing> expected;
       for (const reference::Crossing& c : reference::crossings(reference, ray))
@@ -181,36 +194,45 @@ void check_list(const ListScene& scene, const RayRecord& record, const RayList& 
       if (hits.empty() && expected.empty()) continue;
       const double distance = glm::length(ray.origin - reference::bounding_ball(reference).center);
       const double bound = 17 * eps * (distance + size_of(reference)) + rounding;
-      const auto value = [&](double t) { return reference::value(reference, ray.origin + t * ray.direction); };
+      const auto value = [&](double t) {
+        return reference::value(reference, ray.origin + t * ray.direction);
+      };
       bool same = hits.size() == expected.size();
       for (std::size_t k = 0; same && k < hits.size(); ++k) {
         same = is_leaving(hits[k]) == expected[k].leaving;
         // The same crossing: from one parameter to the other the ray stays at the surface.
         if (same && std::abs(value(0.5 * (double(hits[k].t) + expected[k].t))) > 2 * bound)
-          tally.fail(fmt::format("primitive {} is crossed at {}, the reference says {}", i, hits[k].t, expected[k].t), record);
+          tally.fail(fmt::format("primitive {} is crossed at {}, the reference says {}", i,
+                                 hits[k].t, expected[k].t),
+                     record);
       }
       {
         const std::lock_guard lock(tally.mutex);
         tally.crossings += hits.size();
         tally.tangent += !same;
       }
-      if (same || reference::referee(reference, ray, bound) == reference::Verdict::tangent) continue;
+      if (same || reference::referee(reference, ray, bound) == reference::Verdict::tangent)
+        continue;
       // Begins or ends at the surface.
-      if (std::abs(value(ray.t_min)) <= bound || (std::isfinite(ray.t_max) && std::abs(value(ray.t_max)) <= bound)) continue;
-      tally.fail(fmt::format("primitive {} (shape {}): {} crossings, the reference has {}", i, scene.primitives[i].shape,
-                             hits.size(), expected.size()),
+      if (std::abs(value(ray.t_min)) <= bound ||
+          (std::isfinite(ray.t_max) && std::abs(value(ray.t_max)) <= bound))
+        continue;
+      tally.fail(fmt::format("primitive {} (shape {}): {} crossings, the reference has {}", i,
+                             scene.primitives[i].shape, hits.size(), expected.size()),
                  record);
     }
   }
   if (accounted != list.hits.size()) tally.fail("crossings of no primitive", record);
 }
 
-void check_lists(const ListScene& scene, const std::vector<RayRecord>& rays, int width, std::size_t least) {
+void check_lists(const ListScene& scene, const std::vector<RayRecord>& rays, int width,
+                 std::size_t least) {
   const auto lists = list_tracer(width).trace(scene.flat, rays, 512);
   Tally tally;
-  tbb::parallel_for(std::size_t(0), rays.size(), [&](std::size_t i) { check_list(scene, rays[i], lists[i], tally); });
-  std::printf("%zu rays, %zu crossings, %zu primitives touched or begun at, %zu failures\n", rays.size(), tally.crossings,
-              tally.tangent, tally.failures);
+  tbb::parallel_for(std::size_t(0), rays.size(),
+                    [&](std::size_t i) { check_list(scene, rays[i], lists[i], tally); });
+  std::printf("%zu rays, %zu crossings, %zu primitives touched or begun at, %zu failures\n",
+              rays.size(), tally.crossings, tally.tangent, tally.failures);
   EXPECT_EQ(tally.failures, 0u);
   EXPECT_GT(tally.crossings, least);
   EXPECT_LT(tally.tangent, tally.crossings / 200);
@@ -243,7 +265,8 @@ TEST_P(HitLists, ThroughOverlappingInstances) {
     const auto u = [&](float a, float b) { return double(random.uniform(a, b)); };
     dmat4 m = glm::translate(dmat4(1), dvec3(u(-1, 1), u(-1, 1), u(-1, 1)));
     m = glm::rotate(m, u(0, 6), glm::normalize(dvec3(u(-1, 1), u(-1, 1), u(0.1f, 1))));
-    placements.push_back(glm::scale(m, dvec3(u(0.5f, 2), u(0.5f, 2), u(0.5f, 2) * (i % 2 == 0 ? 1 : -1))));
+    placements.push_back(
+        glm::scale(m, dvec3(u(0.5f, 2), u(0.5f, 2), u(0.5f, 2) * (i % 2 == 0 ? 1 : -1))));
   }
   const ListScene scene(mixed_primitives(7, 25, 0.8f), placements);
   check_lists(scene, random_rays(8, 600 * test_scale()), GetParam(), 5000);
@@ -263,7 +286,8 @@ TEST_P(HitLists, ShortListsAreTheNearestAndSaySo) {
     for (std::size_t i = 0; i < rays.size(); ++i) {
       EXPECT_EQ(lists[i].overflow, whole[i].hits.size() > capacity);
       ASSERT_EQ(lists[i].hits.size(), std::min<std::size_t>(capacity, whole[i].hits.size()));
-      for (std::size_t k = 0; k < lists[i].hits.size(); ++k) EXPECT_TRUE(same_hit(lists[i].hits[k], whole[i].hits[k]));
+      for (std::size_t k = 0; k < lists[i].hits.size(); ++k)
+        EXPECT_TRUE(same_hit(lists[i].hits[k], whole[i].hits[k]));
       overflows += lists[i].overflow;
     }
     EXPECT_GT(overflows, capacity < 20 ? 100u : 0u);
@@ -287,7 +311,9 @@ TEST_P(HitLists, FirstIsTheNearestHit) {
 FlatPrimitive solid_box(dvec3 a, dvec3 b) {
   return {shape_box, 0, {float(a.x), float(a.y), float(a.z), float(b.x), float(b.y), float(b.z)}};
 }
-FlatPrimitive solid_sphere(dvec3 c, double r) { return {shape_sphere, 0, {float(c.x), float(c.y), float(c.z), float(r)}}; }
+FlatPrimitive solid_sphere(dvec3 c, double r) {
+  return {shape_sphere, 0, {float(c.x), float(c.y), float(c.z), float(r)}};
+}
 
 struct Expected {
   double t;
@@ -295,7 +321,8 @@ struct Expected {
   std::size_t primitive;
 };
 
-void expect_list(const ListScene& scene, const RayRecord& ray, const std::vector<Expected>& expected, int width) {
+void expect_list(const ListScene& scene, const RayRecord& ray,
+                 const std::vector<Expected>& expected, int width) {
   const RayList list = list_tracer(width).trace(scene.flat, std::span(&ray, 1), 64)[0];
   ASSERT_EQ(list.hits.size(), expected.size());
   for (std::size_t k = 0; k < expected.size(); ++k) {
@@ -306,38 +333,52 @@ void expect_list(const ListScene& scene, const RayRecord& ray, const std::vector
 }
 
 TEST_P(HitLists, TouchingBoxesAreLeftBeforeTheNextIsEntered) {
-  const ListScene scene({solid_box({1, 0, 0}, {2, 1, 1}), solid_box({0, 0, 0}, {1, 1, 1}), solid_box({2, 0, 0}, {3, 1, 1})});
-  expect_list(scene, make_ray({-1, 0.3, 0.4}, {1, 0, 0}),
-              {{1, false, 1}, {2, true, 1}, {2, false, 0}, {3, true, 0}, {3, false, 2}, {4, true, 2}}, GetParam());
-  expect_list(scene, make_ray({4, 0.3, 0.4}, {-2, 0, 0}),
-              {{0.5, false, 2}, {1, true, 2}, {1, false, 0}, {1.5, true, 0}, {1.5, false, 1}, {2, true, 1}}, GetParam());
+  const ListScene scene({solid_box({1, 0, 0}, {2, 1, 1}), solid_box({0, 0, 0}, {1, 1, 1}),
+                         solid_box({2, 0, 0}, {3, 1, 1})});
+  expect_list(
+      scene, make_ray({-1, 0.3, 0.4}, {1, 0, 0}),
+      {{1, false, 1}, {2, true, 1}, {2, false, 0}, {3, true, 0}, {3, false, 2}, {4, true, 2}},
+      GetParam());
+  expect_list(
+      scene, make_ray({4, 0.3, 0.4}, {-2, 0, 0}),
+      {{0.5, false, 2}, {1, true, 2}, {1, false, 0}, {1.5, true, 0}, {1.5, false, 1}, {2, true, 1}},
+      GetParam());
   // Obliquely, at any angle, they are left and entered at the same t.
   Random random(15);
   std::vector<RayRecord> rays;
   for (int i = 0; i < 5000; ++i)
     rays.push_back(make_ray({-1, double(random.uniform(-1, 2)), double(random.uniform(-1, 2))},
-                            {double(random.uniform(0.2f, 2)), double(random.uniform(-1, 1)), double(random.uniform(-1, 1))}));
+                            {double(random.uniform(0.2f, 2)), double(random.uniform(-1, 1)),
+                             double(random.uniform(-1, 1))}));
   std::size_t through = 0;
   for (const RayList& list : list_tracer(GetParam()).trace(scene.flat, rays, 16)) {
-    for (std::size_t k = 0; k < list.hits.size(); ++k) EXPECT_EQ(is_leaving(list.hits[k]), k % 2 == 1);
+    for (std::size_t k = 0; k < list.hits.size(); ++k)
+      EXPECT_EQ(is_leaving(list.hits[k]), k % 2 == 1);
     through += list.hits.size() > 2;
   }
   EXPECT_GT(through, 200u);
 }
 
 TEST_P(HitLists, NestedSolidsAndABeginningInside) {
-  const ListScene scene({solid_sphere({0, 0, 0}, 3), solid_sphere({0, 0, 0}, 1), solid_sphere({0, 0, 0}, 2)});
-  expect_list(scene, make_ray({-5, 0, 0}, {1, 0, 0}),
-              {{2, false, 0}, {3, false, 2}, {4, false, 1}, {6, true, 1}, {7, true, 2}, {8, true, 0}}, GetParam());
-  expect_list(scene, make_ray({0, 0, 0}, {0, 0, 0.5}), {{2, true, 1}, {4, true, 2}, {6, true, 0}}, GetParam());
-  expect_list(scene, make_ray({0, 1.5, 0}, {0, -1, 0}), {{0.5, false, 1}, {2.5, true, 1}, {3.5, true, 2}, {4.5, true, 0}},
+  const ListScene scene(
+      {solid_sphere({0, 0, 0}, 3), solid_sphere({0, 0, 0}, 1), solid_sphere({0, 0, 0}, 2)});
+  expect_list(
+      scene, make_ray({-5, 0, 0}, {1, 0, 0}),
+      {{2, false, 0}, {3, false, 2}, {4, false, 1}, {6, true, 1}, {7, true, 2}, {8, true, 0}},
+      GetParam());
+  expect_list(scene, make_ray({0, 0, 0}, {0, 0, 0.5}), {{2, true, 1}, {4, true, 2}, {6, true, 0}},
               GetParam());
+  expect_list(scene, make_ray({0, 1.5, 0}, {0, -1, 0}),
+              {{0.5, false, 1}, {2.5, true, 1}, {3.5, true, 2}, {4.5, true, 0}}, GetParam());
 }
 
 TEST_P(HitLists, OverlappingAndEqualSolids) {
-  const ListScene scene({solid_sphere({0, 0, 0}, 1), solid_sphere({1, 0, 0}, 1), solid_sphere({0, 0, 0}, 1)});
-  expect_list(scene, make_ray({-2, 0, 0}, {1, 0, 0}),
-              {{1, false, 0}, {1, false, 2}, {2, false, 1}, {3, true, 0}, {3, true, 2}, {4, true, 1}}, GetParam());
+  const ListScene scene(
+      {solid_sphere({0, 0, 0}, 1), solid_sphere({1, 0, 0}, 1), solid_sphere({0, 0, 0}, 1)});
+  expect_list(
+      scene, make_ray({-2, 0, 0}, {1, 0, 0}),
+      {{1, false, 0}, {1, false, 2}, {2, false, 1}, {3, true, 0}, {3, true, 2}, {4, true, 1}},
+      GetParam());
 }
 
 TEST_P(HitLists, WhatIsTouchedIsEnteredBeforeItIsLeft) {
@@ -361,7 +402,8 @@ TEST_P(HitLists, SidesThatAreNotSeenAreNotListed) {
   const auto rays = random_rays(18, 1500);
   const auto all = list_tracer(GetParam()).trace(ListScene(primitives, {placed}).flat, rays, 512);
   for (const uint flag : {CAPLET_INSTANCE_NO_LEAVING, CAPLET_INSTANCE_NO_ENTERING}) {
-    const auto some = list_tracer(GetParam()).trace(ListScene(primitives, {placed}, flag).flat, rays, 512);
+    const auto some =
+        list_tracer(GetParam()).trace(ListScene(primitives, {placed}, flag).flat, rays, 512);
     std::size_t seen = 0, hidden = 0;
     for (std::size_t i = 0; i < rays.size(); ++i) {
       std::size_t k = 0;
@@ -382,7 +424,8 @@ TEST_P(HitLists, SidesThatAreNotSeenAreNotListed) {
   }
 }
 
-/// A closed surface of triangles wound outward: the unit octahedron's faces, divided and put on the sphere.
+/// A closed surface of triangles wound outward: the unit octahedron's faces, divided and put on the
+/// sphere.
 std::vector<FlatPrimitive> ball_of_triangles(int levels) {
   std::vector<std::array<dvec3, 3>> faces;
   for (int x = -1; x <= 1; x += 2)
@@ -395,7 +438,8 @@ std::vector<FlatPrimitive> ball_of_triangles(int levels) {
   for (int level = 0; level < levels; ++level) {
     std::vector<std::array<dvec3, 3>> next;
     for (const auto& [a, b, c] : faces) {
-      const dvec3 ab = glm::normalize(a + b), bc = glm::normalize(b + c), ca = glm::normalize(c + a);
+      const dvec3 ab = glm::normalize(a + b), bc = glm::normalize(b + c),
+                  ca = glm::normalize(c + a);
       next.insert(next.end(), {{a, ab, ca}, {ab, b, bc}, {ca, bc, c}, {ab, bc, ca}});
     }
     faces = next;
@@ -404,7 +448,8 @@ std::vector<FlatPrimitive> ball_of_triangles(int levels) {
   for (const auto& f : faces) {
     FlatPrimitive p{shape_triangle, 0, {}};
     for (std::size_t v = 0; v < 3; ++v)
-      for (int k = 0; k < 3; ++k) p.data[3 * v + static_cast<std::size_t>(k)] = static_cast<float>(f[v][k]);
+      for (int k = 0; k < 3; ++k)
+        p.data[3 * v + static_cast<std::size_t>(k)] = static_cast<float>(f[v][k]);
     out.push_back(p);
   }
   return out;
@@ -418,14 +463,17 @@ TEST_P(HitLists, ClosedMeshesAreEnteredAndLeft) {
   const auto u = [&](float a, float b) { return double(random.uniform(a, b)); };
   for (int i = 0; i < 20000; ++i) {
     const bool inside = i % 2 == 0;
-    const dvec3 o = (inside ? 0.9 * u(0, 1) : u(1.2f, 4)) * glm::normalize(dvec3(u(-1, 1), u(-1, 1), u(-1, 1)));
-    rays.push_back(make_ray(o, inside ? dvec3(u(-1, 1), u(-1, 1), u(-1, 1)) : dvec3(u(-1, 1), u(-1, 1), u(-1, 1)) - o));
+    const dvec3 o =
+        (inside ? 0.9 * u(0, 1) : u(1.2f, 4)) * glm::normalize(dvec3(u(-1, 1), u(-1, 1), u(-1, 1)));
+    rays.push_back(make_ray(
+        o, inside ? dvec3(u(-1, 1), u(-1, 1), u(-1, 1)) : dvec3(u(-1, 1), u(-1, 1), u(-1, 1)) - o));
     begins_inside.push_back(inside);
   }
   const auto lists = list_tracer(GetParam()).trace(scene.flat, rays, 16);
   std::size_t shared = 0;
   for (std::size_t i = 0; i < rays.size(); ++i) {
-    // Edges belong to both faces: their crossings come twice, at the same place. Once each, they take turns.
+    // Edges belong to both faces: their crossings come twice, at the same place. Once each, they
+    // take turns.
     std::vector<bool> turns;
     float last = -1;
     for (const HitRecord& hit : lists[i].hits) {
@@ -436,7 +484,8 @@ TEST_P(HitLists, ClosedMeshesAreEnteredAndLeft) {
       turns.push_back(is_leaving(hit));
       last = hit.t;
     }
-    for (std::size_t k = 0; k < turns.size(); ++k) EXPECT_EQ(turns[k], begins_inside[i] == (k % 2 == 0)) << i;
+    for (std::size_t k = 0; k < turns.size(); ++k)
+      EXPECT_EQ(turns[k], begins_inside[i] == (k % 2 == 0)) << i;
     EXPECT_EQ(turns.size() % 2, begins_inside[i] ? 1u : 0u) << i;
   }
   EXPECT_LT(shared, 40u);

@@ -52,11 +52,13 @@ std::uint32_t surface_number(const HitRecord& hit) { return hit.surface & CAPLET
 ListTracer::ListTracer(const Device& device, int width)
     : device_(device),
       width_(width),
-      kernel_(Program::from_source(device, "list test", flatten_kernels(std::string(scene_parameters) + kernel_text),
+      kernel_(Program::from_source(device, "list test",
+                                   flatten_kernels(std::string(scene_parameters) + kernel_text),
                                    fmt::format("-DCAPLET_REAL_WIDTH={}", width))
                   .kernel("list_all")) {}
 
-std::vector<RayList> ListTracer::trace(const FlatScene& scene, std::span<const RayRecord> rays, std::uint32_t capacity) const {
+std::vector<RayList> ListTracer::trace(const FlatScene& scene, std::span<const RayRecord> rays,
+                                       std::uint32_t capacity) const {
   const std::size_t places = rays.size() * capacity;
   const SceneOnDevice buffers(device_, scene, width_);
   const Buffer<RayRecord> ray_buffer(device_, rays);
@@ -65,8 +67,8 @@ std::vector<RayList> ListTracer::trace(const FlatScene& scene, std::span<const R
   const Buffer<std::uint32_t> counts(device_, rays.size());
   const Buffer<CrossingSurface> surfaces(device_, places);
   cl::Kernel kernel = kernel_;
-  buffers.set_arguments(kernel, ray_buffer, static_cast<cl_uint>(capacity), closest, any, counts, sorted, surfaces,
-                        static_cast<cl_uint>(rays.size()));
+  buffers.set_arguments(kernel, ray_buffer, static_cast<cl_uint>(capacity), closest, any, counts,
+                        sorted, surfaces, static_cast<cl_uint>(rays.size()));
   launch(device_, kernel, rays.size(), 16);
   const auto closest_hits = closest.read(), sorted_hits = sorted.read();
   const auto anys = any.read();

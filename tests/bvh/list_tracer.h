@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Hit lists of a lowered scene on a device, with the surface of each crossing and the nearest hit beside them.
+// Hit lists of a lowered scene on a device, with the surface of each crossing and the nearest hit
+// beside them.
 #pragma once
 
 #include <glm/vec3.hpp>
@@ -38,7 +39,8 @@ class ListTracer {
  public:
   /// `width`: CAPLET_REAL_WIDTH, 8 or 1.
   ListTracer(const Device& device, int width);
-  std::vector<RayList> trace(const FlatScene& scene, std::span<const RayRecord> rays, std::uint32_t capacity) const;
+  std::vector<RayList> trace(const FlatScene& scene, std::span<const RayRecord> rays,
+                             std::uint32_t capacity) const;
 
  private:
   Device device_;

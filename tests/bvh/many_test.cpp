@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Rays that go through the tree many at once find what they find one after the other, to the bit: pools and streams, in the
-// device's own way and the portable one.
+// Rays that go through the tree many at once find what they find one after the other, to the bit:
+// pools and streams, in the device's own way and the portable one.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -39,17 +39,22 @@ class Many : public testing::TestWithParam<std::size_t> {
   /// Number of rays that hit.
   int compare(const std::vector<RayRecord>& rays) {
     const auto hits = same_hits(tracer_, one_by_one_, rays);
-    return static_cast<int>(std::ranges::count_if(hits, [](const HitRecord& hit) { return hit.slot != CAPLET_NONE; }));
+    return static_cast<int>(
+        std::ranges::count_if(hits, [](const HitRecord& hit) { return hit.slot != CAPLET_NONE; }));
   }
   void upload(const Encoded& scene) {
-    for (DeviceTracer* tracer : {&tracer_, &one_by_one_}) tracer->upload(scene.nodes, scene.leaves, {}, scene.tree.root);
+    for (DeviceTracer* tracer : {&tracer_, &one_by_one_})
+      tracer->upload(scene.nodes, scene.leaves, {}, scene.tree.root);
   }
 };
 INSTANTIATE_TEST_SUITE_P(Ways, Many, testing::Range(std::size_t{0}, std::size(ways)),
-                         [](const testing::TestParamInfo<std::size_t>& one) { return ways[one.param].name; });
+                         [](const testing::TestParamInfo<std::size_t>& one) {
+                           return ways[one.param].name;
+                         });
 
 TEST_P(Many, AreAsOneByOneOnAllKinds) {
-  for (const unsigned kind : {unsigned(shape_capsule), unsigned(shape_triangle), unsigned(shape_instance)}) {
+  for (const unsigned kind :
+       {unsigned(shape_capsule), unsigned(shape_triangle), unsigned(shape_instance)}) {
     const Encoded scene = encode(random_scene(41 + kind, kind, 3000, 0.1f));
     upload(scene);
     auto rays = random_rays(42, 20001);
@@ -65,7 +70,8 @@ TEST_P(Many, AreAsOneByOneOnAllKinds) {
 
 TEST_P(Many, AreAsOneByOneThroughInstances) {
   PlacedScene scene = placed_scene(51, 60);
-  for (std::size_t i = 0; i < scene.instances.size(); i += 7) scene.instances[i].flags = CAPLET_INSTANCE_NO_ENTERING;
+  for (std::size_t i = 0; i < scene.instances.size(); i += 7)
+    scene.instances[i].flags = CAPLET_INSTANCE_NO_ENTERING;
   for (DeviceTracer* tracer : {&tracer_, &one_by_one_})
     tracer->upload(scene.nodes, scene.leaves, scene.instances, scene.world.root);
   auto rays = random_rays(52, 20001);
@@ -91,8 +97,8 @@ TEST_P(Many, OfAnyNumberAndWithOnesThatAreNone) {
   }
 }
 
-// Capsules are looked at roughly before they are tested (capsule_near): rays along their silhouettes, from near and far, at many
-// scales and far from the world's origin, must pass.
+// Capsules are looked at roughly before they are tested (capsule_near): rays along their
+// silhouettes, from near and far, at many scales and far from the world's origin, must pass.
 TEST_P(Many, RaysAlongSilhouettesAreSeen) {
   Random random(46);
   for (const float scale : {1e-8f, 1e-3f, 1.0f, 1e5f}) {
@@ -112,8 +118,10 @@ TEST_P(Many, RaysAlongSilhouettesAreSeen) {
           p.data[6] = thin * std::sqrt(length);
           primitives.push_back(p);
           for (int n = 0; n < 40; ++n) {
-            // Across the axis, at a distance of about r from it, or from a point of the axis along it.
-            float from[3], to[3], across[3] = {random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)};
+            // Across the axis, at a distance of about r from it, or from a point of the axis along
+            // it.
+            float from[3], to[3],
+                across[3] = {random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)};
             const float away = n % 2 == 0 ? 3 : 300, place = random.uniform(-0.1f, 1.1f);
             float along = 0, norm = 0;
             for (int k = 0; k < 3; ++k) along += across[k] * axis[k] / length;
@@ -124,7 +132,8 @@ TEST_P(Many, RaysAlongSilhouettesAreSeen) {
             RayRecord ray{};
             ray.t_max = INFINITY;
             for (int k = 0; k < 3; ++k) {
-              to[k] = p.data[k] + place * axis[k] + p.data[6] * (1 + random.uniform(-4, 4) * 1e-7f) * across[k] / std::sqrt(norm);
+              to[k] = p.data[k] + place * axis[k] +
+                      p.data[6] * (1 + random.uniform(-4, 4) * 1e-7f) * across[k] / std::sqrt(norm);
               from[k] = to[k] + scale * away * random.uniform(-1, 1);
             }
             ray.ox = from[0], ray.oy = from[1], ray.oz = from[2];

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// The traversal's stack against the deepest trees that the host may hand it: 2 x CAPLET_TREE_DEPTH_MAX nodes, all eight children
-// of each met by the ray, the one that leads on first.
+// The traversal's stack against the deepest trees that the host may hand it: 2 x
+// CAPLET_TREE_DEPTH_MAX nodes, all eight children of each met by the ray, the one that leads on
+// first.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -61,8 +62,9 @@ __attribute__((vec_type_hint(float8))) __kernel void descend(__global const floa
 #endif
 )";
 
-/// The deepest tree that the host may hand over, all eight children of each node met by the ray, the one that leads on first.
-/// A chain: child 7 is the next node, from x = 1; the others are leaves, from x = 2.
+/// The deepest tree that the host may hand over, all eight children of each node met by the ray,
+/// the one that leads on first. A chain: child 7 is the next node, from x = 1; the others are
+/// leaves, from x = 2.
 std::vector<float> deepest_tree() {
   std::vector<float> nodes(std::size_t(CAPLET_TREE_DEPTH_MAX) * CAPLET_NODE_FLOATS);
   for (std::size_t level = 0; level < CAPLET_TREE_DEPTH_MAX; ++level)
@@ -74,14 +76,15 @@ std::vector<float> deepest_tree() {
         node[8 * k + i] = low[k];
         node[24 + 8 * k + i] = high[k];
       }
-      node[48 + i] = std::bit_cast<float>(leads_on && level + 1 < CAPLET_TREE_DEPTH_MAX ? static_cast<std::uint32_t>(level + 1)
-                                                                                        : 0x80000000u | std::uint32_t(i));
+      node[48 + i] = std::bit_cast<float>(leads_on && level + 1 < CAPLET_TREE_DEPTH_MAX
+                                              ? static_cast<std::uint32_t>(level + 1)
+                                              : 0x80000000u | std::uint32_t(i));
     }
   return nodes;
 }
 
-// A point of a ray, in double; around it eight boxes of no or little extent that it only just touches, moved out by what a
-// shape's own error, 16 eps of the origin's distance, may ask of them.
+// A point of a ray, in double; around it eight boxes of no or little extent that it only just
+// touches, moved out by what a shape's own error, 16 eps of the origin's distance, may ask of them.
 TEST(Slabs, BoxesThatARayMeetsAreMet) {
   const Device& device = test_device();
   constexpr std::uint32_t count = 20000;
@@ -103,8 +106,10 @@ TEST(Slabs, BoxesThatARayMeetsAreMet) {
       float* node = &nodes[i * std::size_t(CAPLET_NODE_FLOATS)];
       for (std::size_t k = 0; k < 3; ++k) {
         const double x = double(o[k]) + t * double(d[k]);
-        // Odd children are touched by the point itself, even ones missed by up to 15 eps of the distance along one axis.
-        const double off = child % 2 == 0 && k == child / 2 % 3 ? 15 * 0x1p-24 * reach * std::abs(u(engine)) : 0;
+        // Odd children are touched by the point itself, even ones missed by up to 15 eps of the
+        // distance along one axis.
+        const double off =
+            child % 2 == 0 && k == child / 2 % 3 ? 15 * 0x1p-24 * reach * std::abs(u(engine)) : 0;
         const double size = child < 4 ? 0 : 1e-3 * std::abs(u(engine));
         float low = static_cast<float>(x + off), high = static_cast<float>(x + off + size);
         // Rounded so that the box still holds the point (moved by `off`): what a builder does.
@@ -119,8 +124,8 @@ TEST(Slabs, BoxesThatARayMeetsAreMet) {
   for (const int width : {8, 1}) {
     const std::vector<float> sent = width == 8 ? nodes : packed_nodes(nodes);
     const Buffer<float> boxes(device, std::span<const float>(sent));
-    const Program program =
-        Program::from_source(device, "nodes_test", flatten_kernels(kernel), fmt::format("-DCAPLET_REAL_WIDTH={}", width));
+    const Program program = Program::from_source(device, "nodes_test", flatten_kernels(kernel),
+                                                 fmt::format("-DCAPLET_REAL_WIDTH={}", width));
     Buffer<cl_uint> out(device, count);
     cl::Kernel meet = program.kernel("meet");
     set_arguments(device, meet, boxes, in, cl_uint(count), out);
@@ -139,12 +144,14 @@ TEST(Stack, HoldsWhatTheDeepestTreesLeave) {
   const Device& device = test_device();
   const std::vector<float> tree = deepest_tree();
   const Buffer<float> nodes(device, std::span<const float>(tree));
-  const Program program = Program::from_source(device, "nodes_test", flatten_kernels(kernel), "-DCAPLET_REAL_WIDTH=8");
+  const Program program =
+      Program::from_source(device, "nodes_test", flatten_kernels(kernel), "-DCAPLET_REAL_WIDTH=8");
   Buffer<cl_uint> out(device, std::span<const cl_uint>(std::vector<cl_uint>(3, 0)));
   cl::Kernel descend = program.kernel("descend");
   set_arguments(device, descend, nodes, cl_uint(CAPLET_TREE_DEPTH_MAX), cl_uint(spare), out);
   launch(device, descend, 1, 1);
-  // Left behind at each of the nodes: seven; written beyond the stack: nothing; nodes without a child that is met: none.
+  // Left behind at each of the nodes: seven; written beyond the stack: nothing; nodes without a
+  // child that is met: none.
   EXPECT_THAT(out.read(), testing::ElementsAre(2 * 7 * CAPLET_TREE_DEPTH_MAX, 0, 0));
 }
 

@@ -23,7 +23,8 @@ FlatPrimitive random_primitive(Random& random, unsigned shape, float size) {
     case shape_tapered_capsule:
       for (int k = 0; k < 3; k++) p.data[3 + k] = p.data[k] + random.uniform(-1, 1) * size;
       p.data[6] = random.uniform(0.01f, 0.3f) * size;
-      if (shape == shape_tapered_capsule) p.data[7] = random.uniform(0, 1) < 0.2f ? 2 * size : random.uniform(0, 0.3f) * size;
+      if (shape == shape_tapered_capsule)
+        p.data[7] = random.uniform(0, 1) < 0.2f ? 2 * size : random.uniform(0, 0.3f) * size;
       break;
     case shape_triangle:
       for (int k = 0; k < 6; k++) p.data[3 + k] = p.data[k % 3] + random.uniform(-1, 1) * size;
@@ -45,7 +46,8 @@ std::vector<FlatPrimitive> random_scene(unsigned seed, unsigned shape, unsigned 
   Random random(seed);
   std::vector<FlatPrimitive> out;
   for (unsigned i = 0; i < count; i++) {
-    out.push_back(random_primitive(random, shape == shape_instance ? random_kinds[i % std::size(random_kinds)] : shape, size));
+    out.push_back(random_primitive(
+        random, shape == shape_instance ? random_kinds[i % std::size(random_kinds)] : shape, size));
     out.back().id = i;
   }
   return out;
@@ -80,7 +82,8 @@ namespace {
 
 void store(const glm::dmat4& m, float* out) {
   for (int row = 0; row < 3; row++)
-    for (int column = 0; column < 4; column++) out[4 * row + column] = static_cast<float>(m[column][row]);
+    for (int column = 0; column < 4; column++)
+      out[4 * row + column] = static_cast<float>(m[column][row]);
 }
 
 glm::dmat4 random_placement(Random& random, unsigned i) {
@@ -117,9 +120,10 @@ PlacedScene placed_scene(unsigned seed, unsigned instance_count) {
       box.data[3 + k] = -INFINITY;
     }
     for (unsigned corner = 0; corner < 8; corner++) {
-      const glm::dvec4 p = placement * glm::dvec4(double(corner & 1 ? out.object.max[0] : out.object.min[0]),
-                                                  double(corner & 2 ? out.object.max[1] : out.object.min[1]),
-                                                  double(corner & 4 ? out.object.max[2] : out.object.min[2]), 1);
+      const glm::dvec4 p =
+          placement * glm::dvec4(double(corner & 1 ? out.object.max[0] : out.object.min[0]),
+                                 double(corner & 2 ? out.object.max[1] : out.object.min[1]),
+                                 double(corner & 4 ? out.object.max[2] : out.object.min[2]), 1);
       for (int k = 0; k < 3; k++) {
         box.data[k] = std::min(box.data[k], static_cast<float>(p[k]));
         box.data[3 + k] = std::max(box.data[3 + k], static_cast<float>(p[k]));

@@ -18,7 +18,9 @@ namespace caplet::test {
 class Random {
  public:
   explicit Random(unsigned seed) : engine_(seed) {}
-  float uniform(float low, float high) { return low + (high - low) * (static_cast<float>(engine_() >> 8) * 0x1p-24f); }
+  float uniform(float low, float high) {
+    return low + (high - low) * (static_cast<float>(engine_() >> 8) * 0x1p-24f);
+  }
   unsigned below(unsigned n) { return static_cast<unsigned>(engine_() % n); }
 
  private:
@@ -26,7 +28,8 @@ class Random {
 };
 
 /// The kinds that these tests make and that brute.h knows; the others: tests/shapes.
-inline constexpr unsigned random_kinds[] = {shape_sphere, shape_capsule, shape_tapered_capsule, shape_triangle, shape_disk};
+inline constexpr unsigned random_kinds[] = {shape_sphere, shape_capsule, shape_tapered_capsule,
+                                            shape_triangle, shape_disk};
 
 /// One primitive of the kind, in about [-1, 1]^3, of about `size`.
 FlatPrimitive random_primitive(Random& random, unsigned shape, float size);
@@ -50,8 +53,8 @@ struct PlacedScene {
 };
 /// Its placement, and the inverse.
 void place(InstanceRecord& instance, const glm::dmat4& world_from_object);
-/// All kinds in the object, capsules in the world, within about [-6, 6]^3; turned, stretched by up to 4 in each direction and,
-/// every other one, mirrored.
+/// All kinds in the object, capsules in the world, within about [-6, 6]^3; turned, stretched by up
+/// to 4 in each direction and, every other one, mirrored.
 PlacedScene placed_scene(unsigned seed, unsigned instance_count);
 
 }  // namespace caplet::test

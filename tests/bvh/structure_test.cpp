@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// The tree: every reference in exactly one leaf, boxes contain, groups apart, independent of threads, bounded for bad input.
+// The tree: every reference in exactly one leaf, boxes contain, groups apart, independent of
+// threads, bounded for bad input.
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
@@ -78,13 +79,15 @@ struct Census {
   }
 };
 
-Tree check(std::span<const Reference> references, std::uint32_t single_group = 0xffffffffu, Effort effort = Effort::full) {
+Tree check(std::span<const Reference> references, std::uint32_t single_group = 0xffffffffu,
+           Effort effort = Effort::full) {
   Tree tree = build(references, single_group, effort);
   Census census{tree, references, single_group, std::vector<int>(references.size(), 0),
                 std::vector<bool>(tree.nodes.size(), false)};
   census.visit(0, 1);
   EXPECT_TRUE(std::all_of(census.seen.begin(), census.seen.end(), [](int n) { return n == 1; }));
-  EXPECT_TRUE(std::all_of(census.node_seen.begin(), census.node_seen.end(), [](bool b) { return b; }));
+  EXPECT_TRUE(
+      std::all_of(census.node_seen.begin(), census.node_seen.end(), [](bool b) { return b; }));
   EXPECT_EQ(census.depth, tree.depth);
   EXPECT_LE(tree.depth, max_depth);
   return tree;
@@ -136,7 +139,8 @@ TEST(Structure, SameTreeForOneAndTwoThreads) {
 
 TEST(Structure, SurfaceAreaCostBeatsSplittingByOrder) {
   const auto boxes = random_boxes(20000, 1, 0.01f);
-  auto same_centre = boxes;  // the same boxes with no position to tell them apart would cost one visit of everything
+  auto same_centre = boxes;  // the same boxes with no position to tell them apart would cost one
+                             // visit of everything
   EXPECT_LT(check(boxes).sah, 0.01 * 20000 / 8);
   for (auto& r : same_centre)
     for (int k = 0; k < 3; k++) {
@@ -171,8 +175,8 @@ TEST(Structure, QuickTreesAreNearlyAsGood) {
 TEST(Structure, CellsOfSeveralGroupsAndLeavesOfOne) { check(random_boxes(150000, 4, 0.02f), 2); }
 
 TEST(Structure, CellsOfUnevenlySpreadReferences) {
-  // Nine in ten within one cell of the grid that all of them make, some at one place, and all of them on one line or in one
-  // plane.
+  // Nine in ten within one cell of the grid that all of them make, some at one place, and all of
+  // them on one line or in one plane.
   auto boxes = random_boxes(100000, 2, 0.001f);
   for (std::size_t i = 0; i < boxes.size(); i++) {
     const float scale = i % 10 == 0 ? 1.0f : i % 3 == 0 ? 0.0f : 1e-4f;
@@ -194,7 +198,9 @@ TEST(Structure, AllBoxesEqual) {
   EXPECT_LE(tree.depth, 14);
 }
 
-TEST(Structure, PointsAtOnePlace) { check(std::vector<Reference>(3000, Reference{{1, 2, 3}, 0, {1, 2, 3}, 0})); }
+TEST(Structure, PointsAtOnePlace) {
+  check(std::vector<Reference>(3000, Reference{{1, 2, 3}, 0, {1, 2, 3}, 0}));
+}
 
 TEST(Structure, FlatAndThreadlikeSets) {
   auto boxes = random_boxes(3000, 1, 0.1f);
@@ -216,7 +222,8 @@ TEST(Structure, HugeAndTinyCoordinates) {
   }
 }
 
-/// Each box twice as far as the last: a split by area peels off one at a time, without limit but for the builder's.
+/// Each box twice as far as the last: a split by area peels off one at a time, without limit but
+/// for the builder's.
 TEST(Structure, ExponentialSpacingStaysWithinTheDepth) {
   std::vector<Reference> boxes;
   for (int i = 0; i < 20000; i++) {

@@ -33,8 +33,9 @@ class Trace : public testing::TestWithParam<unsigned> {
 
 /// shape_instance stands for all kinds mixed.
 INSTANTIATE_TEST_SUITE_P(Shapes, Trace,
-                         testing::Values(unsigned(shape_sphere), unsigned(shape_capsule), unsigned(shape_tapered_capsule),
-                                         unsigned(shape_triangle), unsigned(shape_disk), unsigned(shape_instance)));
+                         testing::Values(unsigned(shape_sphere), unsigned(shape_capsule),
+                                         unsigned(shape_tapered_capsule), unsigned(shape_triangle),
+                                         unsigned(shape_disk), unsigned(shape_instance)));
 
 TEST_P(Trace, AgreesWithBruteForce) {
   for (const float size : {0.05f, 0.5f}) {
@@ -74,16 +75,18 @@ TEST_P(Trace, EncodingsAgreeAndAnyIsWhetherClosestExists) {
     ASSERT_EQ(any_a[i] != 0, exists) << i;
     ASSERT_EQ(any_b[i] != 0, b[i].slot != CAPLET_NONE) << i;
     if (a[i].slot == b[i].slot && a[i].surface == b[i].surface) {
-      // Each is within 16 eps of the true distance relative to the origin's distance and the size, both at most 6 here; grazing
-      // hits are where that is magnified along the ray, checked by the surface distance in AgreesWithBruteForce.
+      // Each is within 16 eps of the true distance relative to the origin's distance and the size,
+      // both at most 6 here; grazing hits are where that is magnified along the ray, checked by the
+      // surface distance in AgreesWithBruteForce.
       if (exists && std::abs(a[i].t - b[i].t) > 1e-5f * std::abs(a[i].t)) different++;
     } else {
       different++;
     }
   }
   EXPECT_GT(hit, 1000);
-  // Contraction may differ between the two texts; what is left are rays that graze a silhouette within the bound: an interval of
-  // 2e-6 around a silhouette of size 0.1 is met by one ray in 1e4 a primitive in the way.
+  // Contraction may differ between the two texts; what is left are rays that graze a silhouette
+  // within the bound: an interval of 2e-6 around a silhouette of size 0.1 is met by one ray in 1e4
+  // a primitive in the way.
   EXPECT_LE(different, 10);
 }
 
@@ -95,7 +98,8 @@ TEST_P(Trace, KernelsForTheseShapesAloneAndWithMoreBitsForTheirKindSeeTheSame) {
   const Encoded scene = encode(primitives), roomy = encode(primitives, 6);
   for (const int width : {8, 1}) {
     DeviceTracer &all = width == 8 ? wide() : scalar(),
-                 own(Device::choose("cpu"), width, "-DCAPLET_LEAF_KIND_BITS=6", {{"shapes", shapes}});
+                 own(Device::choose("cpu"), width, "-DCAPLET_LEAF_KIND_BITS=6",
+                     {{"shapes", shapes}});
     all.upload(scene.nodes, scene.leaves, {}, scene.tree.root);
     own.upload(roomy.nodes, roomy.leaves, {}, roomy.tree.root);
     const auto expected = all.closest(rays), seen = own.closest(rays);
@@ -117,11 +121,12 @@ TEST_P(Trace, LimitsOfTheRay) {
   const auto first = wide().closest(rays);
   auto below = rays, at = rays, beyond = rays;
   for (std::size_t i = 0; i < rays.size(); i++) {
-    below[i].t_max = first[i].t;                                // the hit itself is not in the open interval
-    at[i].t_max = std::nextafter(first[i].t, inf);              // just inside
+    below[i].t_max = first[i].t;                    // the hit itself is not in the open interval
+    at[i].t_max = std::nextafter(first[i].t, inf);  // just inside
     beyond[i].t_min = std::isinf(first[i].t) ? 0 : first[i].t;  // the next one
   }
-  const auto h_below = wide().closest(below), h_at = wide().closest(at), h_beyond = wide().closest(beyond);
+  const auto h_below = wide().closest(below), h_at = wide().closest(at),
+             h_beyond = wide().closest(beyond);
   int counted = 0;
   for (std::size_t i = 0; i < rays.size(); i++) {
     if (first[i].slot == CAPLET_NONE) continue;
@@ -143,7 +148,8 @@ TEST_P(Trace, EqualHitsGoToTheSmallerPrimitive) {
   std::vector<FlatPrimitive> primitives;
   for (int copy = 0; copy < 3; ++copy)
     for (const FlatPrimitive& p : once) primitives.push_back(p);
-  for (std::size_t i = 0; i < primitives.size(); ++i) primitives[i].id = static_cast<std::uint32_t>(primitives.size() - i);
+  for (std::size_t i = 0; i < primitives.size(); ++i)
+    primitives[i].id = static_cast<std::uint32_t>(primitives.size() - i);
   const Encoded scene = encode(primitives);
   const auto slot = [&](std::size_t i) { return scene.tree.slots[i]; };
   const auto rays = random_rays(14, 3000);
@@ -162,8 +168,8 @@ TEST_P(Trace, EqualHitsGoToTheSmallerPrimitive) {
   }
 }
 
-// Entries of the stack order by the bits of where the ray enters: a zero with a sign must not get there. Rays begin within boxes,
-// and in the planes of their faces through the world's origin.
+// Entries of the stack order by the bits of where the ray enters: a zero with a sign must not get
+// there. Rays begin within boxes, and in the planes of their faces through the world's origin.
 TEST_P(Trace, ZerosOfEitherSignAreTheSame) {
   const auto primitives = random_scene(15, GetParam(), 400, 0.6f);
   const Encoded scene = encode(primitives);

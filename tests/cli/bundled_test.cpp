@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// The driver of a portable installation, for which this machine's PoCL stands here: in a folder of links, with a linker that
-// leaves a trace.
+// The driver of a portable installation, for which this machine's PoCL stands here: in a folder of
+// links, with a linker that leaves a trace.
 #include <dlfcn.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -36,14 +36,16 @@ class Bundled : public testing::Test {
  protected:
   void SetUp() override {
     const fs::path pocl = folder_of_pocl(), library = driver_ / "lib/caplet";
-    if (pocl.empty() || !fs::exists(pocl / "../../share/pocl")) GTEST_SKIP() << "needs a PoCL that can be moved (libpocl.so.2)";
+    if (pocl.empty() || !fs::exists(pocl / "../../share/pocl"))
+      GTEST_SKIP() << "needs a PoCL that can be moved (libpocl.so.2)";
     fs::create_directories(library);
     fs::create_directories(driver_ / "share");
     fs::create_directories(driver_ / "bin");
     fs::create_symlink(pocl / "libpocl.so.2", library / "libpocl-caplet.so.2");
     fs::create_symlink(pocl / "pocl", library / "pocl");
     fs::create_symlink(fs::canonical(pocl / "../../share/pocl"), driver_ / "share/pocl");
-    test::write_file(driver_ / "bin/ld", "#!/bin/sh\ntouch '" + trace_.string() + "'\nPATH=${PATH#*:}\nexec ld \"$@\"\n");
+    test::write_file(driver_ / "bin/ld", "#!/bin/sh\ntouch '" + trace_.string() +
+                                             "'\nPATH=${PATH#*:}\nexec ld \"$@\"\n");
     fs::permissions(driver_ / "bin/ld", fs::perms::owner_all);
     fs::create_directories(none_);
   }
@@ -57,8 +59,8 @@ class Bundled : public testing::Test {
   }
 
   const fs::path folder_ = test::folder_with_scene(), temporary_ = test::temporary_folder();
-  const fs::path driver_ = temporary_ / "pocl", none_ = temporary_ / "none", cache_ = temporary_ / "cache",
-                 trace_ = temporary_ / "linked";
+  const fs::path driver_ = temporary_ / "pocl", none_ = temporary_ / "none",
+                 cache_ = temporary_ / "cache", trace_ = temporary_ / "linked";
 };
 
 TEST_F(Bundled, IsListedAsSuch) {
@@ -81,10 +83,11 @@ TEST_F(Bundled, CompilesWithItsOwnLinkerAndCache) {
 
 TEST_F(Bundled, MakesAMachineWithoutDriversAWholeOne) {
   // The machine's own cache saves compiling all kernels once more.
-  const Result result = run({"doctor", "--timeout", "100"}, pocl_cache_folder([](const std::string& name) {
-                                                              const char* value = std::getenv(name.c_str());
-                                                              return std::string(value ? value : "");
-                                                            }).string());
+  const Result result =
+      run({"doctor", "--timeout", "100"}, pocl_cache_folder([](const std::string& name) {
+                                            const char* value = std::getenv(name.c_str());
+                                            return std::string(value ? value : "");
+                                          }).string());
   EXPECT_EQ(result.code, 0) << result.out;
   EXPECT_THAT(result.out, HasSubstr("no OpenCL driver is registered"));
   EXPECT_THAT(result.out, HasSubstr("the bundled one is used"));

@@ -41,8 +41,12 @@ TEST(Convert, NeuronsKeepTheirFraming) {
   const auto folder = test::folder_with_scene();
   const std::string neuron = (test::source_folder() / "scenes/neuron.swc").string();
   EXPECT_EQ(test::run_program({"convert", neuron, "out.pbrt"}, folder).code, 0);
-  for (const auto& [scene, picture] : {std::pair(neuron, "a.exr"), std::pair(std::string("out.pbrt"), "b.exr")})
-    EXPECT_EQ(test::run_program({"render", scene, "-q", "--size", "40x60", "--spp", "2", "-o", picture}, folder).code, 0);
+  for (const auto& [scene, picture] :
+       {std::pair(neuron, "a.exr"), std::pair(std::string("out.pbrt"), "b.exr")})
+    EXPECT_EQ(test::run_program(
+                  {"render", scene, "-q", "--size", "40x60", "--spp", "2", "-o", picture}, folder)
+                  .code,
+              0);
   expect_same(read_exr(folder / "a.exr"), read_exr(folder / "b.exr"));
 }
 

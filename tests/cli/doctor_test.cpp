@@ -60,24 +60,28 @@ fs::path drivers_with(const std::string& library) {
 Result doctor_with(const std::string& library, const std::vector<std::string>& arguments = {}) {
   std::vector<std::string> all{"doctor"};
   all.insert(all.end(), arguments.begin(), arguments.end());
-  return test::run_program(all, test::temporary_folder(), {{"OCL_ICD_VENDORS", drivers_with(library).string()}});
+  return test::run_program(all, test::temporary_folder(),
+                           {{"OCL_ICD_VENDORS", drivers_with(library).string()}});
 }
 
 TEST(Doctor, AHealthyMachineHasNothingWrong) {
   const Result result = test::run_program({"doctor", "--timeout", "100"}, test::temporary_folder());
   EXPECT_TRUE(wrong(result).empty()) << result.out;
-  EXPECT_THAT(result.out, AllOf(HasSubstr("passes the self-test"), HasSubstr("platform "), HasSubstr("cache: ")));
+  EXPECT_THAT(result.out, AllOf(HasSubstr("passes the self-test"), HasSubstr("platform "),
+                                HasSubstr("cache: ")));
   EXPECT_EQ(result.err, "");
 }
 
 TEST(Doctor, JsonHoldsFindingsPlatformsAndDevices) {
   const std::string device = test::test_device_choice().empty() ? "0" : test::test_device_choice();
-  const Result result = test::run_program({"doctor", "--json", "--device", device, "--timeout", "100"}, test::temporary_folder());
+  const Result result = test::run_program(
+      {"doctor", "--json", "--device", device, "--timeout", "100"}, test::temporary_folder());
   EXPECT_EQ(result.code, 0) << result.out;
   const auto json = nlohmann::json::parse(result.out);
   int tests = 0;
   for (const auto& finding : json.at("findings")) {
-    for (const char* key : {"state", "about", "what", "fix"}) EXPECT_TRUE(finding.at(key).is_string());
+    for (const char* key : {"state", "about", "what", "fix"})
+      EXPECT_TRUE(finding.at(key).is_string());
     tests += finding.at("what").get<std::string>().find("self-test") != std::string::npos &&
              finding.at("about").get<std::string>().starts_with("device ");
   }
@@ -88,7 +92,8 @@ TEST(Doctor, JsonHoldsFindingsPlatformsAndDevices) {
 }
 
 TEST(Doctor, AnUnknownDeviceIsAUsageError) {
-  const Result result = test::run_program({"doctor", "--device", "no such device"}, test::temporary_folder());
+  const Result result =
+      test::run_program({"doctor", "--device", "no such device"}, test::temporary_folder());
   EXPECT_EQ(result.code, 2);
   EXPECT_THAT(result.err, HasSubstr("no such device"));
 }
@@ -99,14 +104,16 @@ TEST(Doctor, AnEmptyFolderOfDrivers) {
   const std::vector<Line> found = wrong(result);
   ASSERT_EQ(found.size(), 1u) << result.out;
   EXPECT_THAT(found[0].text, AllOf(HasSubstr(empty.string()), HasSubstr("holds no .icd file")));
-  EXPECT_THAT(found[0].fix, AllOf(HasSubstr("unset OCL_ICD_VENDORS"), HasSubstr("apt-get install pocl-opencl-icd")));
+  EXPECT_THAT(found[0].fix, AllOf(HasSubstr("unset OCL_ICD_VENDORS"),
+                                  HasSubstr("apt-get install pocl-opencl-icd")));
 }
 
 TEST(Doctor, ADriverThatIsMissing) {
   const std::vector<Line> found = wrong(doctor_with("libno-such-driver.so.7"));
   ASSERT_EQ(found.size(), 2u);
-  EXPECT_THAT(found[0].text, AllOf(HasSubstr("one.icd"), HasSubstr("libno-such-driver.so.7 cannot be loaded"),
-                                   HasSubstr("cannot open shared object file")));
+  EXPECT_THAT(found[0].text,
+              AllOf(HasSubstr("one.icd"), HasSubstr("libno-such-driver.so.7 cannot be loaded"),
+                    HasSubstr("cannot open shared object file")));
   EXPECT_THAT(found[0].fix, AllOf(HasSubstr("sudo mv "), HasSubstr("one.icd.off")));
   EXPECT_THAT(found[1].text, HasSubstr("no OpenCL platform"));
 }
@@ -114,41 +121,49 @@ TEST(Doctor, ADriverThatIsMissing) {
 TEST(Doctor, ADriverThatCrashes) {
   const std::vector<Line> found = wrong(doctor_with(CAPLET_DRIVER_crash));
   ASSERT_EQ(found.size(), 2u);
-  EXPECT_THAT(found[0].text, AllOf(HasSubstr(CAPLET_DRIVER_crash), HasSubstr("signal 6"), HasSubstr("this driver is broken")));
+  EXPECT_THAT(found[0].text, AllOf(HasSubstr(CAPLET_DRIVER_crash), HasSubstr("signal 6"),
+                                   HasSubstr("this driver is broken")));
   EXPECT_THAT(found[0].fix, HasSubstr("one.icd.off"));
 }
 
 TEST(Doctor, ADriverThatHangs) {
   const std::vector<Line> found = wrong(doctor_with(CAPLET_DRIVER_hang, {"--timeout", "0.5"}));
   ASSERT_EQ(found.size(), 2u);
-  EXPECT_THAT(found[0].text, AllOf(HasSubstr(CAPLET_DRIVER_hang), HasSubstr("gave no answer in 0.5 s")));
+  EXPECT_THAT(found[0].text,
+              AllOf(HasSubstr(CAPLET_DRIVER_hang), HasSubstr("gave no answer in 0.5 s")));
 }
 
 TEST(Doctor, ABrokenDriverDoesNotHideAWorkingOne) {
-  const auto json = nlohmann::json::parse(test::run_program({"doctor", "--json"}, test::temporary_folder()).out);
+  const auto json =
+      nlohmann::json::parse(test::run_program({"doctor", "--json"}, test::temporary_folder()).out);
   std::string working;  // one with a device
   for (const auto& finding : json.at("findings")) {
-    if (finding.at("state") != "ok" || !finding.at("what").get<std::string>().starts_with("the driver ")) continue;
+    if (finding.at("state") != "ok" ||
+        !finding.at("what").get<std::string>().starts_with("the driver "))
+      continue;
     std::string driver = finding.at("what").get<std::string>().substr(11);
     driver.erase(driver.find(' '));
     const fs::path alone = test::temporary_folder();
     test::write_file(alone / "one.icd", driver + "\n");
-    const Result devices = test::run_program({"devices", "--json"}, alone, {{"OCL_ICD_VENDORS", alone.string()}});
+    const Result devices =
+        test::run_program({"devices", "--json"}, alone, {{"OCL_ICD_VENDORS", alone.string()}});
     if (!nlohmann::json::parse(devices.out).empty()) working = driver;
   }
   ASSERT_NE(working, "");
   const fs::path folder = drivers_with(CAPLET_DRIVER_crash);
   test::write_file(folder / "two.icd", working + "\n");
-  const Result result =
-      test::run_program({"doctor", "--timeout", "100"}, test::temporary_folder(), {{"OCL_ICD_VENDORS", folder.string()}});
+  const Result result = test::run_program({"doctor", "--timeout", "100"}, test::temporary_folder(),
+                                          {{"OCL_ICD_VENDORS", folder.string()}});
   EXPECT_EQ(wrong(result).size(), 1u) << result.out;
-  EXPECT_THAT(result.out, AllOf(HasSubstr("passes the self-test"), HasSubstr("fix: until it is mended: "), HasSubstr(working)));
+  EXPECT_THAT(result.out, AllOf(HasSubstr("passes the self-test"),
+                                HasSubstr("fix: until it is mended: "), HasSubstr(working)));
 }
 
 TEST(Doctor, ACacheFolderThatIsAFile) {
   const fs::path folder = test::temporary_folder();
   test::write_file(folder / "file", "in the way");
-  const Result result = test::run_program({"doctor", "--timeout", "100"}, folder, {{"CAPLET_CACHE", (folder / "file").string()}});
+  const Result result = test::run_program({"doctor", "--timeout", "100"}, folder,
+                                          {{"CAPLET_CACHE", (folder / "file").string()}});
   const std::vector<Line> found = wrong(result);
   ASSERT_EQ(found.size(), 1u) << result.out;
   EXPECT_THAT(found[0].text, AllOf(HasSubstr("cache: "), HasSubstr("is not a folder")));
@@ -163,9 +178,9 @@ bool alive(const std::string& process) {
 
 TEST(Doctor, CtrlCEndsItAndItsChildren) {
   const fs::path folder = test::temporary_folder(), process = test::temporary_folder() / "process";
-  test::Running running(
-      {"doctor", "--timeout", "300"}, folder,
-      {{"OCL_ICD_VENDORS", drivers_with(CAPLET_DRIVER_hang).string()}, {"CAPLET_TEST_PROCESS", process.string()}});
+  test::Running running({"doctor", "--timeout", "300"}, folder,
+                        {{"OCL_ICD_VENDORS", drivers_with(CAPLET_DRIVER_hang).string()},
+                         {"CAPLET_TEST_PROCESS", process.string()}});
   std::string child;
   for (int i = 0; i < 6000 && !child.ends_with('\n'); ++i) {
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
@@ -176,7 +191,8 @@ TEST(Doctor, CtrlCEndsItAndItsChildren) {
   EXPECT_TRUE(alive(child));
   running.send(SIGINT);
   EXPECT_EQ(running.wait().signal, SIGINT);
-  for (int i = 0; i < 1000 && alive(child); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  for (int i = 0; i < 1000 && alive(child); ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
   EXPECT_FALSE(alive(child));
 }
 

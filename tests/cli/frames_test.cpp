@@ -52,10 +52,13 @@ void expect_equal(const fs::path& a, const fs::path& b) {
     EXPECT_EQ(channel.uints, other.find(channel.name)->uints) << b << " " << channel.name;
   }
 }
-bool differ(const fs::path& a, const fs::path& b) { return read_exr(a).find("R")->floats != read_exr(b).find("R")->floats; }
+bool differ(const fs::path& a, const fs::path& b) {
+  return read_exr(a).find("R")->floats != read_exr(b).find("R")->floats;
+}
 
 TEST(SeveralScenes, AreInOnePicture) {
-  const fs::path folder = folder_of({{"a.swc", neuron}, {"b.swc", "1 2 0 9 0 1 -1\n2 2 4 9 0 1 1\n"}});
+  const fs::path folder =
+      folder_of({{"a.swc", neuron}, {"b.swc", "1 2 0 9 0 1 -1\n2 2 4 9 0 1 1\n"}});
   ASSERT_EQ(run(folder, {"a.swc", "b.swc", "-o", "out.exr"}).code, 0);
   EXPECT_EQ(read_exr(folder / "out.exr").metadata.at("caplet.scene"), "a.swc b.swc");
   const Result info = run_program({"info", "a.swc", "b.swc"}, folder);
@@ -73,7 +76,8 @@ TEST(SeveralScenes, AreInOnePicture) {
 
 TEST(SeveralOutputs, AreOfOneRender) {
   const fs::path folder = test::folder_with_scene();
-  const Result result = render(folder, {"-o", "a.exr", "-o", "b.png", "-o", "c.exr", "-o", "d.jpg", "--preview", "e.png"});
+  const Result result = render(
+      folder, {"-o", "a.exr", "-o", "b.png", "-o", "c.exr", "-o", "d.jpg", "--preview", "e.png"});
   ASSERT_EQ(result.code, 0) << result.err;
   EXPECT_EQ(names_in(folder), (Names{"a.exr", "b.png", "c.exr", "d.jpg", "e.png", "scene.pbrt"}));
   expect_equal(folder / "a.exr", folder / "c.exr");
@@ -87,25 +91,29 @@ TEST(SeveralOutputs, AreOfOneRender) {
 TEST(Frames, ATurntableGoesRoundOnce) {
   const fs::path folder = folder_of({{"a.swc", neuron}});
   ASSERT_EQ(run(folder, {"a.swc", "--turntable", "4", "-o", "t.##.exr", "-o", "p%d.png"}).code, 0);
-  EXPECT_EQ(names_in(folder),
-            (Names{"a.swc", "p1.png", "p2.png", "p3.png", "p4.png", "t.01.exr", "t.02.exr", "t.03.exr", "t.04.exr"}));
+  EXPECT_EQ(names_in(folder), (Names{"a.swc", "p1.png", "p2.png", "p3.png", "p4.png", "t.01.exr",
+                                     "t.02.exr", "t.03.exr", "t.04.exr"}));
   EXPECT_TRUE(differ(folder / "t.01.exr", folder / "t.02.exr"));
   EXPECT_TRUE(differ(folder / "t.01.exr", folder / "t.03.exr"));
   // Each by itself is the same, whatever was rendered before it.
-  ASSERT_EQ(run(folder, {"a.swc", "--turntable", "4", "--frames", "3-3", "-o", "again.#.exr"}).code, 0);
+  ASSERT_EQ(run(folder, {"a.swc", "--turntable", "4", "--frames", "3-3", "-o", "again.#.exr"}).code,
+            0);
   expect_equal(folder / "t.03.exr", folder / "again.3.exr");
   EXPECT_FALSE(fs::exists(folder / "again.1.exr"));
 }
 
-// A camera that the file says goes round what is up there, and lights stay: of a scene that is the same all round, frames
-// differ by them alone. Half a turn of a ball with a light at the camera's side leaves the dark side.
+// A camera that the file says goes round what is up there, and lights stay: of a scene that is the
+// same all round, frames differ by them alone. Half a turn of a ball with a light at the camera's
+// side leaves the dark side.
 TEST(Frames, OnlyTheCameraOfAFileMoves) {
   const fs::path folder = test::folder_with_scene(
       "LookAt 0 0 5  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" 40\n"
       "Film \"rgb\" \"integer xresolution\" 9 \"integer yresolution\" 9\nWorldBegin\n"
       "LightSource \"distant\" \"point3 from\" [0 0 1] \"point3 to\" [0 0 0]\nShape \"sphere\"\n");
   ASSERT_EQ(render(folder, {"--turntable", "2", "-o", "f#.exr", "--spp", "4"}).code, 0);
-  const auto middle = [&](const char* name) { return read_exr(folder / name).find("R")->floats.at(40); };
+  const auto middle = [&](const char* name) {
+    return read_exr(folder / name).find("R")->floats.at(40);
+  };
   EXPECT_GT(middle("f1.exr"), 0.1F);
   EXPECT_EQ(middle("f2.exr"), 0.0F);
   const LayeredImage first = read_exr(folder / "f1.exr"), second = read_exr(folder / "f2.exr");
@@ -115,8 +123,11 @@ TEST(Frames, OnlyTheCameraOfAFileMoves) {
 
 TEST(Frames, ModelsFollowEachOtherBeforeOneCamera) {
   const fs::path folder = folder_of({{"m.xyz", two_frames}});
-  ASSERT_EQ(
-      run_program({"render", "m.xyz", "--frames", "all", "-o", "m#.exr", "-q", "--size", "96x64", "--spp", "1"}, folder).code, 0);
+  ASSERT_EQ(run_program({"render", "m.xyz", "--frames", "all", "-o", "m#.exr", "-q", "--size",
+                         "96x64", "--spp", "1"},
+                        folder)
+                .code,
+            0);
   EXPECT_EQ(names_in(folder), (Names{"m.xyz", "m1.exr", "m2.exr"}));
   EXPECT_TRUE(differ(folder / "m1.exr", folder / "m2.exr"));
   // Nothing is cut off, though the second frame is three times as large: no object at the rim.
@@ -138,7 +149,8 @@ TEST(Frames, ModelsFollowEachOtherBeforeOneCamera) {
 }
 
 TEST(Frames, NumberedFilesFollowEachOther) {
-  const fs::path folder = folder_of({{"n.01.swc", neuron}, {"n.02.swc", "1 1 0 0 0 2 -1\n2 3 3 4 0 1 1\n"}});
+  const fs::path folder =
+      folder_of({{"n.01.swc", neuron}, {"n.02.swc", "1 1 0 0 0 2 -1\n2 3 3 4 0 1 1\n"}});
   ASSERT_EQ(run(folder, {"n.##.swc", "--frames", "1-2", "-o", "n.##.exr"}).code, 0);
   EXPECT_TRUE(differ(folder / "n.01.exr", folder / "n.02.exr"));
 }
@@ -155,17 +167,18 @@ TEST(Frames, WhatIsThereMayStay) {
 std::map<std::string, std::string> with_stand_in(const fs::path& folder) {
   const fs::path bin = folder.parent_path() / (folder.filename().string() + "-bin");
   fs::create_directories(bin);
-  write_file(
-      bin / "ffmpeg",
-      "#!/bin/sh\nfor last; do :; done\npictures=\"\"\nwhile [ $# -gt 0 ]; do [ \"$1\" = -i ] && pictures=\"$2\"; shift; done\n"
-      "ls \"$(dirname \"$pictures\")\" | grep -c png > \"$last\"\n");
+  write_file(bin / "ffmpeg",
+             "#!/bin/sh\nfor last; do :; done\npictures=\"\"\nwhile [ $# -gt 0 ]; do [ \"$1\" = -i "
+             "] && pictures=\"$2\"; shift; done\n"
+             "ls \"$(dirname \"$pictures\")\" | grep -c png > \"$last\"\n");
   ::chmod((bin / "ffmpeg").c_str(), 0755);
   return {{"PATH", bin.string() + ":" + std::getenv("PATH")}};
 }
 
 TEST(Frames, FfmpegMakesAMovie) {
   const fs::path folder = folder_of({{"a.swc", neuron}});
-  const Names arguments{"render", "a.swc", "--turntable", "3", "-o", "m.mp4", "-q", "--size", "24x16", "--spp", "1"};
+  const Names arguments{"render", "a.swc",  "--turntable", "3",     "-o", "m.mp4",
+                        "-q",     "--size", "24x16",       "--spp", "1"};
   const Result result = run_program(arguments, folder, with_stand_in(folder));
   ASSERT_EQ(result.code, 0) << result.err;
   EXPECT_EQ(names_in(folder), (Names{"a.swc", "m.mp4"}));
@@ -177,7 +190,9 @@ TEST(Frames, FfmpegMakesAMovie) {
 
 TEST(Frames, AnInterruptLeavesWholeOnes) {
   const fs::path folder = folder_of({{"a.swc", neuron}});
-  test::Running running({"render", "a.swc", "--turntable", "1000", "-o", "t.####.exr", "--size", "64x48", "--spp", "4"}, folder);
+  test::Running running({"render", "a.swc", "--turntable", "1000", "-o", "t.####.exr", "--size",
+                         "64x48", "--spp", "4"},
+                        folder);
   ASSERT_TRUE(running.wait_for_stderr("frame 2: wrote"));
   running.send(SIGINT);
   const Result result = running.wait();
@@ -204,9 +219,11 @@ TEST(Frames, SayWhatIsWrong) {
   refused({"a.swc", "--turntable", "3", "-o", "t.exr"}, "-o", "t.####.exr");
   refused({"a.swc", "--turntable", "3"}, "-o", "frames need a name");
   refused({"a.swc", "--turntable", "0", "-o", "t#.exr"}, "--turntable", "");
-  refused({"a.swc", "--turntable", "3", "--frames", "2-4", "-o", "t#.exr"}, "--frames", "there are 3 frames");
+  refused({"a.swc", "--turntable", "3", "--frames", "2-4", "-o", "t#.exr"}, "--frames",
+          "there are 3 frames");
   for (const char* frames : {"0-1", "2-1", "a", "1-", "-2", "1-2-3"})
-    refused({"a.swc", "--turntable", "3", std::string("--frames=") + frames, "-o", "t#.exr"}, "--frames", "neither A-B");
+    refused({"a.swc", "--turntable", "3", std::string("--frames=") + frames, "-o", "t#.exr"},
+            "--frames", "neither A-B");
   refused({"a.swc", "--frames", "1-2", "-o", "t#.exr"}, "--frames", "the scene has one frame");
   refused({"m.xyz", "--frames", "1-3", "-o", "t#.exr"}, "--frames", "there are 2 frames");
   refused({"m.xyz", "--frames", "all", "--model", "2", "-o", "t#.exr"}, "--model", "does not go");
@@ -215,7 +232,8 @@ TEST(Frames, SayWhatIsWrong) {
   refused({"a.swc", "-o", "m.mp4"}, "-o", "goes with --turntable or --frames");
   refused({"a.swc", "-o", "m.xyzzy"}, "-o", "pictures are written as .exr");
   refused({"a.swc", "--skip-existing", "-o", "t.exr"}, "--skip-existing", "goes with");
-  refused({"a.swc", "--turntable", "3", "--stereo", "1", "-o", "t#.exr"}, "--stereo", "does not go");
+  refused({"a.swc", "--turntable", "3", "--stereo", "1", "-o", "t#.exr"}, "--stereo",
+          "does not go");
   refused({"a.swc", "-o", "none", "-o", "t.exr"}, "-o", "does not go with another");
   refused({"a.swc", "-o", "t.exr", "-o", "t.exr"}, "-o", "t.exr");
 }

@@ -41,7 +41,9 @@ TEST(Layers, AreThoseOfTheList) {
   for (std::size_t i = 0; i < layer_rows.size(); ++i) {
     const std::string option = layer_rows[i].option;
     if (option.empty()) continue;
-    EXPECT_EQ(image_with({"--layers", option}).channels.size(), Layers::none().with(static_cast<Layer>(i)).channels()) << option;
+    EXPECT_EQ(image_with({"--layers", option}).channels.size(),
+              Layers::none().with(static_cast<Layer>(i)).channels())
+        << option;
   }
   const LayeredImage alone = image_with({"--layers", "none"});
   EXPECT_THAT(names(alone), ElementsAre("A", "B", "G", "R"));
@@ -49,7 +51,8 @@ TEST(Layers, AreThoseOfTheList) {
   EXPECT_THAT(names(image_with({"--layers", "none", "--variance"})),
               ElementsAre("A", "B", "G", "R", "variance.B", "variance.G", "variance.R"));
   const LayeredImage some = image_with({"--layers", "Z,N,primitive"});
-  EXPECT_THAT(names(some), ElementsAre("A", "B", "G", "N.X", "N.Y", "N.Z", "R", "Z", "primitive.id"));
+  EXPECT_THAT(names(some),
+              ElementsAre("A", "B", "G", "N.X", "N.Y", "N.Z", "R", "Z", "primitive.id"));
   for (const LayeredImage* image : {&alone, &some})
     for (const Channel& channel : image->channels) {
       const Channel* whole = all.find(channel.name);
@@ -62,22 +65,26 @@ TEST(Layers, AreThoseOfTheList) {
 TEST(Layers, PixelsBeyondAFloatAreSaidOnceForThePicture) {
   // Radiance 10^4 at an exposure of 10^36; enough rows for several bands.
   const auto folder = test::folder_with_scene(
-      "LookAt 0 -5 1  0 0 0  0 0 1\nCamera \"perspective\"\nSampler \"zsobol\" \"integer pixelsamples\" 1\n"
-      "Film \"rgb\" \"integer xresolution\" 2600 \"integer yresolution\" 1300 \"float iso\" 1e38\nWorldBegin\n"
-      "LightSource \"infinite\" \"rgb L\" [ 10000 10000 10000 ]\nShape \"sphere\" \"float radius\" 0.01\n");
+      "LookAt 0 -5 1  0 0 0  0 0 1\nCamera \"perspective\"\nSampler \"zsobol\" \"integer "
+      "pixelsamples\" 1\n"
+      "Film \"rgb\" \"integer xresolution\" 2600 \"integer yresolution\" 1300 \"float iso\" "
+      "1e38\nWorldBegin\n"
+      "LightSource \"infinite\" \"rgb L\" [ 10000 10000 10000 ]\nShape \"sphere\" \"float radius\" "
+      "0.01\n");
   const test::Result result = test::render(folder, {"-o", "out.exr", "--layers", "none"});
   EXPECT_EQ(result.code, 0) << result.err;
-  EXPECT_THAT(result.err,
-              HasSubstr("3380000 of 3380000 pixels are beyond the range of a float and written black (the first: 0,0)"));
+  EXPECT_THAT(result.err, HasSubstr("3380000 of 3380000 pixels are beyond the range of a float and "
+                                    "written black (the first: 0,0)"));
   EXPECT_EQ(std::ranges::count(result.err, '\n'), 1) << result.err;
 }
 
 TEST(Layers, UnknownOnesAreRefusedByTheNearestName) {
   const auto folder = test::folder_with_scene();
-  for (const auto& [list, wrong, nearest] : {std::array<std::string, 3>{"albdo", "'albdo'", "'albedo'"},
-                                             {"Z,objects", "'objects'", "'object'"},
-                                             {"Z,", "''", "--layers"},
-                                             {"all,Z", "'all'", "--layers"}}) {
+  for (const auto& [list, wrong, nearest] :
+       {std::array<std::string, 3>{"albdo", "'albdo'", "'albedo'"},
+        {"Z,objects", "'objects'", "'object'"},
+        {"Z,", "''", "--layers"},
+        {"all,Z", "'all'", "--layers"}}) {
     const test::Result result = test::render(folder, {"-o", "out.exr", "--layers", list});
     EXPECT_EQ(result.code, 2) << list;
     EXPECT_THAT(result.err, StartsWith("caplet: error: --layers: ")) << list;

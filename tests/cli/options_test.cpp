@@ -33,7 +33,8 @@ class Options : public testing::Test {
     run(more);
     return read_exr(folder_ / "out.exr");
   }
-  nlohmann::json json(const Names& arguments, const std::map<std::string, std::string>& environment = {}) const {
+  nlohmann::json json(const Names& arguments,
+                      const std::map<std::string, std::string>& environment = {}) const {
     return nlohmann::json::parse(run(arguments, environment).out);
   }
 
@@ -41,7 +42,8 @@ class Options : public testing::Test {
 };
 
 TEST_F(Options, SeedMakesOtherSamples) {
-  const LayeredImage one = picture({"--seed", "1"}), again = picture({"--seed", "1"}), two = picture({"--seed", "2"});
+  const LayeredImage one = picture({"--seed", "1"}), again = picture({"--seed", "1"}),
+                     two = picture({"--seed", "2"});
   EXPECT_EQ(one.find("R")->floats, again.find("R")->floats);
   EXPECT_NE(one.find("R")->floats, two.find("R")->floats);
 }
@@ -63,9 +65,12 @@ TEST_F(Options, HelpSaysWhatPicturesUsuallyHave) {
   EXPECT_EQ(mesh.at("image").at("width"), 1280);
 }
 
-// Without scattering no light comes from a surface that does not emit; the sky is seen all the same.
+// Without scattering no light comes from a surface that does not emit; the sky is seen all the
+// same.
 TEST_F(Options, MaxDepthLimitsScattering) {
-  const auto center = [](const LayeredImage& image) { return image.find("R")->floats[8 * 24 + 12]; };
+  const auto center = [](const LayeredImage& image) {
+    return image.find("R")->floats[8 * 24 + 12];
+  };
   const LayeredImage none = picture({"--max-depth", "0"});
   EXPECT_EQ(center(none), 0);
   EXPECT_GT(none.find("R")->floats[0], 0);
@@ -74,7 +79,9 @@ TEST_F(Options, MaxDepthLimitsScattering) {
 
 // No sample is brighter than the limit, and so no pixel; the sky's luminance is above it.
 TEST_F(Options, ClampLimitsSamples) {
-  const auto brightest = [](const LayeredImage& image) { return *std::ranges::max_element(image.find("G")->floats); };
+  const auto brightest = [](const LayeredImage& image) {
+    return *std::ranges::max_element(image.find("G")->floats);
+  };
   const float free = brightest(picture({}));
   EXPECT_LE(brightest(picture({"--clamp", std::to_string(free / 100)})), 0.05f * free);
   EXPECT_EQ(brightest(picture({"--clamp", "0"})), free);
@@ -83,13 +90,16 @@ TEST_F(Options, ClampLimitsSamples) {
 TEST_F(Options, BatchTakesLessMemory) {
   const auto peak = [&](const Names& more) {
     picture(more);
-    return nlohmann::json::parse(test::read_file(folder_ / "stats.json")).at("peak_device_bytes").get<double>();
+    return nlohmann::json::parse(test::read_file(folder_ / "stats.json"))
+        .at("peak_device_bytes")
+        .get<double>();
   };
   EXPECT_LT(peak({"--stats", "stats.json", "--batch", "64", "--size", "100x100"}),
             peak({"--stats", "stats.json", "--size", "100x100"}));
   // The film alone has 96 bytes a pixel fewer without layers (docs/output.md, "Films").
-  EXPECT_LT(peak({"--stats", "stats.json", "--size", "100x100", "--layers", "none"}) + 96 * 100 * 100,
-            peak({"--stats", "stats.json", "--size", "100x100"}));
+  EXPECT_LT(
+      peak({"--stats", "stats.json", "--size", "100x100", "--layers", "none"}) + 96 * 100 * 100,
+      peak({"--stats", "stats.json", "--size", "100x100"}));
 }
 
 TEST_F(Options, VarianceIsWrittenWhenAsked) {
@@ -108,8 +118,11 @@ TEST_F(Options, DeviceIsTheOneThatIsNamed) {
     EXPECT_EQ(read_exr(folder_ / "out.exr").metadata.at("caplet.device"), name);
     run({"render", "scene.pbrt", "-q", "-o", "out.exr", "--spp", "1", "--device", name}, two);
     EXPECT_EQ(read_exr(folder_ / "out.exr").metadata.at("caplet.device"), name);
-    EXPECT_EQ(json({"pick", "scene.pbrt", "--pixel", "12,8", "--json", "--device", index}, two).at("device"), name);
-    const auto verified = json({"verify", "scene.pbrt", "--rays", "100", "--json", "--device", index}, two);
+    EXPECT_EQ(json({"pick", "scene.pbrt", "--pixel", "12,8", "--json", "--device", index}, two)
+                  .at("device"),
+              name);
+    const auto verified =
+        json({"verify", "scene.pbrt", "--rays", "100", "--json", "--device", index}, two);
     EXPECT_EQ(verified.at("devices")[0].at("name"), name);
   }
 }
@@ -130,7 +143,8 @@ TEST_F(Options, SeedOfVerifyMakesOtherRays) {
 
 TEST_F(Options, QuietCommandsSayNothing) {
   for (const Names& arguments :
-       {Names{"verify", "scene.pbrt", "--rays", "100"}, Names{"pick", "scene.pbrt", "--rays", "rays.txt", "--out", "out.csv"},
+       {Names{"verify", "scene.pbrt", "--rays", "100"},
+        Names{"pick", "scene.pbrt", "--rays", "rays.txt", "--out", "out.csv"},
         Names{"render", "scene.pbrt", "-o", "out.exr"}}) {
     Names quiet = arguments;
     quiet.push_back("--quiet");
@@ -140,8 +154,11 @@ TEST_F(Options, QuietCommandsSayNothing) {
 }
 
 TEST_F(Options, PickedPixelsAreOfTheCrop) {
-  EXPECT_EQ(json({"pick", "scene.pbrt", "--pixel", "12,8", "--json", "--crop", "12,8,13,9"}).at("hit"), true);
-  const Result outside = test::run_program({"pick", "scene.pbrt", "--pixel", "12,9", "--crop", "12,8,13,9"}, folder_);
+  EXPECT_EQ(
+      json({"pick", "scene.pbrt", "--pixel", "12,8", "--json", "--crop", "12,8,13,9"}).at("hit"),
+      true);
+  const Result outside =
+      test::run_program({"pick", "scene.pbrt", "--pixel", "12,9", "--crop", "12,8,13,9"}, folder_);
   EXPECT_EQ(outside.code, 2);
   EXPECT_THAT(outside.err, HasSubstr("--pixel: 12,9 is outside of the crop"));
 }
@@ -150,7 +167,8 @@ TEST_F(Options, StatsTellHowLongWritingTook) {
   picture({"--stats", "stats.json"});
   const auto seconds = nlohmann::json::parse(test::read_file(folder_ / "stats.json")).at("seconds");
   EXPECT_GT(seconds.at("write").get<double>(), 0);
-  EXPECT_LE(seconds.at("write").get<double>() + seconds.at("render").get<double>(), seconds.at("total").get<double>());
+  EXPECT_LE(seconds.at("write").get<double>() + seconds.at("render").get<double>(),
+            seconds.at("total").get<double>());
 }
 
 }  // namespace

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Where outputs go: what stands there stays what it is, nothing that is read or written otherwise is written over, modes stay,
-// and a disk that is full costs nothing but the new file.
+// Where outputs go: what stands there stays what it is, nothing that is read or written otherwise
+// is written over, modes stay, and a disk that is full costs nothing but the new file.
 #include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -53,7 +53,8 @@ void expect_equal_pictures(const fs::path& a, const fs::path& b) {
   }
 }
 
-/// A character device of the memory driver's: 3 is null, 7 full. False, with the reason printed, where none may be made.
+/// A character device of the memory driver's: 3 is null, 7 full. False, with the reason printed,
+/// where none may be made.
 bool make_device(const fs::path& path, unsigned minor) {
   if (::mknod(path.c_str(), S_IFCHR | 0666, makedev(1, minor)) == 0) {
     const int opened = ::open(path.c_str(), O_WRONLY);  // a file system may forbid their use
@@ -69,8 +70,8 @@ bool make_device(const fs::path& path, unsigned minor) {
 TEST(Outputs, ADeviceNodeTakesThemAndStays) {
   const fs::path folder = folder_with_scene();
   if (!make_device(folder / "null", 3)) GTEST_SKIP() << "mknod is not allowed";
-  for (const Names& arguments :
-       {Names{"-o", "out.exr", "--stats", "null"}, Names{"-o", "null"}, Names{"-o", "null", "--stats", "null"}}) {
+  for (const Names& arguments : {Names{"-o", "out.exr", "--stats", "null"}, Names{"-o", "null"},
+                                 Names{"-o", "null", "--stats", "null"}}) {
     const Result result = render(folder, arguments);
     EXPECT_EQ(result.code, 0) << result.err;
     const struct stat node = status_of(folder / "null");
@@ -92,11 +93,14 @@ TEST(Outputs, AFifoTakesThemAndStays) {
   const Result result = render(folder, {"-o", "picture", "--stats", "stats"});
   EXPECT_EQ(result.code, 0) << result.err;
   if (result.code != 0)  // or the reader would wait for ever
-    for (const char* name : {"picture", "stats"}) ::close(::open((folder / name).c_str(), O_WRONLY | O_NONBLOCK));
+    for (const char* name : {"picture", "stats"})
+      ::close(::open((folder / name).c_str(), O_WRONLY | O_NONBLOCK));
   reader.join();
   expect_equal_pictures(folder / "plain.exr", received / "picture.exr");
-  EXPECT_EQ(nlohmann::json::parse(test::read_file(received / "stats.json")).at("samples_per_pixel"), 2);
-  for (const char* name : {"picture", "stats"}) EXPECT_TRUE(S_ISFIFO(status_of(folder / name).st_mode)) << name;
+  EXPECT_EQ(nlohmann::json::parse(test::read_file(received / "stats.json")).at("samples_per_pixel"),
+            2);
+  for (const char* name : {"picture", "stats"})
+    EXPECT_TRUE(S_ISFIFO(status_of(folder / name).st_mode)) << name;
 }
 
 TEST(Outputs, LinksAreFollowed) {
@@ -108,7 +112,8 @@ TEST(Outputs, LinksAreFollowed) {
   fs::create_symlink("there/new.json", folder / "new.json");  // leads to nothing yet
   const Result result = render(folder, {"-o", "older.exr", "--stats", "new.json"});
   ASSERT_EQ(result.code, 0) << result.err;
-  for (const char* name : {"old.exr", "older.exr", "new.json"}) EXPECT_TRUE(fs::is_symlink(folder / name)) << name;
+  for (const char* name : {"old.exr", "older.exr", "new.json"})
+    EXPECT_TRUE(fs::is_symlink(folder / name)) << name;
   EXPECT_EQ(read_exr(folder / "there/old.exr").data_width, 24);
   EXPECT_TRUE(nlohmann::json::accept(test::read_file(folder / "there/new.json")));
   EXPECT_EQ(test::names_in(folder / "there"), (Names{"new.json", "old.exr"}));
@@ -184,16 +189,21 @@ fs::path folder_with_inputs() {
   const fs::path folder = test::temporary_folder();
   LayeredImage sky;
   sky.width = sky.data_width = sky.height = sky.data_height = 4;
-  for (const char* name : {"R", "G", "B"}) sky.channels.push_back({name, std::vector<float>(16, 1.0f), {}});
+  for (const char* name : {"R", "G", "B"})
+    sky.channels.push_back({name, std::vector<float>(16, 1.0f), {}});
   write_exr(folder / "env.exr", sky);
   test::write_file(folder / "grey.spd", "300 0.5\n900 0.5\n");
   const std::string small = test::small_scene;
   test::write_file(folder / "part.pbrt", small.substr(small.find("Shape ")));
-  std::string text = small.substr(0, small.find("LightSource ")) + "LightSource \"infinite\" \"string filename\" \"env.exr\"\n" +
-                     "Material \"diffuse\" \"spectrum reflectance\" \"grey.spd\"\nInclude \"part.pbrt\"\n";
+  std::string text =
+      small.substr(0, small.find("LightSource ")) +
+      "LightSource \"infinite\" \"string filename\" \"env.exr\"\n" +
+      "Material \"diffuse\" \"spectrum reflectance\" \"grey.spd\"\nInclude \"part.pbrt\"\n";
   test::write_file(folder / "mesh.ply",
-                   "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
-                   "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
+                   "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float "
+                   "y\nproperty float z\n"
+                   "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 "
+                   "0\n0 1 0\n3 0 1 2\n");
   text += "Shape \"plymesh\" \"string filename\" \"mesh.ply\"\n";
   test::write_file(folder / "scene.pbrt", text);
   test::write_file(folder / "cell.swc", "1 1 0 0 0 1 -1\n2 3 0 5 0 1 1\n");
@@ -214,7 +224,8 @@ TEST(Outputs, NoInputIsReplaced) {
   const auto refused = [&](const Names& arguments, const std::string& flag) {
     const Result result = test::run_program(arguments, folder);
     EXPECT_EQ(result.code, 2) << testing::PrintToString(arguments) << result.err;
-    EXPECT_THAT(result.err, AllOf(HasSubstr("caplet: error: " + flag + ": '"), HasSubstr("is an input of this run")));
+    EXPECT_THAT(result.err, AllOf(HasSubstr("caplet: error: " + flag + ": '"),
+                                  HasSubstr("is an input of this run")));
   };
   for (const char* name : {"env.exr", "./env.exr", "sub/../env.exr", "hard.exr", "soft.exr"})
     refused({"render", "scene.pbrt", "-o", name}, "-o");
@@ -225,7 +236,8 @@ TEST(Outputs, NoInputIsReplaced) {
   refused({"pick", "scene.pbrt", "--rays", "rays.csv", "--out", "rays.csv"}, "--out");
   refused({"verify", "scene.pbrt", "--rays", "10", "--heatmap", "env.exr"}, "--heatmap");
   EXPECT_EQ(test::names_in(folder), names);
-  for (const auto& [name, bytes] : contents) EXPECT_EQ(test::read_file(folder / name), bytes) << name;
+  for (const auto& [name, bytes] : contents)
+    EXPECT_EQ(test::read_file(folder / name), bytes) << name;
 }
 
 TEST(Outputs, NoTwoAreTheSameFile) {
@@ -235,11 +247,12 @@ TEST(Outputs, NoTwoAreTheSameFile) {
   fs::create_symlink("old.exr", folder / "soft");
   fs::create_symlink("new.exr", folder / "dangling");
   fs::create_directory(folder / "sub");
-  for (const auto& [picture, stats] : std::vector<std::pair<std::string, std::string>>{{"new.exr", "new.exr"},
-                                                                                       {"new.exr", "./sub/../new.exr"},
-                                                                                       {"new.exr", "dangling"},
-                                                                                       {"old.exr", "hard"},
-                                                                                       {"old.exr", "soft"}}) {
+  for (const auto& [picture, stats] :
+       std::vector<std::pair<std::string, std::string>>{{"new.exr", "new.exr"},
+                                                        {"new.exr", "./sub/../new.exr"},
+                                                        {"new.exr", "dangling"},
+                                                        {"old.exr", "hard"},
+                                                        {"old.exr", "soft"}}) {
     const Result result = render(folder, {"-o", picture, "--stats", stats});
     EXPECT_EQ(result.code, 2) << stats;
     EXPECT_THAT(result.err, HasSubstr("--stats: '" + stats + "' is the output of -o as well"));
@@ -248,7 +261,8 @@ TEST(Outputs, NoTwoAreTheSameFile) {
   EXPECT_EQ(render(folder, {"--preview", "a.png", "--stats", "a.png"}).code, 2);
 #endif
   // The scene's own name for the picture.
-  EXPECT_THAT(render(folder, {"--stats", "pbrt.exr"}).err, HasSubstr("-o: 'pbrt.exr' is the output of --stats as well"));
+  EXPECT_THAT(render(folder, {"--stats", "pbrt.exr"}).err,
+              HasSubstr("-o: 'pbrt.exr' is the output of --stats as well"));
   EXPECT_EQ(test::read_file(folder / "old.exr"), "the previous picture");
   EXPECT_FALSE(fs::exists(folder / "new.exr"));
 }
@@ -269,7 +283,8 @@ class SmallDisk {
   /// Takes all but `pages` of what is free.
   void leave(std::uintmax_t pages) const {
     fs::remove(folder_ / "filler");
-    const std::uintmax_t free = fs::space(folder_).available, page = static_cast<std::uintmax_t>(::getpagesize());
+    const std::uintmax_t free = fs::space(folder_).available,
+                         page = static_cast<std::uintmax_t>(::getpagesize());
     test::write_file(folder_ / "filler", std::string(free - pages * page, 'x'));
     EXPECT_EQ(fs::space(folder_).available, pages * page);
   }
@@ -279,8 +294,8 @@ class SmallDisk {
   bool mounted_ = false;
 };
 
-/// In a process of its own: a namespace in which `target` is a mount point, with `source` mounted there. 0, or the error's
-/// number.
+/// In a process of its own: a namespace in which `target` is a mount point, with `source` mounted
+/// there. 0, or the error's number.
 int mount_file(const fs::path& source, const fs::path& target) {
   const uid_t user = ::geteuid();
   if (::unshare(CLONE_NEWNS | (user == 0 ? 0 : CLONE_NEWUSER)) != 0) return errno;
@@ -291,14 +306,16 @@ int mount_file(const fs::path& source, const fs::path& target) {
 
 // As files are in containers: no file can take a mount point's place, so that it is written over.
 TEST(Outputs, AFileThatIsMountedIsWrittenOver) {
-  const fs::path folder = folder_with_scene(), source = folder / "source.exr", target = folder / "target.exr";
+  const fs::path folder = folder_with_scene(), source = folder / "source.exr",
+                 target = folder / "target.exr";
   test::write_file(source, "what was there");
   test::write_file(target, "behind it");
   const pid_t child = ::fork();
   if (child == 0) ::_exit(mount_file(source, target));
   int status = 0;
   ASSERT_EQ(::waitpid(child, &status, 0), child);
-  if (status != 0) GTEST_SKIP() << "no file can be mounted here: " << std::strerror(WEXITSTATUS(status));
+  if (status != 0)
+    GTEST_SKIP() << "no file can be mounted here: " << std::strerror(WEXITSTATUS(status));
   const Result result = render(folder, {"-o", "target.exr"}, [&] { mount_file(source, target); });
   EXPECT_EQ(result.code, 0) << result.err;
   EXPECT_EQ(read_exr(source).data_width, 24);
@@ -314,18 +331,21 @@ TEST(Outputs, AFullDiskCostsNothing) {
   test::write_file(folder / "rays.txt", "0 0 5 0 0 -1\n");
   const std::vector<std::pair<std::string, Names>> outputs = {
       {"disk/out.exr", {"render", "scene.pbrt", "-q", "-o", "disk/out.exr"}},
-      {"disk/stats.json", {"render", "scene.pbrt", "-q", "-o", "none", "--stats", "disk/stats.json"}},
+      {"disk/stats.json",
+       {"render", "scene.pbrt", "-q", "-o", "none", "--stats", "disk/stats.json"}},
 #ifdef CAPLET_WITH_OIIO
       {"disk/out.png", {"render", "scene.pbrt", "-q", "-o", "none", "--preview", "disk/out.png"}},
 #endif
       {"disk/out.csv", {"pick", "scene.pbrt", "-q", "--rays", "rays.txt", "--out", "disk/out.csv"}},
       {"disk/out.npy", {"pick", "scene.pbrt", "-q", "--rays", "rays.txt", "--out", "disk/out.npy"}},
-      {"disk/heat.exr", {"verify", "scene.pbrt", "-q", "--rays", "10", "--heatmap", "disk/heat.exr"}}};
+      {"disk/heat.exr",
+       {"verify", "scene.pbrt", "-q", "--rays", "10", "--heatmap", "disk/heat.exr"}}};
   for (const auto& [name, arguments] : outputs) {
     SCOPED_TRACE(name);
     fs::remove(disk / "filler");
     ASSERT_EQ(test::run_program(arguments, folder).code, 0);
-    const std::uintmax_t whole = fs::file_size(folder / name), page = static_cast<std::uintmax_t>(::getpagesize());
+    const std::uintmax_t whole = fs::file_size(folder / name),
+                         page = static_cast<std::uintmax_t>(::getpagesize());
     test::write_file(folder / name, "what was there");
     small.leave((whole + page - 1) / page - 1);  // the last bytes find no room
     const Names names = test::names_in(disk);
@@ -345,10 +365,12 @@ TEST(Outputs, AFullDeviceIsTold) {
   EXPECT_EQ(result.code, 1);
   EXPECT_THAT(result.err, HasSubstr("full: cannot be written: No space left on device"));
   EXPECT_TRUE(fs::exists(folder / "out.exr"));
-  for (const Names& arguments : {Names{"info", "scene.pbrt"}, Names{"info", "scene.pbrt", "--json"}, Names{"devices"},
-                                 Names{"--help"}, Names{"render", "scene.pbrt", "-q", "-o", "none", "--stats", "-"}}) {
-    const Result told =
-        test::run_program(arguments, folder, {}, [&] { ::dup2(::open((folder / "full").c_str(), O_WRONLY), STDOUT_FILENO); });
+  for (const Names& arguments :
+       {Names{"info", "scene.pbrt"}, Names{"info", "scene.pbrt", "--json"}, Names{"devices"},
+        Names{"--help"}, Names{"render", "scene.pbrt", "-q", "-o", "none", "--stats", "-"}}) {
+    const Result told = test::run_program(arguments, folder, {}, [&] {
+      ::dup2(::open((folder / "full").c_str(), O_WRONLY), STDOUT_FILENO);
+    });
     EXPECT_EQ(told.code, 1) << arguments[0];
     EXPECT_THAT(told.err, HasSubstr("cannot be written: No space left on device")) << arguments[0];
   }
@@ -377,7 +399,8 @@ TEST(StandardStreams, AReaderThatGoesDoesNotEndARender) {
     ::dup2(ends[1], STDOUT_FILENO);
     ::dup2(ends[1], STDERR_FILENO);
   };
-  EXPECT_EQ(test::run_program({"render", "scene.pbrt", "-o", "out.exr"}, folder, {}, to_nobody).code, 0);
+  EXPECT_EQ(
+      test::run_program({"render", "scene.pbrt", "-o", "out.exr"}, folder, {}, to_nobody).code, 0);
   EXPECT_EQ(read_exr(folder / "out.exr").data_width, 24);
   EXPECT_EQ(test::run_program({"info", "scene.pbrt"}, folder, {}, to_nobody).code, 1);
 }
@@ -388,7 +411,8 @@ TEST(StandardStreams, DashIsStdout) {
   EXPECT_EQ(stats.code, 0) << stats.err;
   EXPECT_EQ(nlohmann::json::parse(stats.out).at("samples_per_pixel"), 2);
   test::write_file(folder / "rays.txt", "0 0 5 0 0 -1\n");
-  const Result rows = test::run_program({"pick", "scene.pbrt", "-q", "--rays", "rays.txt", "--out", "-"}, folder);
+  const Result rows =
+      test::run_program({"pick", "scene.pbrt", "-q", "--rays", "rays.txt", "--out", "-"}, folder);
   EXPECT_EQ(rows.code, 0) << rows.err;
   EXPECT_EQ(test::lines_of(rows.out).size(), 2u);
   EXPECT_EQ(test::names_in(folder), (Names{"rays.txt", "scene.pbrt"}));
@@ -399,13 +423,15 @@ TEST(StandardStreams, RaysComeFromAFifo) {
   ASSERT_EQ(::mkfifo((folder / "rays").c_str(), 0600), 0);
   ASSERT_EQ(::mkfifo((folder / "rays.npy").c_str(), 0600), 0);
   std::thread writer([&] { test::write_file(folder / "rays", "0 0 5 0 0 -1\n0 0.1 5 0 0 -1\n"); });
-  const Result result = test::run_program({"pick", "scene.pbrt", "-q", "--rays", "rays", "--out", "out.csv"}, folder);
+  const Result result =
+      test::run_program({"pick", "scene.pbrt", "-q", "--rays", "rays", "--out", "out.csv"}, folder);
   EXPECT_EQ(result.code, 0) << result.err;
   if (result.code != 0) ::close(::open((folder / "rays").c_str(), O_RDONLY | O_NONBLOCK));
   writer.join();
   EXPECT_EQ(test::lines_of(test::read_file(folder / "out.csv")).size(), 3u);
   // An array's length is in its file's.
-  const Result array = test::run_program({"pick", "scene.pbrt", "-q", "--rays", "rays.npy", "--out", "out.csv"}, folder);
+  const Result array = test::run_program(
+      {"pick", "scene.pbrt", "-q", "--rays", "rays.npy", "--out", "out.csv"}, folder);
   EXPECT_EQ(array.code, 2);
   EXPECT_THAT(array.err, HasSubstr("not a regular file"));
 }
@@ -416,14 +442,19 @@ TEST(StandardStreams, RaysComeFromAFifo) {
 TEST(Pictures, BandsAreOfTheirRows) {
   constexpr std::size_t width = 2600, height = 1300, last = 20;
   const fs::path folder = folder_with_scene();
-  EXPECT_GT(height - last, static_cast<std::size_t>(band_rows(width, 19))) << "one band is all of it";
+  EXPECT_GT(height - last, static_cast<std::size_t>(band_rows(width, 19)))
+      << "one band is all of it";
   ASSERT_EQ(render(folder, {"-o", "whole.exr", "--size", "2600x1300", "--spp", "1"}).code, 0);
-  ASSERT_EQ(render(folder, {"-o", "rows.exr", "--size", "2600x1300", "--spp", "1", "--crop", "0,1280,2600,1300"}).code, 0);
+  ASSERT_EQ(render(folder, {"-o", "rows.exr", "--size", "2600x1300", "--spp", "1", "--crop",
+                            "0,1280,2600,1300"})
+                .code,
+            0);
   const LayeredImage whole = read_exr(folder / "whole.exr"), rows = read_exr(folder / "rows.exr");
   for (const char* name : {"R", "Z"}) {
     const std::vector<float>& all = whole.find(name)->floats;
     ASSERT_EQ(all.size(), width * height);
-    EXPECT_TRUE(std::vector<float>(all.end() - width * last, all.end()) == rows.find(name)->floats) << name;
+    EXPECT_TRUE(std::vector<float>(all.end() - width * last, all.end()) == rows.find(name)->floats)
+        << name;
   }
 }
 
@@ -440,7 +471,10 @@ TEST(Pictures, APreviewAlone) {
 
 TEST(Pictures, ThePreviewHasEveryRow) {
   const fs::path folder = folder_with_scene();
-  ASSERT_EQ(render(folder, {"-o", "out.exr", "--preview", "out.png", "--size", "2600x1300", "--spp", "1"}).code, 0);
+  ASSERT_EQ(
+      render(folder, {"-o", "out.exr", "--preview", "out.png", "--size", "2600x1300", "--spp", "1"})
+          .code,
+      0);
   EXPECT_GT(1300, band_rows(2600, 19)) << "one band is all of it";
   const EnvironmentImage shown = FileImageReader().read_rgb(folder / "out.png");
   LayeredImage picture = read_exr(folder / "out.exr");
@@ -454,8 +488,13 @@ TEST(Pictures, OverlaysLieOnAllBandsOfThePreview) {
   const int width = 2600, height = 1000;
   EXPECT_GT(height, band_rows(width, 4)) << "one band is all of it";
   const std::string size = std::to_string(width) + "x" + std::to_string(height);
-  ASSERT_EQ(render(folder, {"-o", "none", "--preview", "plain.png", "--size", size, "--spp", "1"}).code, 0);
-  ASSERT_EQ(render(folder, {"-o", "none", "--preview", "bar.png", "--size", size, "--spp", "1", "--scale-bar"}).code, 0);
+  ASSERT_EQ(
+      render(folder, {"-o", "none", "--preview", "plain.png", "--size", size, "--spp", "1"}).code,
+      0);
+  ASSERT_EQ(render(folder, {"-o", "none", "--preview", "bar.png", "--size", size, "--spp", "1",
+                            "--scale-bar"})
+                .code,
+            0);
   const EnvironmentImage plain = FileImageReader().read_rgb(folder / "plain.png"),
                          bar = FileImageReader().read_rgb(folder / "bar.png");
   ASSERT_EQ(bar.rgb.size(), plain.rgb.size());
@@ -471,9 +510,13 @@ TEST(Pictures, PreviewsThatCannotBeWrittenAreFoundOutBefore) {
            {"out.jpg", "65501x1"}, {"out.jpeg", "1x70000"}, {"out.png", "1000001x1"}}) {
     const Result result = render(folder, {"-o", "none", "--preview", name, "--size", size});
     EXPECT_EQ(result.code, 2) << name;
-    EXPECT_THAT(result.err, AllOf(HasSubstr("--size: '" + name + "'"), HasSubstr("larger than its format can hold")));
+    EXPECT_THAT(result.err, AllOf(HasSubstr("--size: '" + name + "'"),
+                                  HasSubstr("larger than its format can hold")));
   }
-  EXPECT_EQ(render(folder, {"-o", "none", "--preview", "out.jpg", "--size", "65500x1", "--spp", "1"}).code, 0);
+  EXPECT_EQ(
+      render(folder, {"-o", "none", "--preview", "out.jpg", "--size", "65500x1", "--spp", "1"})
+          .code,
+      0);
   EXPECT_EQ(test::names_in(folder), (Names{"out.jpg", "scene.pbrt"}));
 }
 #endif

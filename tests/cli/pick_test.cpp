@@ -28,13 +28,16 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::Not;
 
-/// A ball whose name needs quotes in CSV, a capsule without a name, an object of a named and an unnamed ball placed twice, and a
-/// floor: in rows along x, so that rays along -z through (x, 0) tell them apart. No shape at x = -2.
+/// A ball whose name needs quotes in CSV, a capsule without a name, an object of a named and an
+/// unnamed ball placed twice, and a floor: in rows along x, so that rays along -z through (x, 0)
+/// tell them apart. No shape at x = -2.
 std::filesystem::path folder_with_scene() {
   return test::folder_with_scene(
       "LookAt 0 0 5  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" 90\n"
-      "Film \"rgb\" \"integer xresolution\" 40 \"integer yresolution\" 20\nWorldBegin\nLightSource \"infinite\"\n"
-      "MakeNamedMaterial \"mat, \xc3\xa9\" \"string type\" \"diffuse\"\nNamedMaterial \"mat, \xc3\xa9\"\n"
+      "Film \"rgb\" \"integer xresolution\" 40 \"integer yresolution\" 20\nWorldBegin\nLightSource "
+      "\"infinite\"\n"
+      "MakeNamedMaterial \"mat, \xc3\xa9\" \"string type\" \"diffuse\"\nNamedMaterial \"mat, "
+      "\xc3\xa9\"\n"
       "Shape \"sphere\" \"string name\" \"ball, \\\"big\\\"\"\n"
       "Material \"diffuse\"\n"
       "Shape \"capsule\" \"point3 p0\" [3 -1 0] \"point3 p1\" [3 1 0] \"float radius\" 0.5\n"
@@ -83,7 +86,8 @@ struct Field {
   std::size_t offset = 0, bytes = 0;
 };
 
-/// A one-dimensional structured .npy file, read as its format's description says, by no code of the program's.
+/// A one-dimensional structured .npy file, read as its format's description says, by no code of the
+/// program's.
 struct Table {
   std::vector<Field> fields;
   std::size_t rows = 0, row_bytes = 0;
@@ -123,14 +127,16 @@ Table read_table(const std::filesystem::path& path) {
   Table out;
   const std::string bytes = test::read_file(path);
   EXPECT_EQ(bytes.substr(0, 8), std::string("\x93NUMPY\1\0", 8));
-  const std::size_t length = static_cast<unsigned char>(bytes[8]) + 256u * static_cast<unsigned char>(bytes[9]);
+  const std::size_t length =
+      static_cast<unsigned char>(bytes[8]) + 256u * static_cast<unsigned char>(bytes[9]);
   const std::string text = bytes.substr(10, length);
   EXPECT_THAT(text, AllOf(HasSubstr("'fortran_order': False"), HasSubstr(",)")));
   std::size_t at = text.find("'descr': [");
   const std::size_t end = text.find(']', at);
   while ((at = text.find("('", at)) < end) {
     const std::size_t comma = text.find("', '", at), close = text.find("')", at);
-    Field f{text.substr(at + 2, comma - at - 2), text.substr(comma + 4, close - comma - 4), out.row_bytes, 0};
+    Field f{text.substr(at + 2, comma - at - 2), text.substr(comma + 4, close - comma - 4),
+            out.row_bytes, 0};
     f.bytes = std::stoul(f.type.substr(2)) * (f.type[1] == 'U' ? 4 : 1);
     out.row_bytes += f.bytes;
     out.fields.push_back(f);
@@ -143,9 +149,11 @@ Table read_table(const std::filesystem::path& path) {
 }
 
 /// float32, C order.
-void write_rays(const std::filesystem::path& path, std::size_t count, const std::function<void(std::size_t, float*)>& ray) {
+void write_rays(const std::filesystem::path& path, std::size_t count,
+                const std::function<void(std::size_t, float*)>& ray) {
   std::ofstream out(path, std::ios::binary);
-  std::string text = "{'descr': '<f4', 'fortran_order': False, 'shape': (" + std::to_string(count) + ", 6), }";
+  std::string text =
+      "{'descr': '<f4', 'fortran_order': False, 'shape': (" + std::to_string(count) + ", 6), }";
   text.resize(117, ' ');
   out << std::string("\x93NUMPY\1\0\x76\0", 10) << text << '\n';
   for (std::size_t i = 0; i < count; ++i) {
@@ -158,7 +166,8 @@ void write_rays(const std::filesystem::path& path, std::size_t count, const std:
 TEST(Pick, TablesOfRays) {
   const auto folder = folder_with_scene();
   test::write_file(folder / "rays.txt", rays_text());
-  const Result result = test::run_program({"pick", "scene.pbrt", "--rays", "rays.txt", "--out", "out.csv"}, folder);
+  const Result result =
+      test::run_program({"pick", "scene.pbrt", "--rays", "rays.txt", "--out", "out.csv"}, folder);
   ASSERT_EQ(result.code, 0) << result.err;
   EXPECT_EQ(result.out, "");
   EXPECT_THAT(result.err, HasSubstr("7 rays, 6 crossings"));
@@ -181,13 +190,15 @@ TEST(Pick, TablesOfRays) {
     EXPECT_EQ(cells[4], "0");
     EXPECT_EQ(cells[5], i == 0 ? "mat, \xc3\xa9" : "1");
     EXPECT_EQ(cells[6], "1");
-    // 16 eps of the origin's distance from the shapes, at most 6, for the parameter; twice that for what is made of it.
+    // 16 eps of the origin's distance from the shapes, at most 6, for the parameter; twice that for
+    // what is made of it.
     constexpr double bound = 32 * 0x1p-24 * 6;
     EXPECT_NEAR(std::stod(cells[1]), (4 - top[i]) / 2, bound);
     EXPECT_NEAR(std::stod(cells[7]), xs[i + (i > 0)], bound);
     EXPECT_NEAR(std::stod(cells[8]), 0.125, bound);
     EXPECT_NEAR(std::stod(cells[9]), top[i], bound);
-    EXPECT_NEAR(std::hypot(std::stod(cells[10]), std::stod(cells[11]), std::stod(cells[12])), 1, 1e-6);
+    EXPECT_NEAR(std::hypot(std::stod(cells[10]), std::stod(cells[11]), std::stod(cells[12])), 1,
+                1e-6);
     EXPECT_GT(std::stod(cells[12]), 0);
   }
 }
@@ -196,7 +207,8 @@ TEST(Pick, TablesOfAllCrossingsInBothFormats) {
   const auto folder = folder_with_scene();
   test::write_file(folder / "rays.txt", rays_text());
   for (const char* out : {"out.csv", "out.npy"}) {
-    const Result result = test::run_program({"pick", "scene.pbrt", "--rays", "rays.txt", "--out", out, "--all", "-q"}, folder);
+    const Result result = test::run_program(
+        {"pick", "scene.pbrt", "--rays", "rays.txt", "--out", out, "--all", "-q"}, folder);
     ASSERT_EQ(result.code, 0) << result.err;
     EXPECT_EQ(result.err, "");
   }
@@ -213,7 +225,8 @@ TEST(Pick, TablesOfAllCrossingsInBothFormats) {
   for (std::size_t i = 0; i < table.rows; ++i) {
     const auto cells = cells_of(lines[i + 1]);
     ASSERT_EQ(cells.size(), table.fields.size());
-    for (std::size_t k = 0; k < cells.size(); ++k) EXPECT_EQ(table.cell(i, k), cells[k]) << lines[i + 1] << " " << names;
+    for (std::size_t k = 0; k < cells.size(); ++k)
+      EXPECT_EQ(table.cell(i, k), cells[k]) << lines[i + 1] << " " << names;
     const double t = std::stod(cells[1]);
     EXPECT_GT(t, cells[0] == previous_ray ? previous_t : 0);
     previous_ray = cells[0];
@@ -232,15 +245,21 @@ TEST(Pick, ArraysAndTextAreTheSameRays) {
     std::copy_n(numbers, 6, ray);
   });
   for (const char* rays : {"rays.txt", "rays.npy"})
-    ASSERT_EQ(
-        test::run_program({"pick", "scene.pbrt", "--rays", rays, "--out", std::string(rays) + ".csv", "--all"}, folder).code, 0);
+    ASSERT_EQ(test::run_program({"pick", "scene.pbrt", "--rays", rays, "--out",
+                                 std::string(rays) + ".csv", "--all"},
+                                folder)
+                  .code,
+              0);
   EXPECT_EQ(test::read_file(folder / "rays.txt.csv"), test::read_file(folder / "rays.npy.csv"));
   EXPECT_EQ(test::names_in(folder),
-            (std::vector<std::string>{"rays.npy", "rays.npy.csv", "rays.txt", "rays.txt.csv", "scene.pbrt"}));
+            (std::vector<std::string>{"rays.npy", "rays.npy.csv", "rays.txt", "rays.txt.csv",
+                                      "scene.pbrt"}));
   // No rays are no error: a table without rows.
   test::write_file(folder / "none.txt", "# nothing\n");
   for (const char* out : {"none.csv", "none.npy"})
-    EXPECT_EQ(test::run_program({"pick", "scene.pbrt", "--rays", "none.txt", "--out", out}, folder).code, 0);
+    EXPECT_EQ(
+        test::run_program({"pick", "scene.pbrt", "--rays", "none.txt", "--out", out}, folder).code,
+        0);
   EXPECT_EQ(test::read_file(folder / "none.csv"), std::string(header) + "\n");
   EXPECT_EQ(read_table(folder / "none.npy").rows, 0u);
 }
@@ -249,9 +268,12 @@ TEST(Pick, ArraysAndTextAreTheSameRays) {
 TEST(Pick, RaysOfStdinHaveLimits) {
   const auto folder = test::folder_with_scene("WorldBegin\nShape \"sphere\"\n");
   const auto rays = folder.parent_path() / (folder.filename().string() + "-rays");
-  test::write_file(rays, "0 0 -5 0 0 1\n0 0 -5 0 0 1 5 inf\n0 0 -5 0 0 1 0 3\n0 0 -5 0 0 2 0 2.5\n0 0 -5 0 0 1 4.5 5.5\n");
-  const Result result = test::run_program({"pick", "scene.pbrt", "--rays", "-", "--out", "-", "-q"}, folder, {},
-                                          [&] { ::dup2(::open(rays.c_str(), O_RDONLY), STDIN_FILENO); });
+  test::write_file(rays,
+                   "0 0 -5 0 0 1\n0 0 -5 0 0 1 5 inf\n0 0 -5 0 0 1 0 3\n0 0 -5 0 0 2 0 2.5\n0 0 -5 "
+                   "0 0 1 4.5 5.5\n");
+  const Result result =
+      test::run_program({"pick", "scene.pbrt", "--rays", "-", "--out", "-", "-q"}, folder, {},
+                        [&] { ::dup2(::open(rays.c_str(), O_RDONLY), STDIN_FILENO); });
   ASSERT_EQ(result.code, 0) << result.err;
   const auto lines = test::lines_of(result.out);
   ASSERT_EQ(lines.size(), 4u) << result.out;
@@ -264,29 +286,34 @@ TEST(Pick, TooManyCrossingsAreAnErrorThatNamesTheRays) {
   const auto folder = folder_with_scene();
   test::write_file(folder / "rays.txt", rays_text());
   test::write_file(folder / "out.csv", "the previous table");
-  const Result result =
-      test::run_program({"pick", "scene.pbrt", "--rays", "rays.txt", "--out", "out.csv", "--all", "--limit", "1"}, folder);
+  const Result result = test::run_program(
+      {"pick", "scene.pbrt", "--rays", "rays.txt", "--out", "out.csv", "--all", "--limit", "1"},
+      folder);
   EXPECT_EQ(result.code, 1);
   EXPECT_THAT(result.err, HasSubstr("caplet: error: ray 0, 2, 3, 4, 5, 6: more than 1 crossings"));
   EXPECT_THAT(result.err, HasSubstr("--limit"));
   EXPECT_EQ(test::read_file(folder / "out.csv"), "the previous table");
   EXPECT_EQ(test::names_in(folder).size(), 3u);
-  const Result two =
-      test::run_program({"pick", "scene.pbrt", "--rays", "rays.txt", "--out", "out.csv", "--all", "--limit", "2"}, folder);
+  const Result two = test::run_program(
+      {"pick", "scene.pbrt", "--rays", "rays.txt", "--out", "out.csv", "--all", "--limit", "2"},
+      folder);
   EXPECT_EQ(two.code, 1);
   EXPECT_THAT(two.err, HasSubstr("ray 0: more than 2 crossings"));
-  EXPECT_EQ(
-      test::run_program({"pick", "scene.pbrt", "--rays", "rays.txt", "--out", "out.csv", "--all", "--limit", "3"}, folder).code,
-      0);
-  const Result one = test::run_program({"pick", "scene.pbrt", "--ray", "0,0,5,0,0,-1", "--all", "--limit", "2"}, folder);
+  EXPECT_EQ(test::run_program({"pick", "scene.pbrt", "--rays", "rays.txt", "--out", "out.csv",
+                               "--all", "--limit", "3"},
+                              folder)
+                .code,
+            0);
+  const Result one = test::run_program(
+      {"pick", "scene.pbrt", "--ray", "0,0,5,0,0,-1", "--all", "--limit", "2"}, folder);
   EXPECT_EQ(one.code, 1);
   EXPECT_EQ(one.out, "");
 }
 
 TEST(Pick, JsonOfARayBesideTheReference) {
   const auto folder = folder_with_scene();
-  const Result result =
-      test::run_program({"pick", "scene.pbrt", "--ray", "-0.25,0.125,4,0,0,-2", "--json", "--reference"}, folder);
+  const Result result = test::run_program(
+      {"pick", "scene.pbrt", "--ray", "-0.25,0.125,4,0,0,-2", "--json", "--reference"}, folder);
   ASSERT_EQ(result.code, 0) << result.err;
   const auto report = nlohmann::json::parse(result.out);
   EXPECT_EQ(report.at("scene"), "scene.pbrt");
@@ -312,7 +339,8 @@ TEST(Pick, JsonOfARayBesideTheReference) {
   EXPECT_EQ(reference.at("object"), report.at("object"));
   EXPECT_EQ(reference.at("entering"), true);
 
-  const Result all = test::run_program({"pick", "scene.pbrt", "--ray", "5,0,4,0,0,-1", "--json", "--all", "--reference"}, folder);
+  const Result all = test::run_program(
+      {"pick", "scene.pbrt", "--ray", "5,0,4,0,0,-1", "--json", "--all", "--reference"}, folder);
   ASSERT_EQ(all.code, 0) << all.err;
   const auto list = nlohmann::json::parse(all.out);
   ASSERT_EQ(list.at("crossings").size(), 2u);
@@ -323,10 +351,12 @@ TEST(Pick, JsonOfARayBesideTheReference) {
     EXPECT_EQ(list["crossings"][i].at("instance"), 0);
     EXPECT_EQ(list["crossings"][i].at("entering"), i == 0);
     EXPECT_EQ(list["reference"][i].at("entering"), i == 0);
-    EXPECT_NEAR(list["crossings"][i].at("t").get<double>(), list["reference"][i].at("t").get<double>(), bound);
+    EXPECT_NEAR(list["crossings"][i].at("t").get<double>(),
+                list["reference"][i].at("t").get<double>(), bound);
   }
 
-  const Result miss = test::run_program({"pick", "scene.pbrt", "--ray", "0,0,50,0,0,1", "--json", "--reference"}, folder);
+  const Result miss = test::run_program(
+      {"pick", "scene.pbrt", "--ray", "0,0,50,0,0,1", "--json", "--reference"}, folder);
   ASSERT_EQ(miss.code, 0) << miss.err;
   EXPECT_EQ(nlohmann::json::parse(miss.out).at("hit"), false);
   EXPECT_TRUE(nlohmann::json::parse(miss.out).at("reference").is_null());
@@ -358,12 +388,15 @@ TEST(Pick, PixelsOfTheImage) {
 
 TEST(Pick, WordsForPeople) {
   const auto folder = folder_with_scene();
-  const Result result = test::run_program({"pick", "scene.pbrt", "--pixel", "20,9", "--reference"}, folder);
+  const Result result =
+      test::run_program({"pick", "scene.pbrt", "--pixel", "20,9", "--reference"}, folder);
   ASSERT_EQ(result.code, 0) << result.err;
-  for (const char* word : {"pixel ", "ray ", "object ", "primitive ", "surface ", "material ", "t ", "entering", "point ",
-                           "normal ", "uv ", "reference ", "ball, \"big\"", "mat, \xc3\xa9"})
+  for (const char* word :
+       {"pixel ", "ray ", "object ", "primitive ", "surface ", "material ", "t ", "entering",
+        "point ", "normal ", "uv ", "reference ", "ball, \"big\"", "mat, \xc3\xa9"})
     EXPECT_THAT(result.out, HasSubstr(word));
-  EXPECT_THAT(test::run_program({"pick", "scene.pbrt", "--pixel", "0,0"}, folder).out, HasSubstr("nothing"));
+  EXPECT_THAT(test::run_program({"pick", "scene.pbrt", "--pixel", "0,0"}, folder).out,
+              HasSubstr("nothing"));
 }
 
 TEST(Pick, MillionsOfRaysDoNotFillMemory) {
@@ -388,12 +421,16 @@ TEST(Pick, MillionsOfRaysDoNotFillMemory) {
   long peaks[2] = {};
   std::size_t i = 0;
   for (const char* name : {"few.npy", "many.npy"}) {
-    ASSERT_EQ(test::run_program({"pick", "scene.pbrt", "--rays", name, "--out", "out.npy", "-q"}, folder).code, 0);
+    ASSERT_EQ(
+        test::run_program({"pick", "scene.pbrt", "--rays", name, "--out", "out.npy", "-q"}, folder)
+            .code,
+        0);
     peaks[i++] = peak();
   }
   const Table table = read_table(folder / "out.npy");
   EXPECT_GT(table.rows, many / 2);
-  // Three million more rays are 72 MB of input and more of output; what is held at a time is a quarter of a million.
+  // Three million more rays are 72 MB of input and more of output; what is held at a time is a
+  // quarter of a million.
   EXPECT_LT(peaks[1] - peaks[0], 24 * 1024);
 }
 

@@ -28,10 +28,15 @@ namespace {
 std::vector<std::string> on_test_device(std::vector<std::string> arguments,
                                         const std::map<std::string, std::string>& environment) {
   const std::string device = test_device_choice();
-  const auto says = [&](const char* word) { return std::ranges::find(arguments, word) != arguments.end(); };
-  const bool own_drivers = environment.contains("POCL_DEVICES") || environment.contains("OCL_ICD_VENDORS") ||
+  const auto says = [&](const char* word) {
+    return std::ranges::find(arguments, word) != arguments.end();
+  };
+  const bool own_drivers = environment.contains("POCL_DEVICES") ||
+                           environment.contains("OCL_ICD_VENDORS") ||
                            environment.contains("OPENCL_VENDOR_PATH");
-  if (device.empty() || arguments.empty() || own_drivers || says("--device") || says("--all-devices")) return arguments;
+  if (device.empty() || arguments.empty() || own_drivers || says("--device") ||
+      says("--all-devices"))
+    return arguments;
   for (const char* command : {"render", "pick", "verify"})
     if (arguments[0] == command) {
       arguments.insert(arguments.begin() + 1, {"--device", device});
@@ -67,13 +72,15 @@ void set_exit(Result& result, int status) {
 }
 
 Clock::time_point deadline_in(double seconds) {
-  return Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
+  return Clock::now() +
+         std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
 }
 
 }  // namespace
 
 Running::Running(const std::vector<std::string>& arguments, const fs::path& folder,
-                 const std::map<std::string, std::string>& environment, const std::function<void()>& in_child)
+                 const std::map<std::string, std::string>& environment,
+                 const std::function<void()>& in_child)
     : streams_(temporary_folder()) {
   process_ = ::fork();
   if (process_ < 0) throw std::runtime_error("fork failed");
@@ -124,7 +131,8 @@ Result Running::wait(double seconds) {
 }
 
 Result run_program(const std::vector<std::string>& arguments, const fs::path& folder,
-                   const std::map<std::string, std::string>& environment, const std::function<void()>& in_child) {
+                   const std::map<std::string, std::string>& environment,
+                   const std::function<void()>& in_child) {
   return Running(arguments, folder, environment, in_child).wait();
 }
 
@@ -153,7 +161,8 @@ fs::path folder_with_scene(const std::string& text) {
   return folder;
 }
 
-Result render(const fs::path& folder, std::vector<std::string> arguments, const std::function<void()>& in_child) {
+Result render(const fs::path& folder, std::vector<std::string> arguments,
+              const std::function<void()>& in_child) {
   arguments.insert(arguments.begin(), {"render", "scene.pbrt", "-q"});
   return run_program(arguments, folder, {}, in_child);
 }
@@ -163,14 +172,16 @@ fs::path changed_kernels(const char* file, const std::string& from, const std::s
   fs::copy(source_folder() / "kernels", folder, fs::copy_options::recursive);
   std::string text = read_file(folder / file);
   const std::size_t at = text.find(from);
-  if (at == std::string::npos) throw std::logic_error(std::string(file) + " does not hold: " + from);
+  if (at == std::string::npos)
+    throw std::logic_error(std::string(file) + " does not hold: " + from);
   write_file(folder / file, text.replace(at, from.size(), to));
   return folder;
 }
 
 std::vector<std::string> names_in(const fs::path& folder) {
   std::vector<std::string> out;
-  for (const auto& entry : fs::directory_iterator(folder)) out.push_back(entry.path().filename().string());
+  for (const auto& entry : fs::directory_iterator(folder))
+    out.push_back(entry.path().filename().string());
   std::sort(out.begin(), out.end());
   return out;
 }
@@ -185,7 +196,9 @@ std::vector<std::string> lines_of(const std::string& text) {
   return out;
 }
 
-void write_file(const fs::path& path, const std::string& text) { std::ofstream(path, std::ios::binary) << text; }
+void write_file(const fs::path& path, const std::string& text) {
+  std::ofstream(path, std::ios::binary) << text;
+}
 
 std::string read_file(const fs::path& path) {
   std::ifstream in(path, std::ios::binary);

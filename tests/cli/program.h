@@ -21,14 +21,15 @@ struct Result {
   std::string out, err;
 };
 
-/// The program at work: its streams go to files beside `folder`, so that the folder shows only what the program makes.
-/// Where CAPLET_TEST_DEVICE is set, `render`, `pick` and `verify` get it as their `--device`, unless the test says which device
-/// or which drivers they are to see.
+/// The program at work: its streams go to files beside `folder`, so that the folder shows only what
+/// the program makes. Where CAPLET_TEST_DEVICE is set, `render`, `pick` and `verify` get it as
+/// their `--device`, unless the test says which device or which drivers they are to see.
 class Running {
  public:
   /// `in_child`: called in the process before it becomes the program.
   Running(const std::vector<std::string>& arguments, const std::filesystem::path& folder,
-          const std::map<std::string, std::string>& environment = {}, const std::function<void()>& in_child = {});
+          const std::map<std::string, std::string>& environment = {},
+          const std::function<void()>& in_child = {});
   ~Running();
   Running(const Running&) = delete;
   Running& operator=(const Running&) = delete;
@@ -49,10 +50,12 @@ class Running {
 
 /// Runs to the end.
 Result run_program(const std::vector<std::string>& arguments, const std::filesystem::path& folder,
-                   const std::map<std::string, std::string>& environment = {}, const std::function<void()>& in_child = {});
+                   const std::map<std::string, std::string>& environment = {},
+                   const std::function<void()>& in_child = {});
 
 /// Runs with a terminal as its stderr and stdout; what it printed there.
-Result run_on_terminal(const std::vector<std::string>& arguments, const std::filesystem::path& folder);
+Result run_on_terminal(const std::vector<std::string>& arguments,
+                       const std::filesystem::path& folder);
 
 /// A capsule under a white sky: 24 x 16 pixels, 2 samples.
 inline constexpr const char* small_scene =
@@ -68,8 +71,10 @@ std::filesystem::path folder_with_scene(const std::string& text = small_scene);
 Result render(const std::filesystem::path& folder, std::vector<std::string> arguments,
               const std::function<void()>& in_child = {});
 
-/// A copy of the kernels in which `from` of one file became `to`. Throws std::logic_error where the file does not hold it.
-std::filesystem::path changed_kernels(const char* file, const std::string& from, const std::string& to);
+/// A copy of the kernels in which `from` of one file became `to`. Throws std::logic_error where the
+/// file does not hold it.
+std::filesystem::path changed_kernels(const char* file, const std::string& from,
+                                      const std::string& to);
 
 /// Names in a folder, sorted.
 std::vector<std::string> names_in(const std::filesystem::path& folder);

@@ -23,11 +23,12 @@ using Environment = std::map<std::string, std::string>;
 
 const Environment two_devices{{"POCL_DEVICES", "pthread pthread"}};
 
-test::Result render(const std::filesystem::path& folder, const std::string& device, Environment environment,
-                    const std::string& patience = "60") {
+test::Result render(const std::filesystem::path& folder, const std::string& device,
+                    Environment environment, const std::string& patience = "60") {
   return test::run_program(
-      {"render", (test::source_folder() / "scenes" / "gallery.pbrt").string(), "-o", "out.exr", "--stats", "stats.json",
-       "--preview", "out.png", "--size", "96x54", "--spp", "64", "--device", device, "--patience", patience},
+      {"render", (test::source_folder() / "scenes" / "gallery.pbrt").string(), "-o", "out.exr",
+       "--stats", "stats.json", "--preview", "out.png", "--size", "96x54", "--spp", "64",
+       "--device", device, "--patience", patience},
       folder, environment);
 }
 
@@ -84,7 +85,8 @@ TEST(SeveralDevices, AreRefusedByName) {
   EXPECT_THAT(result.err, AllOf(HasSubstr("--device: "), HasSubstr("device 1 is named twice")));
 }
 
-// A library between the program and the driver makes launches of the second device fail, or never return.
+// A library between the program and the driver makes launches of the second device fail, or never
+// return.
 TEST(SeveralDevices, OneThatFailsOrHangsCostsNothingOfThePicture) {
   CAPLET_NEEDS_POCL();
   if (test::sanitized) GTEST_SKIP() << "the sanitizer's library must come before any other";
@@ -95,8 +97,10 @@ TEST(SeveralDevices, OneThatFailsOrHangsCostsNothingOfThePicture) {
     environment["CAPLET_TEST_LAUNCHES"] = "1 60 " + fault;
     const test::Result result = render(folder, "all", environment, "2");
     ASSERT_EQ(result.code, 0) << result.err;
-    EXPECT_THAT(result.err, AllOf(HasSubstr("warning: device 1 '"), HasSubstr("the others do its work again"),
-                                  HasSubstr(fault == "fail" ? "CL_OUT_OF_RESOURCES" : "has given no answer for 2 s")));
+    EXPECT_THAT(
+        result.err,
+        AllOf(HasSubstr("warning: device 1 '"), HasSubstr("the others do its work again"),
+              HasSubstr(fault == "fail" ? "CL_OUT_OF_RESOURCES" : "has given no answer for 2 s")));
     EXPECT_TRUE(picture_in(folder) == by_one()) << fault;
     const auto stats = nlohmann::json::parse(test::read_file(folder / "stats.json"));
     EXPECT_EQ(stats.at("devices").at(1).at("lost"), true);
@@ -105,10 +109,13 @@ TEST(SeveralDevices, OneThatFailsOrHangsCostsNothingOfThePicture) {
 }
 
 TEST(SeveralDevices, SpeedsAreMeasured) {
-  const test::Result result = test::run_program({"devices", "--measure", "--json"}, test::temporary_folder());
+  const test::Result result =
+      test::run_program({"devices", "--measure", "--json"}, test::temporary_folder());
   ASSERT_EQ(result.code, 0) << result.err;
-  for (const auto& device : nlohmann::json::parse(result.out)) EXPECT_GT(device.at("rays_per_second"), 1000);
-  EXPECT_THAT(test::run_program({"devices", "--measure"}, test::temporary_folder()).out, HasSubstr(" Mrays/s"));
+  for (const auto& device : nlohmann::json::parse(result.out))
+    EXPECT_GT(device.at("rays_per_second"), 1000);
+  EXPECT_THAT(test::run_program({"devices", "--measure"}, test::temporary_folder()).out,
+              HasSubstr(" Mrays/s"));
 }
 
 }  // namespace

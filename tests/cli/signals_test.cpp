@@ -21,7 +21,9 @@ constexpr const char* endless = "16000000";  // samples
 
 class Signals : public testing::TestWithParam<int> {};
 INSTANTIATE_TEST_SUITE_P(All, Signals, testing::Values(SIGINT, SIGTERM, SIGHUP),
-                         [](const auto& number) { return std::string(::sigabbrev_np(number.param)); });
+                         [](const auto& number) {
+                           return std::string(::sigabbrev_np(number.param));
+                         });
 
 TEST_P(Signals, WriteTheFinishedPasses) {
   const fs::path folder = test::folder_with_scene();
@@ -37,8 +39,8 @@ TEST_P(Signals, WriteTheFinishedPasses) {
 
 TEST(Signals, NohupIsHeard) {
   const fs::path folder = test::folder_with_scene();
-  test::Running running({"render", "scene.pbrt", "-o", "out.exr", "--spp", endless, "--time", "8"}, folder, {},
-                        [] { ::signal(SIGHUP, SIG_IGN); });
+  test::Running running({"render", "scene.pbrt", "-o", "out.exr", "--spp", endless, "--time", "8"},
+                        folder, {}, [] { ::signal(SIGHUP, SIG_IGN); });
   ASSERT_TRUE(running.wait_for_stderr("paths/s"));
   running.send(SIGHUP);
   ASSERT_EQ(running.wait().code, 0);
@@ -47,8 +49,10 @@ TEST(Signals, NohupIsHeard) {
 
 TEST(Signals, TheSecondEndsAtOnce) {
   const fs::path folder = test::folder_with_scene();
-  // One pass of many pixels, so that the first signal cannot end the program before the second comes.
-  test::Running running({"render", "scene.pbrt", "-o", "out.exr", "--spp", endless, "--size", "2048x2048"}, folder);
+  // One pass of many pixels, so that the first signal cannot end the program before the second
+  // comes.
+  test::Running running(
+      {"render", "scene.pbrt", "-o", "out.exr", "--spp", endless, "--size", "2048x2048"}, folder);
   ASSERT_TRUE(running.wait_for_stderr("samples per pixel on"));
   running.send(SIGINT);
   running.send(SIGTERM);
@@ -60,11 +64,15 @@ TEST(Signals, TheSecondEndsAtOnce) {
 TEST(NoDevice, IsAFailureNotAUsageError) {
   const fs::path folder = test::folder_with_scene();
   for (const std::vector<std::string>& arguments :
-       {std::vector<std::string>{"render", "scene.pbrt"}, {"pick", "scene.pbrt", "--pixel", "1,1"}, {"verify", "--rays", "10"}}) {
-    const Result result =
-        test::run_program(arguments, folder, {{"OCL_ICD_VENDORS", "/nonexistent"}, {"OPENCL_VENDOR_PATH", "/nonexistent"}});
+       {std::vector<std::string>{"render", "scene.pbrt"},
+        {"pick", "scene.pbrt", "--pixel", "1,1"},
+        {"verify", "--rays", "10"}}) {
+    const Result result = test::run_program(
+        arguments, folder,
+        {{"OCL_ICD_VENDORS", "/nonexistent"}, {"OPENCL_VENDOR_PATH", "/nonexistent"}});
     EXPECT_EQ(result.code, 1) << arguments[0];
-    EXPECT_THAT(result.err, HasSubstr("caplet: error: --device: no OpenCL device was found")) << arguments[0];
+    EXPECT_THAT(result.err, HasSubstr("caplet: error: --device: no OpenCL device was found"))
+        << arguments[0];
   }
 }
 

@@ -21,7 +21,8 @@ using testing::HasSubstr;
 
 constexpr const char* sky =
     "LookAt 0 0 5  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" 40\n"
-    "Film \"rgb\" \"integer xresolution\" 24 \"integer yresolution\" 16\nSampler \"zsobol\" \"integer pixelsamples\" "
+    "Film \"rgb\" \"integer xresolution\" 24 \"integer yresolution\" 16\nSampler \"zsobol\" "
+    "\"integer pixelsamples\" "
     "4\nWorldBegin\n"
     "LightSource \"infinite\" \"rgb L\" [1 1 1]\n";
 
@@ -50,7 +51,8 @@ TEST(SkyScenes, AreRenderedByEveryCommand) {
   EXPECT_THAT(ran({"pick", "scene.pbrt", "--pixel", "3,4"}).out, HasSubstr("nothing"));
   ran({"pick", "scene.pbrt", "--pixel", "3,4", "--all", "--json", "--reference"});
 
-  EXPECT_THAT(ran({"verify", "scene.pbrt", "--rays", "1000"}).out, HasSubstr("nothing to verify: the scene has no shapes"));
+  EXPECT_THAT(ran({"verify", "scene.pbrt", "--rays", "1000"}).out,
+              HasSubstr("nothing to verify: the scene has no shapes"));
   const auto verified = nlohmann::json::parse(ran({"verify", "scene.pbrt", "--json"}).out);
   EXPECT_EQ(verified.at("rays"), 0);
   EXPECT_THAT(verified.at("verdict").get<std::string>(), HasSubstr("nothing to verify"));
@@ -69,9 +71,11 @@ TEST(SkyScenes, AreRenderedByEveryCommand) {
   // Turned, seen from a side, before a colour, for two eyes, and with what is drawn on it.
   ran({"render", "scene.pbrt", "--turntable", "2", "-o", "turn.##.png", "--size", "12x8"});
   ran({"render", "scene.pbrt", "--view", "left", "--projection", "orthographic", "-o", "left.png"});
-  ran({"render", "scene.pbrt", "--background", "transparent", "--axes", "--outline", "--depth-cue", "-o", "clear.png"});
+  ran({"render", "scene.pbrt", "--background", "transparent", "--axes", "--outline", "--depth-cue",
+       "-o", "clear.png"});
   ran({"render", "scene.pbrt", "--stereo", "0.1", "-o", "eyes.exr"});
-  const Result bar = test::run_program({"render", "scene.pbrt", "--scale-bar", "-o", "bar.png"}, folder);
+  const Result bar =
+      test::run_program({"render", "scene.pbrt", "--scale-bar", "-o", "bar.png"}, folder);
   EXPECT_EQ(bar.code, 2);
   EXPECT_THAT(bar.err, HasSubstr("no shapes that a bar could measure"));
 }
@@ -79,17 +83,22 @@ TEST(SkyScenes, AreRenderedByEveryCommand) {
 // A camera alone shows black, and a warning says why; without it there is nothing at all.
 TEST(SkyScenes, OfNothingAreBlackOrAnError) {
   const fs::path folder = test::folder_with_scene(
-      "Camera \"perspective\"\nFilm \"rgb\" \"integer xresolution\" 8 \"integer yresolution\" 8\nWorldBegin\n");
-  const Result black = test::run_program({"render", "scene.pbrt", "-o", "black.exr", "--spp", "1"}, folder);
+      "Camera \"perspective\"\nFilm \"rgb\" \"integer xresolution\" 8 \"integer yresolution\" "
+      "8\nWorldBegin\n");
+  const Result black =
+      test::run_program({"render", "scene.pbrt", "-o", "black.exr", "--spp", "1"}, folder);
   EXPECT_EQ(black.code, 0) << black.err;
   EXPECT_THAT(black.err, HasSubstr("the scene has no light: its picture is black"));
   for (const Channel& channel : read_exr(folder / "black.exr").channels)
     if (channel.name == "R" || channel.name == "G" || channel.name == "B") {
       for (const float value : channel.floats) EXPECT_EQ(value, 0);
     }
-  const Result nothing = test::run_program({"render", "scene.pbrt", "-o", "no.exr"}, test::folder_with_scene("WorldBegin\n"));
+  const Result nothing = test::run_program({"render", "scene.pbrt", "-o", "no.exr"},
+                                           test::folder_with_scene("WorldBegin\n"));
   EXPECT_EQ(nothing.code, 2);
-  EXPECT_THAT(nothing.err, HasSubstr("scene.pbrt: the scene is empty: it has no shapes, no light and no camera"));
+  EXPECT_THAT(
+      nothing.err,
+      HasSubstr("scene.pbrt: the scene is empty: it has no shapes, no light and no camera"));
 }
 
 }  // namespace

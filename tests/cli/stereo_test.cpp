@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// `render --stereo`: each view is what a camera moved by hand renders; and `render --display`, with a server in tev's place.
+// `render --stereo`: each view is what a camera moved by hand renders; and `render --display`, with
+// a server in tev's place.
 #include <ImfInputFile.h>
 #include <ImfMultiView.h>
 #include <ImfStandardAttributes.h>
@@ -21,22 +22,29 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-/// A ball at the origin, 5 away, and one behind it; half of the shorter side is 1 at distance 2 (fov 53.13...), 24 x 16 pixels.
+/// A ball at the origin, 5 away, and one behind it; half of the shorter side is 1 at distance 2
+/// (fov 53.13...), 24 x 16 pixels.
 std::string scene_from(const std::string& camera) {
   return camera +
-         "Film \"rgb\" \"integer xresolution\" 24 \"integer yresolution\" 16\nSampler \"independent\" \"integer pixelsamples\" "
+         "Film \"rgb\" \"integer xresolution\" 24 \"integer yresolution\" 16\nSampler "
+         "\"independent\" \"integer pixelsamples\" "
          "4\n"
-         "WorldBegin\nLightSource \"infinite\"\nShape \"sphere\"\nTranslate 1 0.5 3 Shape \"sphere\"\n";
+         "WorldBegin\nLightSource \"infinite\"\nShape \"sphere\"\nTranslate 1 0.5 3 Shape "
+         "\"sphere\"\n";
 }
 const std::string fov = " \"float fov\" 53.13010235415598";  // 2 atan(1/2)
 
 LayeredImage rendered(const std::filesystem::path& folder, const std::string& text) {
   test::write_file(folder / "by_hand.pbrt", text);
-  EXPECT_EQ(test::run_program({"render", "by_hand.pbrt", "-q", "--layers", "all", "-o", "by_hand.exr"}, folder).code, 0);
+  EXPECT_EQ(test::run_program(
+                {"render", "by_hand.pbrt", "-q", "--layers", "all", "-o", "by_hand.exr"}, folder)
+                .code,
+            0);
   return read_exr(folder / "by_hand.exr");
 }
 
-void expect_view(const LayeredImage& both, const std::vector<std::string>& views, std::size_t view, const LayeredImage& alone) {
+void expect_view(const LayeredImage& both, const std::vector<std::string>& views, std::size_t view,
+                 const LayeredImage& alone) {
   EXPECT_EQ(both.channels.size(), 2 * alone.channels.size());
   for (const Channel& channel : alone.channels) {
     const Channel* found = both.find(name_in_view(channel.name, views, view));
@@ -47,12 +55,14 @@ void expect_view(const LayeredImage& both, const std::vector<std::string>& views
 }
 
 TEST(Stereo, ViewsAreThoseOfCamerasMovedByHand) {
-  const auto folder = test::folder_with_scene(scene_from("LookAt 0 0 -5 0 0 0 0 1 0\nCamera \"perspective\"" + fov + "\n"));
+  const auto folder = test::folder_with_scene(
+      scene_from("LookAt 0 0 -5 0 0 0 0 1 0\nCamera \"perspective\"" + fov + "\n"));
   const std::vector<std::string> views = {"left", "right"};
   // The camera's right is +x.
   const auto by_hand = [&](const char* x, const std::string& window) {
     const std::string from = std::string(x) + " 0 -5 ", to = std::string(x) + " 0 0 ";
-    return rendered(folder, scene_from("LookAt " + from + to + "0 1 0\nCamera \"perspective\"" + fov + window + "\n"));
+    return rendered(folder, scene_from("LookAt " + from + to + "0 1 0\nCamera \"perspective\"" +
+                                       fov + window + "\n"));
   };
   EXPECT_EQ(test::render(folder, {"-o", "both.exr", "--layers", "all", "--stereo", "0.5"}).code, 0);
   LayeredImage both = read_exr(folder / "both.exr");
@@ -60,7 +70,10 @@ TEST(Stereo, ViewsAreThoseOfCamerasMovedByHand) {
   expect_view(both, views, 1, by_hand("0.25", ""));
   EXPECT_EQ(both.metadata.at("caplet.stereo_separation"), "0.5");
   // At distance 4 the half window is 2 high: 0.25 is an eighth of it. Sides are 1.5 and 1.
-  EXPECT_EQ(test::render(folder, {"-o", "both.exr", "--layers", "all", "--stereo", "0.5", "--convergence", "4"}).code, 0);
+  EXPECT_EQ(test::render(folder, {"-o", "both.exr", "--layers", "all", "--stereo", "0.5",
+                                  "--convergence", "4"})
+                .code,
+            0);
   both = read_exr(folder / "both.exr");
   expect_view(both, views, 0, by_hand("-0.25", " \"float screenwindow\" [-1.375 1.625 -1 1]"));
   expect_view(both, views, 1, by_hand("0.25", " \"float screenwindow\" [-1.625 1.375 -1 1]"));
@@ -74,14 +87,17 @@ TEST(Stereo, TheLibraryOpensBothViews) {
   const Imf::StringVector views = Imf::multiView(file.header());
   EXPECT_THAT(views, ElementsAre("left", "right"));
   std::set<std::string> names;
-  for (auto it = file.header().channels().begin(); it != file.header().channels().end(); ++it) names.insert(it.name());
-  for (const char* name :
-       {"R", "Z", "right.R", "right.Z", "albedo.left.R", "albedo.right.R", "object.left.id", "object.right.id"})
+  for (auto it = file.header().channels().begin(); it != file.header().channels().end(); ++it)
+    names.insert(it.name());
+  for (const char* name : {"R", "Z", "right.R", "right.Z", "albedo.left.R", "albedo.right.R",
+                           "object.left.id", "object.right.id"})
     EXPECT_TRUE(names.contains(name)) << name;
   std::size_t left = 0, right = 0;
-  for (const std::string& name : names) (Imf::viewFromChannelName(name, views) == "left" ? left : right)++;
+  for (const std::string& name : names)
+    (Imf::viewFromChannelName(name, views) == "left" ? left : right)++;
   EXPECT_EQ(left, right);
-  EXPECT_EQ(Imf::channelInOtherView("albedo.left.R", file.header().channels(), views, "right"), "albedo.right.R");
+  EXPECT_EQ(Imf::channelInOtherView("albedo.left.R", file.header().channels(), views, "right"),
+            "albedo.right.R");
 }
 
 TEST(Stereo, OptionsThatAreWrongAreSaid) {
@@ -116,7 +132,8 @@ TEST(Stereo, PreviewsShowBothViews) {
 TEST(Display, TevShowsThePictureOfTheFile) {
   const auto folder = test::folder_with_scene();
   test::TevServer server;
-  const test::Result result = test::render(folder, {"-o", "out.exr", "--display", "127.0.0.1:" + server.port(), "--spp", "8"});
+  const test::Result result = test::render(
+      folder, {"-o", "out.exr", "--display", "127.0.0.1:" + server.port(), "--spp", "8"});
   EXPECT_EQ(result.code, 0) << result.err;
   server.stop();
   EXPECT_EQ(server.problem(), "");
@@ -132,7 +149,8 @@ TEST(Display, TevShowsThePictureOfTheFile) {
   // The same file as without it.
   EXPECT_EQ(test::render(folder, {"-o", "alone.exr", "--spp", "8"}).code, 0);
   const LayeredImage alone = read_exr(folder / "alone.exr");
-  for (const Channel& channel : image.channels) EXPECT_EQ(channel.floats, alone.find(channel.name)->floats) << channel.name;
+  for (const Channel& channel : image.channels)
+    EXPECT_EQ(channel.floats, alone.find(channel.name)->floats) << channel.name;
 }
 
 TEST(Display, WithoutTevThePictureIsMadeAllTheSame) {

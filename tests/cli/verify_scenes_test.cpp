@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// The built program's `verify` on every push: a million rays through the torture set, and some through every scene there is.
+// The built program's `verify` on every push: a million rays through the torture set, and some
+// through every scene there is.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -34,7 +35,9 @@ void expect_agreement(std::vector<std::string> arguments, std::uint64_t rays) {
 }
 
 // All of its scenes, of 250,000 rays each; the first one alone under sanitizers.
-TEST(VerifyTortureSet, ManyRays) { expect_agreement({}, test::sanitized ? 20'000 : test::thorough() ? 1'000'000 : 100'000); }
+TEST(VerifyTortureSet, ManyRays) {
+  expect_agreement({}, test::sanitized ? 20'000 : test::thorough() ? 1'000'000 : 100'000);
+}
 
 /// Every file of scenes/ that an importer knows, relative to it.
 std::vector<std::string> scene_files() {
@@ -43,7 +46,8 @@ std::vector<std::string> scene_files() {
   for (const auto& entry : fs::recursive_directory_iterator(folder))
     for (const Format& format : formats())
       for (const std::string& extension : format.extensions)
-        if (entry.path().native().ends_with(extension)) out.push_back(fs::relative(entry.path(), folder).string());
+        if (entry.path().native().ends_with(extension))
+          out.push_back(fs::relative(entry.path(), folder).string());
   std::sort(out.begin(), out.end());
   out.erase(std::unique(out.begin(), out.end()), out.end());  // of endings that formats share
   return out;
@@ -52,15 +56,17 @@ std::vector<std::string> scene_files() {
 class VerifyScenes : public testing::TestWithParam<std::string> {};
 
 TEST_P(VerifyScenes, Agrees) {
-  expect_agreement({(test::source_folder() / "scenes" / GetParam()).string()}, test::sanitized ? 2'000 : 20'000);
+  expect_agreement({(test::source_folder() / "scenes" / GetParam()).string()},
+                   test::sanitized ? 2'000 : 20'000);
 }
 
-INSTANTIATE_TEST_SUITE_P(Files, VerifyScenes, testing::ValuesIn(scene_files()), [](const auto& parameter) {
-  std::string name = parameter.param;
-  for (char& c : name)
-    if (!std::isalnum(static_cast<unsigned char>(c))) c = '_';
-  return name;
-});
+INSTANTIATE_TEST_SUITE_P(Files, VerifyScenes, testing::ValuesIn(scene_files()),
+                         [](const auto& parameter) {
+                           std::string name = parameter.param;
+                           for (char& c : name)
+                             if (!std::isalnum(static_cast<unsigned char>(c))) c = '_';
+                           return name;
+                         });
 
 TEST(VerifyScenes, ThereAreScenesOfEveryFormat) {
   const std::vector<std::string> files = scene_files();
@@ -71,7 +77,8 @@ TEST(VerifyScenes, ThereAreScenesOfEveryFormat) {
 // 28,929 capsules: the tree is deeper than that of any scene of the repository.
 TEST(VerifyData, ALargeNeuron) {
   CAPLET_NEEDS_DATA();
-  expect_agreement({(test::data_folder() / "swc/neuromorpho_large/173000.swc").string()}, test::sanitized ? 500 : 20'000);
+  expect_agreement({(test::data_folder() / "swc/neuromorpho_large/173000.swc").string()},
+                   test::sanitized ? 500 : 20'000);
 }
 
 }  // namespace

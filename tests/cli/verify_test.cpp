@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// `caplet verify`: verdicts and exit codes, reports, kept failures, and a device that computes wrongly.
+// `caplet verify`: verdicts and exit codes, reports, kept failures, and a device that computes
+// wrongly.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -25,22 +26,26 @@ using testing::Not;
 fs::path folder_with_scene() {
   return test::folder_with_scene(
       "LookAt 0 -8 3  0 0 0  0 0 1\nCamera \"perspective\" \"float fov\" 40\n"
-      "Film \"rgb\" \"integer xresolution\" 32 \"integer yresolution\" 20\nWorldBegin\nLightSource \"infinite\"\n"
+      "Film \"rgb\" \"integer xresolution\" 32 \"integer yresolution\" 20\nWorldBegin\nLightSource "
+      "\"infinite\"\n"
       "Shape \"sphere\" \"float radius\" 0.7\n"
       "Shape \"capsule\" \"point3 p0\" [-2 0 0] \"point3 p1\" [-1 1 1] \"float radius\" [0.5 0.2]\n"
       "Shape \"cylinder\" \"point3 p0\" [2 0 -1] \"point3 p1\" [2 0 1] \"float radius\" 0.5\n");
 }
 
 TEST(Verify, ASceneAgrees) {
-  const Result result = test::run_program({"verify", "scene.pbrt", "--rays", "5000"}, folder_with_scene());
+  const Result result =
+      test::run_program({"verify", "scene.pbrt", "--rays", "5000"}, folder_with_scene());
   EXPECT_EQ(result.code, 0) << result.out << result.err;
-  for (const char* text : {"sphere", "tapered_capsule", "cylinder", "verdict    agrees: no disagreement in 5000 rays"})
+  for (const char* text :
+       {"sphere", "tapered_capsule", "cylinder", "verdict    agrees: no disagreement in 5000 rays"})
     EXPECT_THAT(result.out, HasSubstr(text));
   EXPECT_THAT(result.out, Not(HasSubstr("polyhedron")));
 }
 
 TEST(Verify, JsonOfTheTortureSet) {
-  const Result result = test::run_program({"verify", "--rays", "8000", "--seed", "4", "--json"}, test::temporary_folder());
+  const Result result = test::run_program({"verify", "--rays", "8000", "--seed", "4", "--json"},
+                                          test::temporary_folder());
   ASSERT_EQ(result.code, 0) << result.out << result.err;
   const auto json = nlohmann::json::parse(result.out);
   EXPECT_EQ(json.at("rays"), 8000);
@@ -54,7 +59,9 @@ TEST(Verify, JsonOfTheTortureSet) {
     EXPECT_EQ(kind.at("disagreements"), 0) << name;
     EXPECT_LE(kind.at("worst").get<double>(), 1) << name;
     for (const char* quantity : {"t", "point", "normal", "uv"}) {
-      EXPECT_LE(kind.at(quantity).at("bounds").at("median"), kind.at(quantity).at("bounds").at("worst")) << name;
+      EXPECT_LE(kind.at(quantity).at("bounds").at("median"),
+                kind.at(quantity).at("bounds").at("worst"))
+          << name;
       EXPECT_GE(kind.at(quantity).at("ulps").at("worst").get<double>(), 0) << name;
     }
   }
@@ -66,8 +73,9 @@ TEST(Verify, AWrongDeviceIsFoundAndItsCasesReplayed) {
   const auto folder = folder_with_scene();
   const auto kernels = test::changed_kernels("shapes/sphere.cl", "sqrt(", "0.9f * sqrt(");
   const std::map<std::string, std::string> wrong = {{"CAPLET_KERNELS", kernels.string()}};
-  const Result found =
-      test::run_program({"verify", "scene.pbrt", "--rays", "3000", "--save-failures", "cases", "--json"}, folder, wrong);
+  const Result found = test::run_program(
+      {"verify", "scene.pbrt", "--rays", "3000", "--save-failures", "cases", "--json"}, folder,
+      wrong);
   EXPECT_EQ(found.code, 3) << found.err;
   const auto json = nlohmann::json::parse(found.out);
   EXPECT_EQ(json.at("verdict"), "disagrees");
@@ -90,7 +98,8 @@ TEST(Verify, AWrongDeviceIsFoundAndItsCasesReplayed) {
 
 TEST(Verify, HeatmapOfTheScenesSize) {
   const auto folder = folder_with_scene();
-  const Result result = test::run_program({"verify", "scene.pbrt", "--rays", "100", "--heatmap", "heat.exr"}, folder);
+  const Result result =
+      test::run_program({"verify", "scene.pbrt", "--rays", "100", "--heatmap", "heat.exr"}, folder);
   ASSERT_EQ(result.code, 0) << result.err;
   const LayeredImage image = read_exr(folder / "heat.exr");
   EXPECT_EQ(image.data_width, 32);
@@ -111,14 +120,18 @@ TEST(Verify, DeviceAgainstDevice) {
   const auto folder = folder_with_scene();
   if (nlohmann::json::parse(test::run_program({"devices", "--json"}, folder, two).out).size() != 2)
     GTEST_SKIP() << "needs PoCL, with its devices 'basic' and 'pthread'";
-  const Result result = test::run_program({"verify", "scene.pbrt", "--rays", "2000", "--all-devices", "--json"}, folder, two);
+  const Result result = test::run_program(
+      {"verify", "scene.pbrt", "--rays", "2000", "--all-devices", "--json"}, folder, two);
   ASSERT_EQ(result.code, 0) << result.err;
   const auto json = nlohmann::json::parse(result.out);
   ASSERT_EQ(json.at("devices").size(), 2u);
   ASSERT_EQ(json.at("differences").size(), 1u);
-  EXPECT_EQ(json.at("differences")[0].at("same"), 2000);  // the same compiler for the same processor
-  const Result text = test::run_program({"verify", "scene.pbrt", "--rays", "2000", "--all-devices"}, folder, two);
-  for (const char* part : {"device against device", "0 and 1", "verdict 0", "verdict 1"}) EXPECT_THAT(text.out, HasSubstr(part));
+  EXPECT_EQ(json.at("differences")[0].at("same"),
+            2000);  // the same compiler for the same processor
+  const Result text =
+      test::run_program({"verify", "scene.pbrt", "--rays", "2000", "--all-devices"}, folder, two);
+  for (const char* part : {"device against device", "0 and 1", "verdict 0", "verdict 1"})
+    EXPECT_THAT(text.out, HasSubstr(part));
 }
 
 TEST(Verify, WrongUsage) {
@@ -134,7 +147,8 @@ TEST(Verify, WrongUsage) {
   EXPECT_THAT(refused({"missing.pbrt"}), HasSubstr("missing.pbrt"));
   EXPECT_THAT(refused({"--rays", "0"}), HasSubstr("--rays"));
   EXPECT_THAT(refused({"--rays", "-3"}), HasSubstr("--rays"));
-  EXPECT_THAT(refused({"--device", "0", "--all-devices"}), HasSubstr("--device: does not go with --all-devices"));
+  EXPECT_THAT(refused({"--device", "0", "--all-devices"}),
+              HasSubstr("--device: does not go with --all-devices"));
   EXPECT_THAT(refused({"--device", "nothing like it"}), HasSubstr("nothing like it"));
   EXPECT_THAT(refused({"--heatmap", "heat.png"}), HasSubstr("--heatmap"));
   EXPECT_THAT(refused({"--heatmap", "no/such/folder/heat.exr"}), HasSubstr("--heatmap"));
@@ -142,14 +156,16 @@ TEST(Verify, WrongUsage) {
   EXPECT_THAT(refused({"--heatmap", "heat.exr", "--size", "0x20"}), HasSubstr("--size"));
   EXPECT_THAT(refused({"--replay", "none.json"}), HasSubstr("none.json"));
   EXPECT_THAT(refused({"--replay", "case-1.json"}), HasSubstr("not a case"));
-  EXPECT_THAT(refused({"scene.pbrt", "--replay", "case-1.json"}), HasSubstr("--replay: takes the scene from the cases"));
+  EXPECT_THAT(refused({"scene.pbrt", "--replay", "case-1.json"}),
+              HasSubstr("--replay: takes the scene from the cases"));
   EXPECT_THAT(refused({"--replay", "case-1.json", "--json"}), HasSubstr("--json"));
   EXPECT_EQ(test::names_in(folder), (std::vector<std::string>{"case-1.json", "scene.pbrt"}));
 }
 
 TEST(Verify, CtrlCSaysWhatWasAsked) {
   const auto folder = folder_with_scene();
-  test::Running running({"verify", "scene.pbrt", "--rays", "1000000000", "--heatmap", "heat.exr"}, folder);
+  test::Running running({"verify", "scene.pbrt", "--rays", "1000000000", "--heatmap", "heat.exr"},
+                        folder);
   ASSERT_TRUE(running.wait_for_stderr("Mrays/s"));
   running.send(SIGINT);
   const Result result = running.wait();

@@ -37,18 +37,22 @@ TEST(View, SaysToWhomItIsOpen) {
   const Result result = viewed({"--host", "0.0.0.0"});
   EXPECT_THAT(result.out, AllOf(StartsWith("http://"), Not(HasSubstr("0.0.0.0"))));
   const std::string authority = result.out.substr(7, result.out.find('/', 7) - 7);
-  EXPECT_THAT(result.err, HasSubstr("--host 0.0.0.0: every machine that reaches this one at " + authority));
   EXPECT_THAT(result.err,
-              AllOf(HasSubstr("change it, and save it"), HasSubstr("nothing is encrypted"), HasSubstr("--read-only")));
+              HasSubstr("--host 0.0.0.0: every machine that reaches this one at " + authority));
+  EXPECT_THAT(result.err, AllOf(HasSubstr("change it, and save it"),
+                                HasSubstr("nothing is encrypted"), HasSubstr("--read-only")));
   const Result looked = viewed({"--host", "0.0.0.0", "--read-only"});
-  EXPECT_THAT(looked.err, AllOf(HasSubstr("every machine"), HasSubstr("can look at the scene;"), Not(HasSubstr("change it"))));
+  EXPECT_THAT(looked.err, AllOf(HasSubstr("every machine"), HasSubstr("can look at the scene;"),
+                                Not(HasSubstr("change it"))));
 }
 
 TEST(View, RefusesScenesThatReachOutside) {
-  const Result result = test::run_program({"view", "scene.pbrt", "--no-browser", "--no-outside"},
-                                          test::folder_with_scene("WorldBegin\nInclude \"/etc/passwd\"\nShape \"sphere\"\n"));
+  const Result result = test::run_program(
+      {"view", "scene.pbrt", "--no-browser", "--no-outside"},
+      test::folder_with_scene("WorldBegin\nInclude \"/etc/passwd\"\nShape \"sphere\"\n"));
   EXPECT_EQ(result.code, 2);
-  EXPECT_THAT(result.err, HasSubstr("scene.pbrt:2:9: '/etc/passwd' is outside of the scene's folder"));
+  EXPECT_THAT(result.err,
+              HasSubstr("scene.pbrt:2:9: '/etc/passwd' is outside of the scene's folder"));
 }
 
 }  // namespace

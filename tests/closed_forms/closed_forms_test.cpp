@@ -25,9 +25,10 @@ std::vector<Expectation> expectations() {
   const nlohmann::json json = nlohmann::json::parse(file);
   std::vector<Expectation> out;
   for (const nlohmann::json& row : json.at("scenes"))
-    out.push_back({row.at("scene"), row.at("kind"), row.value("reference", ""), row.at("max_depth"), row.at("spp"),
-                   row.value("value", 0.0), row.value("relative_tolerance", 0.0), row.value("standard_errors", 0.0),
-                   row.value("tolerance", 0.0), row.value("mean_tolerance", 0.0)});
+    out.push_back({row.at("scene"), row.at("kind"), row.value("reference", ""), row.at("max_depth"),
+                   row.at("spp"), row.value("value", 0.0), row.value("relative_tolerance", 0.0),
+                   row.value("standard_errors", 0.0), row.value("tolerance", 0.0),
+                   row.value("mean_tolerance", 0.0)});
   return out;
 }
 
@@ -36,8 +37,9 @@ class ClosedForms : public testing::TestWithParam<Expectation> {};
 TEST_P(ClosedForms, Agrees) {
   const Expectation& expected = GetParam();
   if (!expected.reference.empty()) CAPLET_NEEDS_DATA();
-  const Rendered rendered = render_file(source_folder() / expected.scene, expected.samples,
-                                        [&](Scene& scene) { scene.integrator.max_depth = expected.max_depth; });
+  const Rendered rendered =
+      render_file(source_folder() / expected.scene, expected.samples,
+                  [&](Scene& scene) { scene.integrator.max_depth = expected.max_depth; });
   const Picture ours = picture_of(rendered.image);
   const double pixels = static_cast<double>(ours.rgb.size()) / 3;
   if (expected.kind == "image") {
@@ -70,20 +72,25 @@ TEST_P(ClosedForms, Agrees) {
     RecordProperty(std::string("mean_") + "RGB"[c], std::to_string(mean));
     EXPECT_NEAR(mean, expected.value, expected.relative_tolerance * expected.value) << "RGB"[c];
     // 1e-5: a picture without noise still has the rounding of float sums and of the colour tables.
-    EXPECT_NEAR(mean, expected.value, expected.standard_errors * std::sqrt(variance) + 1e-5 * expected.value) << "RGB"[c];
+    EXPECT_NEAR(mean, expected.value,
+                expected.standard_errors * std::sqrt(variance) + 1e-5 * expected.value)
+        << "RGB"[c];
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Scenes, ClosedForms, testing::ValuesIn(expectations()), [](const auto& parameter) {
-  std::string name = std::filesystem::path(parameter.param.scene).stem().string();
-  for (char& c : name)
-    if (c == '-') c = '_';
-  return name;
-});
+INSTANTIATE_TEST_SUITE_P(Scenes, ClosedForms, testing::ValuesIn(expectations()),
+                         [](const auto& parameter) {
+                           std::string name =
+                               std::filesystem::path(parameter.param.scene).stem().string();
+                           for (char& c : name)
+                             if (c == '-') c = '_';
+                           return name;
+                         });
 
 TEST(ClosedForms, EverySceneOfTheFolderIsExpected) {
   std::size_t scenes = 0;
-  for (const auto& entry : std::filesystem::directory_iterator(source_folder() / "scenes" / "reference"))
+  for (const auto& entry :
+       std::filesystem::directory_iterator(source_folder() / "scenes" / "reference"))
     scenes += entry.path().extension() == ".pbrt";
   EXPECT_EQ(scenes, expectations().size());
 }

@@ -103,7 +103,8 @@ TEST_F(BufferTest, RefusesPlacesOutsideIt) {
   float values[8] = {};
   EXPECT_THROW(buffer.write(std::span<const float>(values, 8)), std::logic_error);
   EXPECT_THROW(static_cast<RawBuffer&>(buffer).read(values, 12, 8), std::logic_error);
-  EXPECT_THROW(static_cast<RawBuffer&>(buffer).read(values, std::size_t{0} - 4, 8), std::logic_error);
+  EXPECT_THROW(static_cast<RawBuffer&>(buffer).read(values, std::size_t{0} - 4, 8),
+               std::logic_error);
 }
 
 TEST_F(BufferTest, BytesAreCounted) {
@@ -124,8 +125,10 @@ TEST_F(BufferTest, BytesAreCounted) {
 
 TEST_F(BufferTest, TooLargeANeedNamesBothNumbers) {
   const std::uint64_t limit = device_.info().max_allocation_bytes;
-  EXPECT_THAT(refusal(limit + 1), AllOf(HasSubstr(fmt::format("needs {} bytes, the device allows {} bytes", limit + 1, limit)),
-                                        HasSubstr(device_.info().name)));
+  EXPECT_THAT(
+      refusal(limit + 1),
+      AllOf(HasSubstr(fmt::format("needs {} bytes, the device allows {} bytes", limit + 1, limit)),
+            HasSubstr(device_.info().name)));
   EXPECT_EQ(device_.bytes_allocated(), 0u);
 }
 

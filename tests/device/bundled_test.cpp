@@ -23,7 +23,9 @@ using testing::HasSubstr;
 using Variables = std::map<std::string, std::string>;
 
 std::function<std::string(const std::string&)> with(const Variables& variables) {
-  return [=](const std::string& name) { return variables.contains(name) ? variables.at(name) : std::string(); };
+  return [=](const std::string& name) {
+    return variables.contains(name) ? variables.at(name) : std::string();
+  };
 }
 
 /// An installation's folder of the driver, with an empty library.
@@ -55,9 +57,13 @@ TEST(BundledDriver, AFolderWithoutTheLibraryIsNone) {
 TEST(BundledDriver, IsNamedOrForbiddenByTheVariable) {
   const fs::path package = test::temporary_folder(), other = make_driver(package / "other");
   make_driver(package / "pocl");
-  EXPECT_EQ(bundled_driver(package / "bin/caplet", with({{"CAPLET_BUNDLED_DRIVER", other.string()}})).folder, other);
+  EXPECT_EQ(
+      bundled_driver(package / "bin/caplet", with({{"CAPLET_BUNDLED_DRIVER", other.string()}}))
+          .folder,
+      other);
   EXPECT_FALSE(bundled_driver(package / "bin/caplet", with({{"CAPLET_BUNDLED_DRIVER", "0"}})));
-  EXPECT_FALSE(bundled_driver(package / "bin/caplet", with({{"CAPLET_BUNDLED_DRIVER", (package / "none").string()}})));
+  EXPECT_FALSE(bundled_driver(package / "bin/caplet",
+                              with({{"CAPLET_BUNDLED_DRIVER", (package / "none").string()}})));
 }
 
 TEST(BundledDriver, HasACacheOfItsOwn) {
@@ -75,7 +81,8 @@ TEST(BundledDriver, TakesAWholeLevelThatTheProcessorHas) {
 TEST(BundledDriver, ItsLinkerIsTheFirstInThePath) {
   EXPECT_EQ(with_first("/usr/bin:/bin", "/w/pocl/bin"), "/w/pocl/bin:/usr/bin:/bin");
   EXPECT_EQ(with_first("/w/pocl/bin:/usr/bin", "/w/pocl/bin"), "/w/pocl/bin:/usr/bin");
-  EXPECT_EQ(with_first("/w/pocl/bin2:/usr/bin", "/w/pocl/bin"), "/w/pocl/bin:/w/pocl/bin2:/usr/bin");
+  EXPECT_EQ(with_first("/w/pocl/bin2:/usr/bin", "/w/pocl/bin"),
+            "/w/pocl/bin:/w/pocl/bin2:/usr/bin");
   EXPECT_EQ(with_first("/usr/bin:/w/pocl/bin", "/w/pocl/bin"), "/w/pocl/bin:/usr/bin:/w/pocl/bin");
   EXPECT_EQ(with_first("", "/w/pocl/bin"), "/w/pocl/bin");
 }
@@ -89,8 +96,10 @@ DeviceInfo device(int index, const char* name, const char* type, bool bundled = 
   return out;
 }
 
-const std::vector<DeviceInfo> gpu_and_bundled = {device(0, "Radeon", "gpu"), device(1, "pthread-EPYC", "cpu", true)};
-const std::vector<DeviceInfo> both = {device(0, "pthread-EPYC", "cpu"), device(1, "pthread-EPYC", "cpu", true)};
+const std::vector<DeviceInfo> gpu_and_bundled = {device(0, "Radeon", "gpu"),
+                                                 device(1, "pthread-EPYC", "cpu", true)};
+const std::vector<DeviceInfo> both = {device(0, "pthread-EPYC", "cpu"),
+                                      device(1, "pthread-EPYC", "cpu", true)};
 const std::vector<DeviceInfo> alone = {device(0, "pthread-EPYC", "cpu", true)};
 
 TEST(SelectBundled, IsTheDefaultWhereThereIsNothingElse) {
@@ -109,7 +118,10 @@ TEST(SelectBundled, ByItsWordOrIndex) {
     select_device({both[0]}, "bundled");
     ADD_FAILURE();
   } catch (const UnknownDevice& error) {
-    EXPECT_THAT(error.what(), HasSubstr("no OpenCL driver came with this program; the devices are 0 'pthread-EPYC' (cpu)"));
+    EXPECT_THAT(
+        error.what(),
+        HasSubstr(
+            "no OpenCL driver came with this program; the devices are 0 'pthread-EPYC' (cpu)"));
   }
 }
 
@@ -131,11 +143,13 @@ TEST(SelectBundled, AllDoesNotTakeTheProcessorTwice) {
   EXPECT_THAT(select_devices(alone, "all"), ElementsAre(0));
 }
 
-/// What is selected without knowing the bundled device, where anything is, is what is selected with it.
+/// What is selected without knowing the bundled device, where anything is, is what is selected with
+/// it.
 TEST(SelectBundled, TheMachinesDevicesAreEnoughWhereTheyAreMeant) {
   for (const std::vector<DeviceInfo>& devices : {gpu_and_bundled, both, alone}) {
     const std::vector<DeviceInfo> machine(devices.begin(), devices.end() - 1);
-    for (const char* choice : {"", "0", "1", "cpu", "gpu", "all", "bundled", "epyc", "radeon", "0,1"}) {
+    for (const char* choice :
+         {"", "0", "1", "cpu", "gpu", "all", "bundled", "epyc", "radeon", "0,1"}) {
       const auto early = select_machine_devices(machine, choice, true);
       if (early) {
         EXPECT_EQ(*early, select_devices(devices, choice)) << choice;

@@ -29,14 +29,17 @@ class Cache : public testing::Test {
     std::ifstream in(cache_file("key", "test"), std::ios::binary);
     return {std::istreambuf_iterator<char>(in), {}};
   }
-  void replace_file(const std::string& text) const { std::ofstream(cache_file("key", "test"), std::ios::binary) << text; }
+  void replace_file(const std::string& text) const {
+    std::ofstream(cache_file("key", "test"), std::ios::binary) << text;
+  }
 
   fs::path folder_ = test::temporary_folder() / "deep" / "er";
   test::ScopedVariable variable_{"CAPLET_CACHE", folder_.string()};
 };
 
 TEST(ContentHash, IsTheHundredAndTwentyEightBitFnv1a) {
-  // From the test vectors of the FNV specification (RFC 9923, appendix C): the empty string and "a".
+  // From the test vectors of the FNV specification (RFC 9923, appendix C): the empty string and
+  // "a".
   EXPECT_EQ(content_hash(""), "6c62272e07bb014262b821756295c58d");
   EXPECT_EQ(content_hash("a"), "d228cb696f1a8caf78912b704e4a8964");
 }
@@ -85,7 +88,8 @@ TEST_F(Cache, AFolderInAFilesPlaceIsAMissAndNamed) {
   EXPECT_FALSE(cache_load("key", "test"));
   EXPECT_FALSE(cache_store("key", "test", contents));
   EXPECT_FALSE(cache_store("key", "test", contents));
-  const std::string said = log.text(), name = "'" + cache_file("key", "test").string() + "' is a folder";
+  const std::string said = log.text(),
+                    name = "'" + cache_file("key", "test").string() + "' is a folder";
   EXPECT_THAT(said, HasSubstr(name));
   EXPECT_EQ(said.find(name), said.rfind(name));  // once
   EXPECT_TRUE(cache_store("other key", "test", contents));

@@ -49,7 +49,8 @@ TEST_F(InChild, WhatItPrintsIsKeptFromTheTerminal) {
 }
 
 TEST_F(InChild, ExceptionsAreTold) {
-  const ChildEnd end = in_child([]() -> std::string { throw std::runtime_error("no good"); }, plenty);
+  const ChildEnd end =
+      in_child([]() -> std::string { throw std::runtime_error("no good"); }, plenty);
   EXPECT_FALSE(end.finished);
   EXPECT_EQ(end.how, "no good");
 }

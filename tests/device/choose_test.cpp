@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Choosing among the devices that are there, and where there is none: of all of them, so not of the one that the other tests run
-// on.
+// Choosing among the devices that are there, and where there is none: of all of them, so not of the
+// one that the other tests run on.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -71,7 +71,8 @@ TEST(Choose, WithoutAPlatformThereAreNoDevices) {
   std::array<char, 4096> text{};
   const std::size_t length = std::fread(text.data(), 1, text.size(), pipe);
   EXPECT_EQ(::pclose(pipe), 0);
-  EXPECT_THAT(std::string(text.data(), length), AllOf(HasSubstr("0 devices\n"), HasSubstr("pocl-opencl-icd")));
+  EXPECT_THAT(std::string(text.data(), length),
+              AllOf(HasSubstr("0 devices\n"), HasSubstr("pocl-opencl-icd")));
 }
 
 }  // namespace

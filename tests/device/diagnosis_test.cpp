@@ -74,7 +74,8 @@ TEST_F(Machine, NoDriverIsANoteWhereOneIsBundled) {
   const Findings found = check_registry(read_registry(machine_, ocl_icd), true);
   ASSERT_EQ(found.size(), 1u);
   EXPECT_EQ(found[0].state, State::note);
-  EXPECT_THAT(found[0].what, AllOf(HasSubstr("does not exist"), HasSubstr("the bundled one is used")));
+  EXPECT_THAT(found[0].what,
+              AllOf(HasSubstr("does not exist"), HasSubstr("the bundled one is used")));
 }
 
 TEST_F(Machine, EmptyFolderOfDrivers) {
@@ -105,7 +106,8 @@ TEST_F(Machine, TheLoadersVariables) {
   const fs::path file = write("other/b.icd", "libb.so");
   const auto libraries = [&](const Loader& loader) {
     std::vector<std::string> out;
-    for (const Driver& driver : read_registry(machine_, loader).drivers) out.push_back(driver.library);
+    for (const Driver& driver : read_registry(machine_, loader).drivers)
+      out.push_back(driver.library);
     return out;
   };
   using Names = std::vector<std::string>;
@@ -142,18 +144,21 @@ TEST_F(Machine, GpuNodesThatMayNotBeOpened) {
   }
   closed_ = {write("dev/dri/renderD129")};
   machine_.group = [](const fs::path&) { return "root"; };
-  EXPECT_THAT(only_wrong(check_permissions(machine_)).fix, HasSubstr("usermod -aG render,video ada"));
+  EXPECT_THAT(only_wrong(check_permissions(machine_)).fix,
+              HasSubstr("usermod -aG render,video ada"));
 }
 
 TEST_F(Machine, NvidiaWithoutItsIcd) {
   Registry registry;
   EXPECT_THAT(check_nvidia(machine_, registry, ocl_icd, true), IsEmpty());
   write("proc/driver/nvidia/version");
-  EXPECT_THAT(only_wrong(check_nvidia(machine_, registry, ocl_icd, true)).fix,
-              testing::AllOf(HasSubstr("nvidia.icd"), HasSubstr("OCL_ICD_VENDORS=libnvidia-opencl.so.1")));
+  EXPECT_THAT(
+      only_wrong(check_nvidia(machine_, registry, ocl_icd, true)).fix,
+      testing::AllOf(HasSubstr("nvidia.icd"), HasSubstr("OCL_ICD_VENDORS=libnvidia-opencl.so.1")));
   EXPECT_THAT(only_wrong(check_nvidia(machine_, registry, khronos, true)).fix,
               HasSubstr("OCL_ICD_FILENAMES=libnvidia-opencl.so.1"));
-  EXPECT_THAT(only_wrong(check_nvidia(machine_, registry, ocl_icd, false)).fix, HasSubstr("NVIDIA_DRIVER_CAPABILITIES"));
+  EXPECT_THAT(only_wrong(check_nvidia(machine_, registry, ocl_icd, false)).fix,
+              HasSubstr("NVIDIA_DRIVER_CAPABILITIES"));
   registry.variable = "OCL_ICD_VENDORS";
   EXPECT_EQ(check_nvidia(machine_, registry, ocl_icd, true).at(0).state, State::note);
   registry.drivers.push_back({"nvidia.icd", "libnvidia-opencl.so.1", ""});
@@ -189,7 +194,8 @@ TEST_F(Machine, Caches) {
   const fs::path kept = write("cache/deep/file", "12345").parent_path().parent_path();
   EXPECT_THAT(check_cache(machine_, kept).at(0).what, HasSubstr(": 1 files, 0.0 MB"));
   EXPECT_EQ(check_cache(machine_, machine_.root / "not/yet/there").at(0).state, State::ok);
-  EXPECT_THAT(only_wrong(check_cache(machine_, kept / "deep/file/sub")).what, HasSubstr("is not a folder"));
+  EXPECT_THAT(only_wrong(check_cache(machine_, kept / "deep/file/sub")).what,
+              HasSubstr("is not a folder"));
   EXPECT_THAT(only_wrong(check_cache(machine_, "")).fix, HasSubstr("export CAPLET_CACHE="));
   closed_ = {kept};
   EXPECT_THAT(only_wrong(check_cache(machine_, kept)).what, HasSubstr("cannot be written by ada"));
@@ -216,7 +222,8 @@ TEST_F(Machine, PoclsCache) {
   variables_["HOME"] = file;
   EXPECT_THAT(only_wrong(check_pocl_cache(machine_)).what, HasSubstr(".cache/pocl/kcache"));
   variables_["XDG_CACHE_HOME"] = machine_.root;
-  EXPECT_THAT(check_pocl_cache(machine_).at(0).what, HasSubstr((machine_.root / "pocl/kcache").string()));
+  EXPECT_THAT(check_pocl_cache(machine_).at(0).what,
+              HasSubstr((machine_.root / "pocl/kcache").string()));
   variables_["POCL_CACHE_DIR"] = file;
   EXPECT_THAT(only_wrong(check_pocl_cache(machine_)).fix, HasSubstr("POCL_CACHE_DIR"));
 }
@@ -240,12 +247,17 @@ TEST_F(Machine, Drivers) {
   Answer broken = answered({});
   broken.load_error = "liba.so: no such file";
   EXPECT_THAT(judge_driver(driver, broken, machine_, false).what, HasSubstr("no such file"));
-  EXPECT_THAT(judge_driver(driver, broken, machine_, false).fix, HasSubstr("sudo mv '/v/a.icd' '/v/a.icd.off'"));
-  EXPECT_THAT(judge_driver({"OCL_ICD_VENDORS", "liba.so", ""}, broken, machine_, false).fix, HasSubstr("unset OCL_ICD_VENDORS"));
+  EXPECT_THAT(judge_driver(driver, broken, machine_, false).fix,
+              HasSubstr("sudo mv '/v/a.icd' '/v/a.icd.off'"));
+  EXPECT_THAT(judge_driver({"OCL_ICD_VENDORS", "liba.so", ""}, broken, machine_, false).fix,
+              HasSubstr("unset OCL_ICD_VENDORS"));
   broken.load_error =
-      "libi.so: undefined symbol: _ZN3tbb6detail2r127get_thread_reference_vertexEPNS0_2d126wait_tree_vertex_interfaceE";
-  EXPECT_THAT(judge_driver(driver, broken, machine_, true).what, HasSubstr("needs a newer libtbb.so.12"));
-  EXPECT_THAT(judge_driver(driver, broken, machine_, true).fix, HasSubstr("LD_LIBRARY_PATH=FOLDER"));
+      "libi.so: undefined symbol: "
+      "_ZN3tbb6detail2r127get_thread_reference_vertexEPNS0_2d126wait_tree_vertex_interfaceE";
+  EXPECT_THAT(judge_driver(driver, broken, machine_, true).what,
+              HasSubstr("needs a newer libtbb.so.12"));
+  EXPECT_THAT(judge_driver(driver, broken, machine_, true).fix,
+              HasSubstr("LD_LIBRARY_PATH=FOLDER"));
   broken.end = {false, "", "ended with signal 11 (Segmentation fault)", "last words"};
   EXPECT_THAT(judge_driver(driver, broken, machine_, false).what,
               testing::AllOf(HasSubstr("signal 11"), HasSubstr("last words")));
@@ -257,7 +269,8 @@ TEST(Platforms, WithoutDevices) {
   platform.devices_error = "clGetDeviceIDs: CL_DEVICE_NOT_FOUND";
   EXPECT_EQ(judge_platform(platform, true).state, State::wrong);
   EXPECT_EQ(judge_platform(platform, false).state, State::note);
-  EXPECT_THAT(judge_platform(platform, true).what, HasSubstr("clGetDeviceIDs: CL_DEVICE_NOT_FOUND"));
+  EXPECT_THAT(judge_platform(platform, true).what,
+              HasSubstr("clGetDeviceIDs: CL_DEVICE_NOT_FOUND"));
   EXPECT_THAT(judge_platform(platform, true).fix, HasSubstr("RUSTICL_ENABLE"));
   platform.name = "Portable Computing Language";
   EXPECT_THAT(judge_platform(platform, true).fix, HasSubstr("POCL_CACHE_DIR"));
@@ -275,13 +288,17 @@ TEST(Devices, WhatTheyMayLack) {
     change(bad);
     const Findings found = judge_device(bad, least);
     EXPECT_EQ(found.size(), 2u);
-    return found.size() == 2 && found[1].state == State::wrong && !found[1].fix.empty() ? found[1].what : "nothing";
+    return found.size() == 2 && found[1].state == State::wrong && !found[1].fix.empty()
+               ? found[1].what
+               : "nothing";
   };
   EXPECT_THAT(seen([](DeviceFacts& d) { d.available = false; }), HasSubstr("not available"));
   EXPECT_THAT(seen([](DeviceFacts& d) { d.compiler = false; }), HasSubstr("no compiler"));
   EXPECT_THAT(seen([](DeviceFacts& d) { d.little_endian = false; }), HasSubstr("big-endian"));
-  EXPECT_THAT(seen([](DeviceFacts& d) { d.profile = "EMBEDDED_PROFILE"; }), HasSubstr("EMBEDDED_PROFILE"));
-  EXPECT_THAT(seen([](DeviceFacts& d) { d.info.version = "OpenCL 1.1 x"; }), HasSubstr("OpenCL 1.2 is needed"));
+  EXPECT_THAT(seen([](DeviceFacts& d) { d.profile = "EMBEDDED_PROFILE"; }),
+              HasSubstr("EMBEDDED_PROFILE"));
+  EXPECT_THAT(seen([](DeviceFacts& d) { d.info.version = "OpenCL 1.1 x"; }),
+              HasSubstr("OpenCL 1.2 is needed"));
   EXPECT_THAT(seen([](DeviceFacts& d) { d.info.global_bytes = least - 1; }), HasSubstr("memory"));
   good.info.version = "OpenCL 3.0";
   EXPECT_EQ(judge_device(good, least).size(), 1u);
@@ -290,7 +307,8 @@ TEST(Devices, WhatTheyMayLack) {
 }
 
 /// What is known of a platform with one device, as the drivers themselves say.
-std::vector<std::string> known_of(const std::string& platform, const std::string& device, const std::string& driver) {
+std::vector<std::string> known_of(const std::string& platform, const std::string& device,
+                                  const std::string& driver) {
   PlatformFacts facts;
   facts.name = platform;
   facts.devices.resize(1);
@@ -306,9 +324,12 @@ std::vector<std::string> known_of(const std::string& platform, const std::string
 
 TEST(Quirks, OfPoclAndItsCompiler) {
   const char* name = "Portable Computing Language";
-  const auto launch = HasSubstr("compiles a kernel when it is launched"), keeps = HasSubstr("keeps compiled kernels itself");
-  EXPECT_THAT(known_of(name, "pthread-skylake-avx512-Intel(R) Xeon(R) Processor", "3.1+debian"), ElementsAre(launch, keeps));
-  EXPECT_THAT(known_of(name, "cpu-haswell-Intel(R) Xeon(R) Processor", "7.1+debian"), ElementsAre(launch, keeps));
+  const auto launch = HasSubstr("compiles a kernel when it is launched"),
+             keeps = HasSubstr("keeps compiled kernels itself");
+  EXPECT_THAT(known_of(name, "pthread-skylake-avx512-Intel(R) Xeon(R) Processor", "3.1+debian"),
+              ElementsAre(launch, keeps));
+  EXPECT_THAT(known_of(name, "cpu-haswell-Intel(R) Xeon(R) Processor", "7.1+debian"),
+              ElementsAre(launch, keeps));
   EXPECT_THAT(known_of(name, "cpu-haswell-Intel(R) Xeon(R) Processor", "6.0+debian"),
               ElementsAre(launch, keeps, HasSubstr("did not reach a fixpoint")));
 }
@@ -321,23 +342,27 @@ TEST(Quirks, OfIntelsCpuRuntime) {
   EXPECT_THAT(known_of(name, device, "2024.18.12.0.05_160000"), ElementsAre(vectors));
   EXPECT_THAT(known_of(name, device, "2024.18.7.0.11_160000"), IsEmpty());
   EXPECT_THAT(known_of(name, device, "2024.17.3.0.08_160000"), IsEmpty());
-  EXPECT_THAT(known_of(name, device, "2024.16.1.0.27_160000.xmain-hotfix"), ElementsAre(HasSubstr("crashed on earlier kernels")));
+  EXPECT_THAT(known_of(name, device, "2024.16.1.0.27_160000.xmain-hotfix"),
+              ElementsAre(HasSubstr("crashed on earlier kernels")));
   // The GPU's platform begins like the CPU's.
-  EXPECT_THAT(known_of("Intel(R) OpenCL Graphics", "Intel(R) UHD Graphics 770", "24.35.30872.22"), IsEmpty());
+  EXPECT_THAT(known_of("Intel(R) OpenCL Graphics", "Intel(R) UHD Graphics 770", "24.35.30872.22"),
+              IsEmpty());
 }
 
 TEST(Quirks, OfMesasRusticl) {
   const auto enable = HasSubstr("RUSTICL_ENABLE"), zero = HasSubstr("sign");
   EXPECT_THAT(known_of("rusticl", "llvmpipe (LLVM 15.0.6, 256 bits)", "22.3.6"),
               ElementsAre(enable, HasSubstr("a work-item in each lane"), zero));
-  EXPECT_THAT(known_of("rusticl", "AMD Radeon RX 6800 (radeonsi, navi21)", "25.0.7-2"), ElementsAre(enable, zero));
+  EXPECT_THAT(known_of("rusticl", "AMD Radeon RX 6800 (radeonsi, navi21)", "25.0.7-2"),
+              ElementsAre(enable, zero));
   PlatformFacts without_devices;
   without_devices.name = "rusticl";
   EXPECT_THAT(known_quirks({without_devices}).at(0).what, enable);
 }
 
 TEST(Quirks, OfOclgrind) {
-  EXPECT_THAT(known_of("Oclgrind", "Oclgrind Simulator", "Oclgrind 21.10"), ElementsAre(HasSubstr("compares vectors wrongly")));
+  EXPECT_THAT(known_of("Oclgrind", "Oclgrind Simulator", "Oclgrind 21.10"),
+              ElementsAre(HasSubstr("compares vectors wrongly")));
   EXPECT_THAT(known_of("Oclgrind", "Oclgrind Simulator", "Oclgrind 21.1"), IsEmpty());
   EXPECT_THAT(known_of("Oclgrind", "Oclgrind Simulator", "Oclgrind 22.0"), IsEmpty());
 }
@@ -345,7 +370,8 @@ TEST(Quirks, OfOclgrind) {
 TEST(Quirks, OfNoOthers) {
   EXPECT_THAT(known_of("Some other platform", "Intel(R) Xeon(R) Processor", "2026.22"), IsEmpty());
   EXPECT_THAT(known_of("Intel(R) OpenCL", "Intel(R) Xeon(R) Processor", ""), IsEmpty());
-  EXPECT_THAT(known_of("Intel(R) OpenCL", "Intel(R) Xeon(R) Processor", "99999999999999999999.1"), IsEmpty());
+  EXPECT_THAT(known_of("Intel(R) OpenCL", "Intel(R) Xeon(R) Processor", "99999999999999999999.1"),
+              IsEmpty());
 }
 
 }  // namespace

@@ -47,20 +47,24 @@ TEST(Flatten, MarksWhereLinesComeFrom) {
 }
 
 TEST(Flatten, TakesAListAsOftenAsItIsNamed) {
-  const std::string out = flattened("#include \"l.def\"\n#include \"l.def\"\n", {{"l.def", "ROW(x)\n"}});
+  const std::string out =
+      flattened("#include \"l.def\"\n#include \"l.def\"\n", {{"l.def", "ROW(x)\n"}});
   EXPECT_EQ(out,
-            "#line 1 \"text\"\n#line 1 \"kernels/l.def\"\nROW(x)\n#line 2 \"text\"\n#line 1 \"kernels/l.def\"\nROW(x)\n#line 3 "
+            "#line 1 \"text\"\n#line 1 \"kernels/l.def\"\nROW(x)\n#line 2 \"text\"\n#line 1 "
+            "\"kernels/l.def\"\nROW(x)\n#line 3 "
             "\"text\"\n");
 }
 
 TEST(Flatten, TakesAGuardedFileOnce) {
-  const Files files = {{"g.h", "// why\n#ifndef G\n#define G\n#if 1\none\n#endif\n#endif\n"}, {"a", "#include \"g.h\"\n"}};
-  EXPECT_EQ(
-      flattened("#include \"g.h\"\n#include \"a\"\nend\n", files),
-      "#line 1 \"text\"\n#line 1 \"kernels/g.h\"\n// why\n#ifndef G\n#define G\n#if 1\none\n#endif\n#endif\n#line 2 \"text\"\n"
-      "#line 1 \"kernels/a\"\n\n#line 3 \"text\"\nend\n");
+  const Files files = {{"g.h", "// why\n#ifndef G\n#define G\n#if 1\none\n#endif\n#endif\n"},
+                       {"a", "#include \"g.h\"\n"}};
+  EXPECT_EQ(flattened("#include \"g.h\"\n#include \"a\"\nend\n", files),
+            "#line 1 \"text\"\n#line 1 \"kernels/g.h\"\n// why\n#ifndef G\n#define G\n#if "
+            "1\none\n#endif\n#endif\n#line 2 \"text\"\n"
+            "#line 1 \"kernels/a\"\n\n#line 3 \"text\"\nend\n");
   // What begins otherwise is no guard.
-  EXPECT_THAT(flattened("#include \"n\"\n#include \"n\"\n", {{"n", "#ifndef N\nmore\n#define N\n#endif\n"}}),
+  EXPECT_THAT(flattened("#include \"n\"\n#include \"n\"\n",
+                        {{"n", "#ifndef N\nmore\n#define N\n#endif\n"}}),
               testing::ContainsRegex("more(.|\n)*more"));
 }
 
@@ -76,36 +80,42 @@ TEST(Flatten, AGuardedFileUnderAConditionDoesNotCount) {
               testing::Not(testing::ContainsRegex("guarded(.|\n)*guarded")));
 }
 
-const Files list_of_three = {
-    {"shared/pets.def",
-     "// PET(name)\n#ifndef FIELD\n#endif\nPET(cat, 1)\nFIELD(cat, x)\nPET_END(cat)\nPET(dog, 2)  // barks\n"
-     "FIELD(dog, y)\nCOMPOUND(herd)\n#undef FIELD\n"},
-    {"pets/a_cat.cl", "meow\n"},
-    {"pets/a_dog.cl", "wuff\n"}};
+const Files list_of_three = {{"shared/pets.def",
+                              "// PET(name)\n#ifndef FIELD\n#endif\nPET(cat, 1)\nFIELD(cat, "
+                              "x)\nPET_END(cat)\nPET(dog, 2)  // barks\n"
+                              "FIELD(dog, y)\nCOMPOUND(herd)\n#undef FIELD\n"},
+                             {"pets/a_cat.cl", "meow\n"},
+                             {"pets/a_dog.cl", "wuff\n"}};
 
 TEST(Flatten, PutsInTheFilesOfTheRowsOfAList) {
   EXPECT_EQ(flattened("#include \"pets/a_{pets}.cl\"\nend\n", list_of_three),
-            "#line 1 \"text\"\n#line 1 \"kernels/pets/a_cat.cl\"\nmeow\n#line 1 \"kernels/pets/a_dog.cl\"\nwuff\n#line 2 "
+            "#line 1 \"text\"\n#line 1 \"kernels/pets/a_cat.cl\"\nmeow\n#line 1 "
+            "\"kernels/pets/a_dog.cl\"\nwuff\n#line 2 "
             "\"text\"\nend\n");
   EXPECT_EQ(flattened("#include \"pets/a_{pets}.cl\"\nend\n", list_of_three, {{"pets", 2}}),
             "#line 1 \"text\"\n#line 1 \"kernels/pets/a_dog.cl\"\nwuff\n#line 2 \"text\"\nend\n");
-  EXPECT_EQ(flattened("#include \"pets/a_{pets}.cl\"\nend\n", list_of_three, {{"pets", 4}}), "#line 1 \"text\"\n\nend\n");
+  EXPECT_EQ(flattened("#include \"pets/a_{pets}.cl\"\nend\n", list_of_three, {{"pets", 4}}),
+            "#line 1 \"text\"\n\nend\n");
   EXPECT_THAT(failure("#include \"pets/a_{pets}.cl\"\n", {{"shared/pets.def", "PET(cow)\n"}}),
               HasSubstr("text:1: there is no kernel file 'pets/a_cow.cl'"));
-  EXPECT_THAT(failure("#include \"pets/a_{cars}.cl\"\n"), HasSubstr("text:1: there is no kernel file 'shared/cars.def'"));
+  EXPECT_THAT(failure("#include \"pets/a_{cars}.cl\"\n"),
+              HasSubstr("text:1: there is no kernel file 'shared/cars.def'"));
 }
 
 TEST(Flatten, PutsInTheRowsThatThereAre) {
   EXPECT_EQ(flattened("#include \"rows/pets.def\"\nend\n", list_of_three, {{"pets", 2}}),
-            "#line 1 \"text\"\n#line 1 \"kernels/shared/pets.def\"\n\n#ifndef FIELD\n#endif\n\n\n\nPET(dog, 2)  // "
+            "#line 1 \"text\"\n#line 1 \"kernels/shared/pets.def\"\n\n#ifndef "
+            "FIELD\n#endif\n\n\n\nPET(dog, 2)  // "
             "barks\nFIELD(dog, y)\n\n#undef "
             "FIELD\n#line 2 \"text\"\nend\n");
   const std::string all = flattened("#include \"rows/pets.def\"\n", list_of_three, {{"others", 0}});
-  for (const char* row : {"PET(cat, 1)\nFIELD(cat, x)\nPET_END(cat)", "PET(dog, 2)", "COMPOUND(herd)"})
+  for (const char* row :
+       {"PET(cat, 1)\nFIELD(cat, x)\nPET_END(cat)", "PET(dog, 2)", "COMPOUND(herd)"})
     EXPECT_THAT(all, HasSubstr(row));
   std::string many;
   for (int i = 0; i < 65; ++i) many += "PET(p" + std::to_string(i) + ")\n";
-  EXPECT_THAT(failure("#include \"rows/pets.def\"\n", {{"shared/pets.def", many}}), HasSubstr("pets.def has more than 64 rows"));
+  EXPECT_THAT(failure("#include \"rows/pets.def\"\n", {{"shared/pets.def", many}}),
+              HasSubstr("pets.def has more than 64 rows"));
 }
 
 TEST(Flatten, DefinesTheMasksOfListsThatTheTextSpeaksOf) {
@@ -116,15 +126,19 @@ TEST(Flatten, DefinesTheMasksOfListsThatTheTextSpeaksOf) {
 
 TEST(Flatten, GoesIntoIncludedFiles) {
   EXPECT_THAT(flattened("#include \"a\"", {{"a", "#include \"d/b\"\n"}, {"d/b", "deep\n"}}),
-              HasSubstr("#line 1 \"kernels/a\"\n#line 1 \"kernels/d/b\"\ndeep\n#line 2 \"kernels/a\"\n#line 2 \"text\"\n"));
+              HasSubstr("#line 1 \"kernels/a\"\n#line 1 \"kernels/d/b\"\ndeep\n#line 2 "
+                        "\"kernels/a\"\n#line 2 \"text\"\n"));
 }
 
 TEST(Flatten, LeavesOutWhatIsForTheHost) {
   EXPECT_EQ(
-      flattened("#ifdef __cplusplus\n#include \"missing\"\n#if 1\n#include \"missing\"\n#endif\n#else\nkernel\n#endif\nend\n"),
+      flattened("#ifdef __cplusplus\n#include \"missing\"\n#if 1\n#include "
+                "\"missing\"\n#endif\n#else\nkernel\n#endif\nend\n"),
       "#line 1 \"text\"\n#ifdef __cplusplus\n\n#if 1\n\n#endif\n#else\nkernel\n#endif\nend\n");
-  EXPECT_THAT(flattened("#ifndef __cplusplus\n#include \"a\"\n#else\n#include \"missing\"\n#endif\n", {{"a", "A\n"}}),
-              HasSubstr("A\n"));
+  EXPECT_THAT(
+      flattened("#ifndef __cplusplus\n#include \"a\"\n#else\n#include \"missing\"\n#endif\n",
+                {{"a", "A\n"}}),
+      HasSubstr("A\n"));
   EXPECT_THAT(failure("#ifdef OTHER\n#include \"missing\"\n#endif\n"), HasSubstr("text:2: "));
   EXPECT_THAT(failure("#ifdef __cplusplus\n#endif\n#include \"missing\"\n"), HasSubstr("text:3: "));
 }

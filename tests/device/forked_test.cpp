@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// What is given back to OpenCL in forked processes. A GPU's driver shares its files with the parent: there the child would free
-// what the parent uses.
+// What is given back to OpenCL in forked processes. A GPU's driver shares its files with the
+// parent: there the child would free what the parent uses.
 #include "device/forked.h"
 
 #include <gtest/gtest.h>

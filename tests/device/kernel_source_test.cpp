@@ -40,14 +40,16 @@ TEST(KernelSource, EveryKernelFileIsEmbeddedUnaltered) {
 
 TEST(KernelSource, StagesGoByTheirNameOtherFilesByTheirPath) {
   EXPECT_THAT(kernel_source("kernel"), StartsWith("#line 1 \"kernels/stages/kernel.cl\"\n"));
-  EXPECT_THAT(kernel_source("shared/records.h"), StartsWith("#line 1 \"kernels/shared/records.h\"\n"));
+  EXPECT_THAT(kernel_source("shared/records.h"),
+              StartsWith("#line 1 \"kernels/shared/records.h\"\n"));
   EXPECT_THAT(kernel_source("shared/records.h"), testing::Not(HasSubstr("#include \"")));
   EXPECT_THROW(kernel_source("no_such_stage"), std::logic_error);
   EXPECT_THROW(kernel_source("shared/no_such_file.h"), std::logic_error);
 }
 
 TEST(KernelSource, TextsMayIncludeKernelFiles) {
-  EXPECT_THAT(flatten_kernels("#include \"math/vector.cl\"\nlast\n"), HasSubstr("frame_from_normal"));
+  EXPECT_THAT(flatten_kernels("#include \"math/vector.cl\"\nlast\n"),
+              HasSubstr("frame_from_normal"));
   EXPECT_THROW(flatten_kernels("#include \"no/such.cl\"\n"), std::logic_error);
 }
 
@@ -58,7 +60,8 @@ TEST(KernelSource, AFolderTakesTheTablesPlace) {
   std::ofstream(folder / "other.h") << "from disk\n";
   const test::ScopedVariable kernels("CAPLET_KERNELS", folder.string());
   EXPECT_EQ(kernel_source("mine"),
-            "#line 1 \"kernels/stages/mine.cl\"\n#line 1 \"kernels/other.h\"\nfrom disk\n#line 2 \"kernels/stages/mine.cl\"\n");
+            "#line 1 \"kernels/stages/mine.cl\"\n#line 1 \"kernels/other.h\"\nfrom disk\n#line 2 "
+            "\"kernels/stages/mine.cl\"\n");
   EXPECT_THROW(kernel_source("kernel"), std::logic_error);
   EXPECT_THROW(kernel_source("stages/"), std::logic_error);
 }

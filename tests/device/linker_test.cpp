@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// `ld` of a portable installation: what of PoCL's arguments LLVM's linker is handed. It takes what lies beside it for that
-// linker.
+// `ld` of a portable installation: what of PoCL's arguments LLVM's linker is handed. It takes what
+// lies beside it for that linker.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/wait.h>
@@ -57,10 +57,11 @@ class Linker : public testing::Test {
 
 TEST_F(Linker, LeavesOutLibrariesThatOnlyMachinesWithACompilerHave) {
   make_lld("for one; do echo \"$one\"; done");
-  const Output said =
-      run(ld() + " --build-id -m elf_x86_64 -shared -o 'a b.so' -L/usr/lib/gcc/12 -L/lib a.o -lm -lgcc --as-needed -lc");
-  EXPECT_THAT(said.lines, ElementsAre("--build-id", "-m", "elf_x86_64", "-shared", "-o", "a b.so", "a.o", "--as-needed",
-                                      EndsWith("/libm.so.6")));
+  const Output said = run(ld() +
+                          " --build-id -m elf_x86_64 -shared -o 'a b.so' -L/usr/lib/gcc/12 -L/lib "
+                          "a.o -lm -lgcc --as-needed -lc");
+  EXPECT_THAT(said.lines, ElementsAre("--build-id", "-m", "elf_x86_64", "-shared", "-o", "a b.so",
+                                      "a.o", "--as-needed", EndsWith("/libm.so.6")));
   EXPECT_TRUE(fs::is_regular_file(said.lines.back()));
   EXPECT_EQ(said.code, 0);
 }

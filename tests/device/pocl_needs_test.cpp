@@ -20,7 +20,8 @@ namespace fs = std::filesystem;
 using testing::HasSubstr;
 
 std::size_t entries(const fs::path& folder) {
-  return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder), fs::directory_iterator()));
+  return static_cast<std::size_t>(
+      std::distance(fs::directory_iterator(folder), fs::directory_iterator()));
 }
 
 TEST(PoclNeeds, AFolderThatCanBeMade) {
@@ -33,8 +34,9 @@ TEST(PoclNeeds, AFolderThatCanBeMade) {
   EXPECT_THAT(why_unwritable(folder / "file" / "sub"), HasSubstr("file is not a folder"));
   fs::create_symlink(folder / "nowhere", folder / "link");
   EXPECT_THAT(why_unwritable(folder / "link" / "sub"), HasSubstr("link is not a folder"));
-  EXPECT_THAT(why_unwritable("/proc/caplet"), HasSubstr("/proc: "));  // where root makes nothing, either
-  if (::geteuid() == 0) return;                                       // who may write anywhere
+  EXPECT_THAT(why_unwritable("/proc/caplet"),
+              HasSubstr("/proc: "));  // where root makes nothing, either
+  if (::geteuid() == 0) return;       // who may write anywhere
   fs::permissions(folder, fs::perms::owner_read | fs::perms::owner_exec);
   EXPECT_THAT(why_unwritable(folder / "sub"), HasSubstr("Permission denied"));
   fs::permissions(folder, fs::perms::owner_all);

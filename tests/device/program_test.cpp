@@ -23,10 +23,12 @@ using testing::AllOf;
 using testing::HasSubstr;
 
 const std::string count_up =
-    "__kernel void count_up(__global uint* x, uint n) { const uint i = (uint)get_global_id(0); if (i < n) x[i] += STEP + i; }";
+    "__kernel void count_up(__global uint* x, uint n) { const uint i = (uint)get_global_id(0); if "
+    "(i < n) x[i] += STEP + i; }";
 
 /// x of `n` counted, all `size` values.
-std::vector<cl_uint> run(const Device& device, const Program& program, cl_uint n, std::size_t size, std::size_t local) {
+std::vector<cl_uint> run(const Device& device, const Program& program, cl_uint n, std::size_t size,
+                         std::size_t local) {
   Buffer<cl_uint> buffer(device, size);
   buffer.write(std::vector<cl_uint>(size, 0));
   cl::Kernel kernel = program.kernel("count_up");
@@ -52,7 +54,8 @@ class ProgramTest : public testing::Test {
   }
   fs::path only_file() const {
     std::vector<fs::path> files;
-    for (const fs::directory_entry& entry : fs::directory_iterator(folder_)) files.push_back(entry.path());
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder_))
+      files.push_back(entry.path());
     EXPECT_EQ(files.size(), 1u);
     return files.at(0);
   }
@@ -75,7 +78,9 @@ TEST_F(ProgramTest, AGroupOfNothingIsRefused) {
   EXPECT_THROW(launch(device_, kernel, 1, 0), std::logic_error);
 }
 
-TEST_F(ProgramTest, OptionsAreDefinitions) { EXPECT_EQ(run(device_, build("-DSTEP=7"), 1, 1, 1), std::vector<cl_uint>{7}); }
+TEST_F(ProgramTest, OptionsAreDefinitions) {
+  EXPECT_EQ(run(device_, build("-DSTEP=7"), 1, 1, 1), std::vector<cl_uint>{7});
+}
 
 TEST_F(ProgramTest, PrepareChangesNothing) {
   Program program = build();
@@ -90,25 +95,32 @@ TEST_F(ProgramTest, BuildErrorsCarryTheLogWithTheKernelFile) {
   const fs::path kernels = test::temporary_folder();
   fs::create_directories(kernels / "stages");
   fs::create_directories(kernels / "math");
-  std::ofstream(kernels / "stages" / "broken.cl") << "#include \"math/wrong.cl\"\n__kernel void broken() {}\n";
+  std::ofstream(kernels / "stages" / "broken.cl")
+      << "#include \"math/wrong.cl\"\n__kernel void broken() {}\n";
   std::ofstream(kernels / "math" / "wrong.cl")
       << "static int fine(void) { return 1; }\nstatic int wrong(void) { return nothing; }\n";
   const test::ScopedVariable variable("CAPLET_KERNELS", kernels.string());
   EXPECT_THAT(error_of([&] { Program(device_, "broken", "-DOPTION=1"); }),
-              AllOf(HasSubstr("program 'broken'"), HasSubstr("CL_BUILD_PROGRAM_FAILURE"), HasSubstr("kernels/math/wrong.cl:2"),
-                    HasSubstr("nothing"), HasSubstr("-DOPTION=1"), HasSubstr(device_.info().name)));
+              AllOf(HasSubstr("program 'broken'"), HasSubstr("CL_BUILD_PROGRAM_FAILURE"),
+                    HasSubstr("kernels/math/wrong.cl:2"), HasSubstr("nothing"),
+                    HasSubstr("-DOPTION=1"), HasSubstr(device_.info().name)));
 }
 
 TEST_F(ProgramTest, MissingKernelsAndWrongArgumentsAreNamed) {
   const Program program = build();
   EXPECT_THAT(error_of([&] { program.kernel("other"); }),
-              AllOf(HasSubstr("kernel 'other' of program 'count_up'"), HasSubstr("CL_INVALID_KERNEL_NAME")));
+              AllOf(HasSubstr("kernel 'other' of program 'count_up'"),
+                    HasSubstr("CL_INVALID_KERNEL_NAME")));
   cl::Kernel kernel = program.kernel("count_up");
-  EXPECT_THAT(error_of([&] { set_arguments(device_, kernel, Buffer<cl_uint>(device_, 1), cl_uint{1}, cl_uint{1}); }),
-              AllOf(HasSubstr("argument 2 of kernel 'count_up'"), HasSubstr("CL_INVALID_ARG_INDEX")));
+  EXPECT_THAT(
+      error_of([&] {
+        set_arguments(device_, kernel, Buffer<cl_uint>(device_, 1), cl_uint{1}, cl_uint{1});
+      }),
+      AllOf(HasSubstr("argument 2 of kernel 'count_up'"), HasSubstr("CL_INVALID_ARG_INDEX")));
   cl::Kernel bare = program.kernel("count_up");
-  EXPECT_THAT(error_of([&] { launch(device_, bare, 1, 1); }),
-              AllOf(HasSubstr("kernel 'count_up' over 1 work-items"), HasSubstr("CL_INVALID_KERNEL_ARGS")));
+  EXPECT_THAT(
+      error_of([&] { launch(device_, bare, 1, 1); }),
+      AllOf(HasSubstr("kernel 'count_up' over 1 work-items"), HasSubstr("CL_INVALID_KERNEL_ARGS")));
 }
 
 TEST_F(ProgramTest, TheSecondBuildComesFromTheCache) {
@@ -117,7 +129,9 @@ TEST_F(ProgramTest, TheSecondBuildComesFromTheCache) {
   EXPECT_TRUE(again.from_cache());
   EXPECT_EQ(run(device_, again, 2, 2, 2), (std::vector<cl_uint>{10, 11}));
   EXPECT_FALSE(build("-DSTEP=20").from_cache());
-  EXPECT_FALSE(Program::from_source(device_, "count_up", count_up + "\n", "-DSTEP=10", BinaryCache::always).from_cache());
+  EXPECT_FALSE(
+      Program::from_source(device_, "count_up", count_up + "\n", "-DSTEP=10", BinaryCache::always)
+          .from_cache());
 }
 
 TEST_F(ProgramTest, ABrokenCacheFileIsIgnoredAndReplaced) {

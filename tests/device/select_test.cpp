@@ -57,11 +57,15 @@ TEST(Select, AFullNameIsNotAmbiguous) {
 }
 
 TEST(Select, RefusalsListTheDevices) {
-  const auto list = HasSubstr("0 'pthread-EPYC' (cpu), 1 'Tesla A' (gpu), 2 'Tesla B' (gpu), 3 'Odd'");
+  const auto list =
+      HasSubstr("0 'pthread-EPYC' (cpu), 1 'Tesla A' (gpu), 2 'Tesla B' (gpu), 3 'Odd'");
   EXPECT_THAT(refusal(some_devices(), "4"), AllOf(list, HasSubstr("no device has the index 4")));
-  EXPECT_THAT(refusal(some_devices(), "99999999999999999999"), AllOf(list, HasSubstr("no device has the index")));
-  EXPECT_THAT(refusal(some_devices(), "radeon"), AllOf(list, HasSubstr("no device has 'radeon' in its name")));
-  EXPECT_THAT(refusal(some_devices(), "tesla"), AllOf(list, HasSubstr("more than one device has 'tesla' in its name")));
+  EXPECT_THAT(refusal(some_devices(), "99999999999999999999"),
+              AllOf(list, HasSubstr("no device has the index")));
+  EXPECT_THAT(refusal(some_devices(), "radeon"),
+              AllOf(list, HasSubstr("no device has 'radeon' in its name")));
+  EXPECT_THAT(refusal(some_devices(), "tesla"),
+              AllOf(list, HasSubstr("more than one device has 'tesla' in its name")));
   EXPECT_THAT(refusal({some_devices()[3]}, "gpu"), HasSubstr("no device of type 'gpu'"));
   EXPECT_THAT(refusal(some_devices(), "-1"), HasSubstr("no device has '-1' in its name"));
 }
@@ -84,7 +88,8 @@ TEST(Select, SeveralAreAListOrAll) {
     }
     return std::string("taken");
   };
-  EXPECT_THAT(refused("0,1,0"), HasSubstr("device 0 is named twice in '0,1,0'; the devices are 0 'pthread-EPYC'"));
+  EXPECT_THAT(refused("0,1,0"),
+              HasSubstr("device 0 is named twice in '0,1,0'; the devices are 0 'pthread-EPYC'"));
   EXPECT_THAT(refused("0,cpu"), HasSubstr("device 0 is named twice"));
   EXPECT_THAT(refused("0,"), HasSubstr("'0,' is no list of devices"));
   EXPECT_THAT(refused("0,4"), HasSubstr("no device has the index 4"));
@@ -92,7 +97,8 @@ TEST(Select, SeveralAreAListOrAll) {
 }
 
 TEST(Select, NothingToChooseFromNamesThePackage) {
-  EXPECT_THAT(refusal({}, ""), AllOf(HasSubstr("failed: no OpenCL device"), HasSubstr("pocl-opencl-icd")));
+  EXPECT_THAT(refusal({}, ""),
+              AllOf(HasSubstr("failed: no OpenCL device"), HasSubstr("pocl-opencl-icd")));
   EXPECT_THAT(refusal({}, "0"), HasSubstr("pocl-opencl-icd"));
 }
 

@@ -38,32 +38,36 @@ TEST(SelfTest, Passes) {
 }
 
 TEST(SelfTest, SeesWrongNumbers) {
-  // 1.2e-7 is one ulp of 1: a sum or product off by one ulp. 4.2e-7 is 3.5 ulp of 1, beyond both bounds of division and square
-  // root for mantissas near 1.
-  const std::vector<std::string> failures =
-      self_test_failures(test::test_device(Encoding::automatic), changed({{"= a + b;", "= (a + b) * 1.0000001f;"},
-                                                                          {"= a / b;", "= a / b * 1.0000005f;"},
-                                                                          {"= sqrt(a);", "= sqrt(a) * 1.0000005f;"},
-                                                                          {"fma(a, b, -a)", "a * b - a * 1.0000001f"},
-                                                                          {"fmax(a, b)", "(a > b ? a : b)"},
-                                                                          {"isnan(a) ?", "false ?"},
-                                                                          {"!(a > b)", "a <= b"},
-                                                                          {"= clz(a)", "= clz(a | 1u)"},
-                                                                          {"= popcount(a)", "= popcount(a >> 1)"},
-                                                                          {"(uint)((int)a >>", "(uint)(a >>"},
-                                                                          {"vload8(i, in + 3)", "vload8(i, in + 2)"},
-                                                                          {"atomic_inc(totals)", "totals[0]"},
-                                                                          {"get_group_id(0)", "get_group_id(1)"}}));
+  // 1.2e-7 is one ulp of 1: a sum or product off by one ulp. 4.2e-7 is 3.5 ulp of 1, beyond both
+  // bounds of division and square root for mantissas near 1.
+  const std::vector<std::string> failures = self_test_failures(
+      test::test_device(Encoding::automatic), changed({{"= a + b;", "= (a + b) * 1.0000001f;"},
+                                                       {"= a / b;", "= a / b * 1.0000005f;"},
+                                                       {"= sqrt(a);", "= sqrt(a) * 1.0000005f;"},
+                                                       {"fma(a, b, -a)", "a * b - a * 1.0000001f"},
+                                                       {"fmax(a, b)", "(a > b ? a : b)"},
+                                                       {"isnan(a) ?", "false ?"},
+                                                       {"!(a > b)", "a <= b"},
+                                                       {"= clz(a)", "= clz(a | 1u)"},
+                                                       {"= popcount(a)", "= popcount(a >> 1)"},
+                                                       {"(uint)((int)a >>", "(uint)(a >>"},
+                                                       {"vload8(i, in + 3)", "vload8(i, in + 2)"},
+                                                       {"atomic_inc(totals)", "totals[0]"},
+                                                       {"get_group_id(0)", "get_group_id(1)"}}));
   std::vector<std::string> checks;
-  for (const std::string& failure : failures) checks.push_back(failure.substr(0, failure.find(':')));
+  for (const std::string& failure : failures)
+    checks.push_back(failure.substr(0, failure.find(':')));
   EXPECT_THAT(checks,
-              testing::ElementsAre("a + b", "a / b", "sqrt(a)", "fma(a, b, -a)", "fmax(a, b)", "!(a > b)", "isnan(a)", "clz(a)",
-                                   "popcount(a)", "(int)a >> b", "vload8, select, vstore8", "atomic_inc", "work-group ids"));
+              testing::ElementsAre("a + b", "a / b", "sqrt(a)", "fma(a, b, -a)", "fmax(a, b)",
+                                   "!(a > b)", "isnan(a)", "clz(a)", "popcount(a)", "(int)a >> b",
+                                   "vload8, select, vstore8", "atomic_inc", "work-group ids"));
 }
 
 TEST(SelfTest, AllowsEitherSignOfAZeroFromFma) {
   const std::string negated = "fma(a, b, -a) == 0.0f ? -fma(a, b, -a) : fma(a, b, -a)";
-  EXPECT_THAT(self_test_failures(test::test_device(Encoding::automatic), changed({{"fma(a, b, -a)", negated}})), IsEmpty());
+  EXPECT_THAT(self_test_failures(test::test_device(Encoding::automatic),
+                                 changed({{"fma(a, b, -a)", negated}})),
+              IsEmpty());
 }
 
 class SelfTestMemory : public testing::Test {
@@ -106,7 +110,8 @@ TEST_F(SelfTestMemory, AFailureNamesDeviceAndCheckEveryTime) {
       self_test(device_);
       FAIL() << "passed";
     } catch (const RunError& error) {
-      EXPECT_THAT(error.what(), testing::AllOf(HasSubstr(device_.info().name), HasSubstr("\n  clz(a): with a = 0x0")));
+      EXPECT_THAT(error.what(), testing::AllOf(HasSubstr(device_.info().name),
+                                               HasSubstr("\n  clz(a): with a = 0x0")));
     }
   }
 }

@@ -53,9 +53,12 @@ void expect_shown(const test::TevPicture& shown, const LayeredImage& image) {
     std::size_t wrong = 0;
     for (int y = 0; y < image.height; ++y)
       for (int x = 0; x < image.width; ++x) {
-        const bool inside = x >= image.x && x < image.x + image.data_width && y >= image.y && y < image.y + image.data_height;
+        const bool inside = x >= image.x && x < image.x + image.data_width && y >= image.y &&
+                            y < image.y + image.data_height;
         const auto i = static_cast<std::size_t>((y - image.y) * image.data_width + x - image.x);
-        const float expected = !inside ? 0 : channel.uints.empty() ? channel.floats[i] : static_cast<float>(channel.uints[i]);
+        const float expected = !inside                 ? 0
+                               : channel.uints.empty() ? channel.floats[i]
+                                                       : static_cast<float>(channel.uints[i]);
         wrong += values[static_cast<std::size_t>(y * image.width + x)] != expected;
       }
     EXPECT_EQ(wrong, 0u) << channel.name;
@@ -69,13 +72,13 @@ TEST(Tev, PacketsAreLittleEndianWithTheirLengthFirst) {
   image.data_width = image.data_height = 1;
   image.channels = {{"R", {1.0f}, {}}};
   // 4 of length, kind 4, no focus, "a", 258, 1, 1 channel, "R"
-  EXPECT_EQ(tev::create_packet("a", image), std::string("\x16\0\0\0\x04\0a\0\x02\x01\0\0\x01\0\0\0\x01\0\0\0R\0", 22));
+  EXPECT_EQ(tev::create_packet("a", image),
+            std::string("\x16\0\0\0\x04\0a\0\x02\x01\0\0\x01\0\0\0\x01\0\0\0R\0", 22));
   // kind 6, "a", 1 channel, "R", the tile, offset 0, stride 1, 1.0f
-  EXPECT_EQ(
-      tev::update_packet("a", image, {0, 0, 1, 1}),
-      std::string(
-          "\x32\0\0\0\x06\0a\0\x01\0\0\0R\0\0\0\0\0\0\0\0\0\x01\0\0\0\x01\0\0\0\0\0\0\0\0\0\0\0\x01\0\0\0\0\0\0\0\0\0\x80\x3f",
-          50));
+  EXPECT_EQ(tev::update_packet("a", image, {0, 0, 1, 1}),
+            std::string("\x32\0\0\0\x06\0a\0\x01\0\0\0R\0\0\0\0\0\0\0\0\0\x01\0\0\0\x01\0\0\0\0\0\0"
+                        "\0\0\0\0\0\x01\0\0\0\0\0\0\0\0\0\x80\x3f",
+                        50));
 }
 
 TEST(Tev, OnlyTilesThatChangeAreSent) {
@@ -143,7 +146,8 @@ TEST(Tev, ThatIsSlowStallsNothing) {
   LayeredImage large = picture(1);
   large.width = large.data_width = large.height = large.data_height = 2000;
   large.x = large.y = 0;
-  for (Channel& channel : large.channels) channel = {channel.name, std::vector<float>(4'000'000, 1), {}};
+  for (Channel& channel : large.channels)
+    channel = {channel.name, std::vector<float>(4'000'000, 1), {}};
   EXPECT_LT(seconds_of([&] {
               TevDisplay display({"127.0.0.1", server.port()}, "a");
               for (int i = 0; i < 20; ++i) {

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Edits of a scene on a device: the same film and the same picks, to the bit, as of the edited scene lowered afresh.
+// Edits of a scene on a device: the same film and the same picks, to the bit, as of the edited
+// scene lowered afresh.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -29,9 +30,13 @@ using glm::dvec3;
 class Random {
  public:
   explicit Random(unsigned seed) : engine_(seed) {}
-  double uniform(double low, double high) { return low + (high - low) * static_cast<double>(engine_()) / 4294967296.0; }
+  double uniform(double low, double high) {
+    return low + (high - low) * static_cast<double>(engine_()) / 4294967296.0;
+  }
   std::size_t below(std::size_t count) { return engine_() % count; }
-  dvec3 within(double low, double high) { return {uniform(low, high), uniform(low, high), uniform(low, high)}; }
+  dvec3 within(double low, double high) {
+    return {uniform(low, high), uniform(low, high), uniform(low, high)};
+  }
 
  private:
   std::mt19937 engine_;
@@ -138,7 +143,9 @@ Scene mixed_scene(std::size_t capsules) {
 class Edited {
  public:
   explicit Edited(const Scene& scene)
-      : live(scene), device(test_device(), live.flat()), renderer(device, live.view(), {.layers = Layers::all()}) {}
+      : live(scene),
+        device(test_device(), live.flat()),
+        renderer(device, live.view(), {.layers = Layers::all()}) {}
 
   void edit(const SceneEdit& edit) { live.edit(edit); }
 
@@ -152,14 +159,17 @@ class Edited {
     all.all = true;
     fresh_device->update(flat, all);
     if (!fresh_renderer)
-      fresh_renderer =
-          std::make_unique<Renderer>(*fresh_device, lower_view(live.scene()), RendererOptions{.layers = Layers::all()});
-    const Film here = film(renderer, live.view()), there = film(*fresh_renderer, lower_view(live.scene()));
+      fresh_renderer = std::make_unique<Renderer>(*fresh_device, lower_view(live.scene()),
+                                                  RendererOptions{.layers = Layers::all()});
+    const Film here = film(renderer, live.view()),
+               there = film(*fresh_renderer, lower_view(live.scene()));
     ASSERT_EQ(here.layout(), there.layout()) << after;
     std::size_t different = 0;
-    for (std::size_t i = 0; i < here.words().size(); ++i) different += here.words()[i] != there.words()[i] ? 1 : 0;
+    for (std::size_t i = 0; i < here.words().size(); ++i)
+      different += here.words()[i] != there.words()[i] ? 1 : 0;
     EXPECT_EQ(different, 0u) << after;
-    EXPECT_EQ(std::memcmp(&live.flat().world.center_x, &flat.world.center_x, 4 * sizeof(float)), 0) << after;
+    EXPECT_EQ(std::memcmp(&live.flat().world.center_x, &flat.world.center_x, 4 * sizeof(float)), 0)
+        << after;
     expect_picks(after);
   }
 
@@ -181,12 +191,16 @@ class Edited {
     std::vector<RayRecord> rays;
     for (int i = 0; i < 500; ++i) {
       const dvec3 o = random.within(-6, 6), d = random.within(-2, 2) - o;
-      rays.push_back({float(o.x), float(o.y), float(o.z), 0, float(d.x), float(d.y), float(d.z), INFINITY});
+      rays.push_back(
+          {float(o.x), float(o.y), float(o.z), 0, float(d.x), float(d.y), float(d.z), INFINITY});
     }
     Query here(device), there(*fresh_device);
     const HitLists a = here.all(rays, 200), b = there.all(rays, 200);
     ASSERT_EQ(a.begin, b.begin) << after;
-    EXPECT_EQ(std::memcmp(a.crossings.data(), b.crossings.data(), a.crossings.size() * sizeof(PickRecord)), 0) << after;
+    EXPECT_EQ(std::memcmp(a.crossings.data(), b.crossings.data(),
+                          a.crossings.size() * sizeof(PickRecord)),
+              0)
+        << after;
     EXPECT_GT(a.crossings.size(), 100u);
   }
 };
@@ -208,7 +222,8 @@ SceneEdit random_capsule_edit(const Scene& scene, const ShapeAt& at, Random& ran
   if (was.radius0 != was.radius1 && to.radius0 == to.radius1) to.radius1 *= 0.5f;
   // Some onto another one: which of the two is seen must not depend on their places in the tree.
   const Capsule other = capsule_at(scene, at, random.below(capsules.p0.size()));
-  if (random.below(3) == 0 && (other.radius0 == other.radius1) == (was.radius0 == was.radius1)) to = other;
+  if (random.below(3) == 0 && (other.radius0 == other.radius1) == (was.radius0 == was.radius1))
+    to = other;
   return CapsuleEdit{at, i, to};
 }
 
@@ -225,14 +240,19 @@ SceneEdit random_edit(const Scene& scene, Random& random, std::string& what) {
       return random_capsule_edit(scene, {2u, 0}, random, 1);
     case 4: {
       what = "an emissive capsule of an object";
-      return CapsuleEdit{
-          {0u, 0}, 0, {{0, 0, 0}, {0.1f, 0, float(random.uniform(0.3, 1))}, 0.15f, float(random.uniform(0.03, 0.1))}};
+      return CapsuleEdit{{0u, 0},
+                         0,
+                         {{0, 0, 0},
+                          {0.1f, 0, float(random.uniform(0.3, 1))},
+                          0.15f,
+                          float(random.uniform(0.03, 0.1))}};
     }
     case 5: {
       what = "an instance";
       const auto i = static_cast<std::uint32_t>(random.below(scene.instances.size()));
       dmat4 to = random_rigid(random, 2.5);
-      if (random.below(2)) to = glm::scale(to, random.within(0.5, 1.5) * (random.below(2) ? 1.0 : -1.0));
+      if (random.below(2))
+        to = glm::scale(to, random.within(0.5, 1.5) * (random.below(2) ? 1.0 : -1.0));
       return InstanceEdit{i, to};
     }
     case 6:
@@ -241,15 +261,18 @@ SceneEdit random_edit(const Scene& scene, Random& random, std::string& what) {
       what = "the transform of shape " + std::to_string(i);
       dmat4 to = random_rigid(random, i == last ? 0.5 : 2);
       if (random.below(4) == 0) to = glm::scale(to, {-1, 1, 1});
-      if (i == 3) to = glm::scale(to, dvec3(1, 1.5, random.uniform(0.5, 0.9)));  // stays an ellipsoid
+      if (i == 3)
+        to = glm::scale(to, dvec3(1, 1.5, random.uniform(0.5, 0.9)));  // stays an ellipsoid
       return TransformEdit{{{}, i}, to};
     }
     case 8: {
       const auto i = static_cast<std::uint32_t>(random.below(scene.materials.size()));
       what = "material " + std::to_string(i);
       if (random.below(3) == 0) return MaterialEdit{i, DiffuseMaterial{random_color(random)}};
-      if (random.below(2)) return MaterialEdit{i, ConductorMaterial{{}, {}, random_color(random), 0.2, 0.1}};
-      return MaterialEdit{i, DielectricMaterial{*named_spectrum("glass-BK7"), random.uniform(0, 0.3), 0.1}};
+      if (random.below(2))
+        return MaterialEdit{i, ConductorMaterial{{}, {}, random_color(random), 0.2, 0.1}};
+      return MaterialEdit{
+          i, DielectricMaterial{*named_spectrum("glass-BK7"), random.uniform(0, 0.3), 0.1}};
     }
     case 9: {
       const auto i = static_cast<std::uint32_t>(random.below(scene.lights.size()));
@@ -328,10 +351,12 @@ TEST_F(OneEdit, AMovedCapsule) {
   away.p0 += glm::vec3(40, 30, 10);
   away.p1 += glm::vec3(40, 30, 10);
   expect_in_place(CapsuleEdit{capsules, 0, away}, "capsule far away");
-  expect_in_place(random_capsule_edit(edited.live.scene(), {2u, 0}, random, 1.5), "capsule of an object");
+  expect_in_place(random_capsule_edit(edited.live.scene(), {2u, 0}, random, 1.5),
+                  "capsule of an object");
   Capsule out_of_it = capsule_at(edited.live.scene(), {2u, 0}, 1);
   out_of_it.p1 = out_of_it.p0 + glm::vec3(1, -1, 3);
-  out_of_it.radius0 = out_of_it.radius1 = out_of_it.radius0 == out_of_it.radius1 ? 0.3f : out_of_it.radius1;
+  out_of_it.radius0 = out_of_it.radius1 =
+      out_of_it.radius0 == out_of_it.radius1 ? 0.3f : out_of_it.radius1;
   expect_in_place(CapsuleEdit{{2u, 0}, 1, out_of_it}, "capsule of an object, out of its box");
 }
 
@@ -339,14 +364,17 @@ TEST_F(OneEdit, CapsulesMovedOntoOthers) {
   Random random(2);
   for (int i = 0; i < 150; ++i) {
     const std::size_t from = random.below(600), onto = random.below(600);
-    const Capsule was = capsule_at(edited.live.scene(), capsules, from), to = capsule_at(edited.live.scene(), capsules, onto);
-    if ((was.radius0 == was.radius1) == (to.radius0 == to.radius1)) edited.edit(CapsuleEdit{capsules, from, to});
+    const Capsule was = capsule_at(edited.live.scene(), capsules, from),
+                  to = capsule_at(edited.live.scene(), capsules, onto);
+    if ((was.radius0 == was.radius1) == (to.radius0 == to.radius1))
+      edited.edit(CapsuleEdit{capsules, from, to});
   }
   edited.expect_fresh("capsules onto others");
 }
 
 TEST_F(OneEdit, ALight) {
-  expect_in_place(CapsuleEdit{lit_capsule, 0, {{-1, 2, 2}, {2, 2, 3}, 0.3f, 0.3f}}, "an emissive capsule");
+  expect_in_place(CapsuleEdit{lit_capsule, 0, {{-1, 2, 2}, {2, 2, 3}, 0.3f, 0.3f}},
+                  "an emissive capsule");
   AreaEmission to = *shape_at(edited.live.scene(), lit_tube).emission;
   to.scale = 3;
   to.two_sided = false;
@@ -354,13 +382,16 @@ TEST_F(OneEdit, ALight) {
   Light light = edited.live.scene().lights[1];
   light.scale = 4000;
   expect_in_place(LightEdit{1, light}, "light");
-  expect_in_place(TransformEdit{lit_capsule, glm::translate(dmat4(1), dvec3(0, 0, 1.5))}, "an emissive capsule is moved");
+  expect_in_place(TransformEdit{lit_capsule, glm::translate(dmat4(1), dvec3(0, 0, 1.5))},
+                  "an emissive capsule is moved");
 }
 
 TEST_F(OneEdit, ATransform) {
-  const dmat4 turned = glm::rotate(glm::translate(dmat4(1), dvec3(0.5, 0.2, 1)), 0.7, glm::normalize(dvec3(1, 2, 3)));
+  const dmat4 turned = glm::rotate(glm::translate(dmat4(1), dvec3(0.5, 0.2, 1)), 0.7,
+                                   glm::normalize(dvec3(1, 2, 3)));
   for (const std::uint32_t i : {1u, 3u, 4u, 7u})
-    expect_in_place(TransformEdit{{{}, i}, i == 3 ? glm::scale(turned, dvec3(1, 2, 0.5)) : turned}, "shape " + std::to_string(i));
+    expect_in_place(TransformEdit{{{}, i}, i == 3 ? glm::scale(turned, dvec3(1, 2, 0.5)) : turned},
+                    "shape " + std::to_string(i));
   expect_in_place(InstanceEdit{0, glm::scale(turned, dvec3(1, -2, 1))}, "a mirrored instance");
   expect_in_place(InstanceEdit{2, turned}, "an emissive instance");
   // A ball that was turned is stored with its rotation: it goes again.
@@ -368,15 +399,20 @@ TEST_F(OneEdit, ATransform) {
 }
 
 TEST_F(OneEdit, AMaterial) {
-  expect_in_place(MaterialEdit{0, DiffuseMaterial{RgbSpectrum{dvec3(0.9, 0.1, 0.2), ColorSpace::srgb}}}, "colour");
-  expect_in_place(MaterialEdit{1, DielectricMaterial{*named_spectrum("glass-BK7"), 0.1, 0.1}}, "another kind");
+  expect_in_place(
+      MaterialEdit{0, DiffuseMaterial{RgbSpectrum{dvec3(0.9, 0.1, 0.2), ColorSpace::srgb}}},
+      "colour");
+  expect_in_place(MaterialEdit{1, DielectricMaterial{*named_spectrum("glass-BK7"), 0.1, 0.1}},
+                  "another kind");
 }
 
 TEST(TexturedEdits, AreThoseOfTheEditedScene) {
   const std::string world =
-      "WorldBegin\nLightSource \"infinite\"\nTexture \"c\" \"spectrum\" \"checkerboard\" \"rgb tex1\" [.8 .1 .1]\n"
+      "WorldBegin\nLightSource \"infinite\"\nTexture \"c\" \"spectrum\" \"checkerboard\" \"rgb "
+      "tex1\" [.8 .1 .1]\n"
       "\"float uscale\" 8\nMaterial \"diffuse\" \"texture reflectance\" \"c\" Shape \"sphere\"\n"
-      "Material \"diffuse\" Translate 2 0 0 Shape \"sphere\" Shape \"sphere\" \"float radius\" 60 Shape \"sphere\" \"float "
+      "Material \"diffuse\" Translate 2 0 0 Shape \"sphere\" Shape \"sphere\" \"float radius\" 60 "
+      "Shape \"sphere\" \"float "
       "radius\" 50";
   const MaterialEdit grey{0, DiffuseMaterial{ConstantSpectrum{0.3}}};
   MaterialEdit checks = grey;
@@ -400,7 +436,8 @@ TEST(TexturedEdits, AreThoseOfTheEditedScene) {
 // The material keeps its displacement, whose steps a material made anew has elsewhere.
 TEST(TexturedEdits, KeepWhatBendsTheNormals) {
   Edited edited(
-      scene_of_text("WorldBegin\nLightSource \"infinite\"\nTexture \"h\" \"float\" \"checkerboard\" \"float uscale\" 8\n"
+      scene_of_text("WorldBegin\nLightSource \"infinite\"\nTexture \"h\" \"float\" "
+                    "\"checkerboard\" \"float uscale\" 8\n"
                     "Material \"diffuse\" \"texture displacement\" \"h\" Shape \"sphere\""));
   edited.edit(MaterialEdit{0, DiffuseMaterial{ConstantSpectrum{0.3}}});
   EXPECT_EQ(edited.live.lowerings(), 2u);
@@ -410,10 +447,11 @@ TEST(TexturedEdits, KeepWhatBendsTheNormals) {
 
 // Enough lamps for a light tree, which an edit of one makes anew.
 TEST(LampEdits, MakeTheLightTreeAgain) {
-  std::string world = "WorldBegin\nShape \"sphere\" \"float radius\" 60\nAreaLightSource \"diffuse\"\n";
+  std::string world =
+      "WorldBegin\nShape \"sphere\" \"float radius\" 60\nAreaLightSource \"diffuse\"\n";
   for (int i = 0; i < 24; ++i)
-    world += "Shape \"capsule\" \"point3 p0\" [" + std::to_string(i) + " 0 0] \"point3 p1\" [" + std::to_string(i) + " 1 " +
-             std::to_string(i % 5) + "] \"float radius\" 0.2\n";
+    world += "Shape \"capsule\" \"point3 p0\" [" + std::to_string(i) + " 0 0] \"point3 p1\" [" +
+             std::to_string(i) + " 1 " + std::to_string(i % 5) + "] \"float radius\" 0.2\n";
   Edited edited(scene_of_text(world));
   const auto nodes = edited.live.flat().light_nodes;
   ASSERT_FALSE(nodes.empty());
@@ -469,19 +507,23 @@ TEST_F(OneEdit, AWrongOneChangesNothing) {
 
 // What lights hold of images is made anew where it changes, and stays where it does not.
 TEST_F(OneEdit, OfLightsWithImagesIsThatOfAFreshScene) {
-  const auto image = std::make_shared<EnvironmentImage>(EnvironmentImage{2, 1, {1, 1, 1, 2, 2, 2}, ColorSpace::srgb, false});
-  const auto square = std::make_shared<EnvironmentImage>(EnvironmentImage{1, 1, {1, 2, 3}, ColorSpace::srgb, true});
+  const auto image = std::make_shared<EnvironmentImage>(
+      EnvironmentImage{2, 1, {1, 1, 1, 2, 2, 2}, ColorSpace::srgb, false});
+  const auto square =
+      std::make_shared<EnvironmentImage>(EnvironmentImage{1, 1, {1, 2, 3}, ColorSpace::srgb, true});
   const auto light = [](auto model) { return Light{std::move(model), 1, {}, {}, {}}; };
   edited.edit(LightEdit{0, light(InfiniteLight{ConstantSpectrum{1}, image, glm::dmat3(1), {}})});
   edited.expect_fresh("a sky");
   edited.edit(LightEdit{1, light(InfiniteLight{ConstantSpectrum{1}, square, glm::dmat3(1), {}})});
   edited.expect_fresh("two skies");
-  edited.edit(LightEdit{0, light(GoniometricLight{ConstantSpectrum{1}, square, dvec3(0, 0, 4), glm::dmat3(1)})});
+  edited.edit(LightEdit{
+      0, light(GoniometricLight{ConstantSpectrum{1}, square, dvec3(0, 0, 4), glm::dmat3(1)})});
   edited.expect_fresh("a goniometric light before a sky");
   edited.edit(LightEdit{1, light(ProjectionLight{image, 60, dvec3(0, 0, 4), glm::dmat3(1)})});
   edited.expect_fresh("a projection in the sky's place");
   const LightPortal portal = {dvec3(0, 0, 4), dvec3(0, 1, 4), dvec3(1, 1, 4), dvec3(1, 0, 4)};
-  edited.edit(LightEdit{0, light(InfiniteLight{ConstantSpectrum{1}, square, glm::dmat3(1), portal})});
+  edited.edit(
+      LightEdit{0, light(InfiniteLight{ConstantSpectrum{1}, square, glm::dmat3(1), portal})});
   edited.expect_fresh("a portal");
   edited.edit(LightEdit{1, light(PointLight{})});
   edited.expect_fresh("no picture but the portal's");

@@ -42,7 +42,8 @@ RoundCurves read_round_curves(const std::filesystem::path& xml) {
   for (std::size_t i = 0; i < positions.size(); i += 4)
     out.vertices.push_back({positions[i], positions[i + 1], positions[i + 2], positions[i + 3]});
   for (const unsigned i : out.first)
-    if (std::size_t{i} + 1 >= out.vertices.size()) throw std::runtime_error(xml.string() + ": no such vertex");
+    if (std::size_t{i} + 1 >= out.vertices.size())
+      throw std::runtime_error(xml.string() + ": no such vertex");
   return out;
 }
 
@@ -74,8 +75,9 @@ std::vector<RayRecord> camera_rays(const EcsCamera& camera, int size) {
   std::vector<RayRecord> out;
   for (int row = 0; row < size; ++row)
     for (int column = 0; column < size; ++column)
-      out.push_back(make_ray(camera.eye, glm::normalize((column - half) * x + (half - row) * y +
-                                                        half / std::tan(0.5 * glm::radians(camera.fov)) * z)));
+      out.push_back(make_ray(camera.eye,
+                             glm::normalize((column - half) * x + (half - row) * y +
+                                            half / std::tan(0.5 * glm::radians(camera.fov)) * z)));
   return out;
 }
 

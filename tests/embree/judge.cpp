@@ -11,23 +11,27 @@
 
 namespace caplet::test {
 
-Judge::Judge(std::span<const FlatPrimitive> primitives, std::span<const reference::Primitive> references, const RayRecord& ray)
+Judge::Judge(std::span<const FlatPrimitive> primitives,
+             std::span<const reference::Primitive> references, const RayRecord& ray)
     : primitives_(primitives), references_(references), record_(ray), ray_(reference_ray(ray)) {
   for (std::uint32_t id = 0; id < references.size(); ++id) {
     const auto crossings = reference::crossings(references[id], ray_);
-    // A ray along a triangle may begin in it and not cross it; one that begins at a solid and misses it touches it.
+    // A ray along a triangle may begin in it and not cross it; one that begins at a solid and
+    // misses it touches it.
     if (crossings.empty() && reference::is_solid(references[id])) continue;
     bool thin = false;
     for (std::size_t i = 0; i < crossings.size(); ++i) {
-      const bool thin_before = std::exchange(
-          thin, primitives[id].shape == shape_csg && i + 1 < crossings.size() && is_thin(id, crossings[i].t, crossings[i + 1].t));
+      const bool thin_before =
+          std::exchange(thin, primitives[id].shape == shape_csg && i + 1 < crossings.size() &&
+                                  is_thin(id, crossings[i].t, crossings[i + 1].t));
       if (crossings[i].t > 0) expected_.push_back({crossings[i].t, id, thin_before || thin});
     }
     const double here = value(id, 0);
     begins_at_surface_ = begins_at_surface_ || std::abs(here) <= bound(id);
     begins_inside_ = begins_inside_ || here < -bound(id);
   }
-  std::stable_sort(expected_.begin(), expected_.end(), [](const Expected& a, const Expected& b) { return a.t < b.t; });
+  std::stable_sort(expected_.begin(), expected_.end(),
+                   [](const Expected& a, const Expected& b) { return a.t < b.t; });
 }
 
 double Judge::value(std::uint32_t id, double t) const {
@@ -37,31 +41,37 @@ double Judge::value(std::uint32_t id, double t) const {
 // docs/numerics.md, "CSG": the sum of the bounds of both sides.
 bool Judge::is_thin(std::uint32_t id, double from, double to) const {
   double deepest = 0;
-  for (int k = 1; k < 64; ++k) deepest = std::max(deepest, std::abs(value(id, from + (to - from) * k / 64)));
+  for (int k = 1; k < 64; ++k)
+    deepest = std::max(deepest, std::abs(value(id, from + (to - from) * k / 64)));
   return deepest <= 2 * bound(id);
 }
 
-double Judge::bound(std::uint32_t id) const { return surface_bound(primitives_[id], references_[id], record_); }
+double Judge::bound(std::uint32_t id) const {
+  return surface_bound(primitives_[id], references_[id], record_);
+}
 
 bool Judge::touches(std::uint32_t id) const {
   if (!touched_ || touched_->first != id)
-    touched_ = {id, reference::referee(references_[id], ray_, bound(id)) == reference::Verdict::tangent};
+    touched_ = {
+        id, reference::referee(references_[id], ray_, bound(id)) == reference::Verdict::tangent};
   return touched_->second;
 }
 
-// Whether the ray comes to the surface at t and goes back to the side that it came from: what the referee says of a convex
-// shape's whole line, said of one place.
+// Whether the ray comes to the surface at t and goes back to the side that it came from: what the
+// referee says of a convex shape's whole line, said of one place.
 bool Judge::passes_by(std::uint32_t id, double t) const {
   const double b = bound(id), step = 0.5 * b / glm::length(ray_.direction);
   const auto side = [&](double towards) {
     for (int n = 1; n < 200000; ++n)
-      if (const double v = value(id, t + towards * n * step); std::abs(v) > b) return v > 0 ? 1 : -1;
+      if (const double v = value(id, t + towards * n * step); std::abs(v) > b)
+        return v > 0 ? 1 : -1;
     return 0;
   };
   return side(-1) == side(1);
 }
 
-// Two parameters are one crossing where the ray stays near the surface between them: each end is within the bound of it.
+// Two parameters are one crossing where the ray stays near the surface between them: each end is
+// within the bound of it.
 bool Judge::same_place(std::uint32_t id, double t, double other) const {
   return std::abs(value(id, 0.5 * (t + other))) <= 2 * bound(id);
 }
@@ -81,16 +91,19 @@ Judgement Judge::judge(std::uint32_t id, double t) const {
   bool touching = false;
   if (id != CAPLET_NONE) {
     const bool on_it = std::abs(value(id, t)) <= bound(id);
-    const bool found =
-        std::any_of(expected_.begin(), expected_.end(), [&](const Expected& e) { return e.id == id && same_place(id, e.t, t); });
+    const bool found = std::any_of(expected_.begin(), expected_.end(), [&](const Expected& e) {
+      return e.id == id && same_place(id, e.t, t);
+    });
     if (!on_it || !found) {
       // Edge-on, triangles are met beside themselves.
       const bool edge_on =
-          primitives_[id].shape == shape_triangle && std::abs(value(id, t)) <= reference::bounding_ball(references_[id]).radius;
+          primitives_[id].shape == shape_triangle &&
+          std::abs(value(id, t)) <= reference::bounding_ball(references_[id]).radius;
       const bool csg_passed_by = primitives_[id].shape == shape_csg && on_it && passes_by(id, t);
       if (!(t > 0) || !(on_it || edge_on) || !(csg_passed_by || touches(id))) {
         const double margin = reference::margin(references_[id], ray_);
-        if (margin < -bound(id)) return {Verdict::false_hit, id, -margin, HUGE_VAL, std::abs(value(id, t)), false, false};
+        if (margin < -bound(id))
+          return {Verdict::false_hit, id, -margin, HUGE_VAL, std::abs(value(id, t)), false, false};
         return displaced(id, t);
       }
       touching = true;
@@ -103,7 +116,9 @@ Judgement Judge::judge(std::uint32_t id, double t) const {
       continue;
     }
     if (e.id == id) return displaced(id, t);
-    return {Verdict::missed, e.id, std::abs(reference::margin(references_[e.id], ray_)), HUGE_VAL, 0, false, false};
+    return {
+        Verdict::missed, e.id, std::abs(reference::margin(references_[e.id], ray_)), HUGE_VAL, 0,
+        false,           false};
   }
   return {touching ? Verdict::touching : Verdict::right, 0, 0, 0, 0, false, false};
 }

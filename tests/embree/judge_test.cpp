@@ -13,7 +13,9 @@ namespace {
 const FlatPrimitive capsule = make_capsule({0, 0, 0}, {0, 0, 4}, 1);
 const reference::Primitive reference = reference_of(capsule);
 
-Judge judge_at(double y) { return Judge({&capsule, 1}, {&reference, 1}, make_ray({-5, y, 2}, {1, 0, 0})); }
+Judge judge_at(double y) {
+  return Judge({&capsule, 1}, {&reference, 1}, make_ray({-5, y, 2}, {1, 0, 0}));
+}
 
 TEST(Judge, KnowsHitsAndMisses) {
   EXPECT_EQ(judge_at(0).judge(0, 4).verdict, Verdict::right);
@@ -52,8 +54,10 @@ TEST(Judge, LetsTouchingRaysBe) {
 
 TEST(Judge, KnowsWhereRaysBegin) {
   EXPECT_FALSE(judge_at(0).begins_inside() || judge_at(0).begins_at_surface());
-  EXPECT_TRUE(Judge({&capsule, 1}, {&reference, 1}, make_ray({0, 0, 2}, {1, 0, 0})).begins_inside());
-  EXPECT_TRUE(Judge({&capsule, 1}, {&reference, 1}, make_ray({1, 0, 2}, {1, 0, 0})).begins_at_surface());
+  EXPECT_TRUE(
+      Judge({&capsule, 1}, {&reference, 1}, make_ray({0, 0, 2}, {1, 0, 0})).begins_inside());
+  EXPECT_TRUE(
+      Judge({&capsule, 1}, {&reference, 1}, make_ray({1, 0, 2}, {1, 0, 0})).begins_at_surface());
 }
 
 TEST(Judge, TellsPrimitivesApart) {
@@ -71,7 +75,8 @@ TEST(Judge, LetsRaysTouchOnePartOfACsgShape) {
   // The line goes through the first ball, behind the ray, and just passes by the second.
   const reference::CsgPart parts[] = {{reference::Sphere{{0, 0, 0}, 1.5}, glm::dmat4(1)},
                                       {reference::Sphere{{4, 0, 0}, 1}, glm::dmat4(1)}};
-  const reference::Primitive balls = reference::make_csg(reference::Csg::Operation::set_union, parts);
+  const reference::Primitive balls =
+      reference::make_csg(reference::Csg::Operation::set_union, parts);
   const FlatPrimitive csg{shape_csg, 0, {}};
   const Judge judge({&csg, 1}, {&balls, 1}, make_ray({2, 1 + 1.2e-7, 0}, {1, 0, 0}));
   EXPECT_FALSE(judge.hit());

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Capsules, tapered capsules, spheres and triangles by themselves and in scenes: our kernels and Embree, judged by the reference.
-// 20,000 rays a test; CAPLET_TEST_SCALE=50 makes it a million.
+// Capsules, tapered capsules, spheres and triangles by themselves and in scenes: our kernels and
+// Embree, judged by the reference. 20,000 rays a test; CAPLET_TEST_SCALE=50 makes it a million.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <tbb/parallel_for.h>
@@ -28,12 +28,14 @@ using glm::dvec3;
 struct Kind {
   int shape;
   const char* name;
-  // The least share of rays on which Embree has to be right, for a comparison that works: what was seen, with room.
+  // The least share of rays on which Embree has to be right, for a comparison that works: what was
+  // seen, with room.
   double single, hard, scene;
 };
 void PrintTo(const Kind& kind, std::ostream* out) { *out << kind.name; }
 
-// Seen, of the rays from outside: 0.974, 0.974, 1, 0.994; hard 0.719, 0.719, 1, 0.991; scenes 1 to 4 digits.
+// Seen, of the rays from outside: 0.974, 0.974, 1, 0.994; hard 0.719, 0.719, 1, 0.991; scenes 1 to
+// 4 digits.
 const Kind kinds[] = {{shape_capsule, "capsule", 0.94, 0.6, 0.999},
                       {shape_tapered_capsule, "tapered_capsule", 0.94, 0.6, 0.999},
                       {shape_sphere, "sphere", 0.999, 0.999, 0.999},
@@ -41,20 +43,27 @@ const Kind kinds[] = {{shape_capsule, "capsule", 0.94, 0.6, 0.999},
 
 bool is_capsule(int shape) { return shape == shape_capsule || shape == shape_tapered_capsule; }
 
-CaseFacts facts_of(const FlatPrimitive& p, const reference::Primitive& reference, const RayRecord& ray) {
+CaseFacts facts_of(const FlatPrimitive& p, const reference::Primitive& reference,
+                   const RayRecord& ray) {
   const reference::Ball ball = reference::bounding_ball(reference);
   // The bound, with coordinates in place of their differences: 16 eps (|o| + |c| + size) on top.
-  const double world = surface_bound(p, reference, ray) +
-                       16 * 0x1p-24 * (glm::length(dvec3(ray.ox, ray.oy, ray.oz)) + glm::length(ball.center) + ball.radius);
+  const double world =
+      surface_bound(p, reference, ray) +
+      16 * 0x1p-24 *
+          (glm::length(dvec3(ray.ox, ray.oy, ray.oz)) + glm::length(ball.center) + ball.radius);
   if (p.shape == shape_sphere) return {p.data[3], false, world};
   if (p.shape == shape_triangle) return {ball.radius, false, world};
   const double r0 = p.data[6], r1 = p.shape == shape_capsule ? r0 : double(p.data[7]);
-  const dvec3 axis = dvec3(p.data[3], p.data[4], p.data[5]) - dvec3(p.data[0], p.data[1], p.data[2]), d(ray.dx, ray.dy, ray.dz);
-  // Also parallel to the cone that joins the spheres, where the quadratic for it has no square: sin^2 of the angle to the axis is
-  // then that of the cone. 1e-5: 3e-3 radians of the axis.
-  const double length = glm::length(axis), sine = glm::length(glm::cross(axis, d)) / (length * glm::length(d));
+  const dvec3 axis =
+                  dvec3(p.data[3], p.data[4], p.data[5]) - dvec3(p.data[0], p.data[1], p.data[2]),
+              d(ray.dx, ray.dy, ray.dz);
+  // Also parallel to the cone that joins the spheres, where the quadratic for it has no square:
+  // sin^2 of the angle to the axis is then that of the cone. 1e-5: 3e-3 radians of the axis.
+  const double length = glm::length(axis),
+               sine = glm::length(glm::cross(axis, d)) / (length * glm::length(d));
   const double square = sine * sine;
-  return {std::max(r0, r1), square < 1e-5 || std::abs(square - std::pow((r1 - r0) / length, 2)) < 1e-5, world};
+  return {std::max(r0, r1),
+          square < 1e-5 || std::abs(square - std::pow((r1 - r0) / length, 2)) < 1e-5, world};
 }
 
 class ThirdOpinion : public testing::TestWithParam<Kind> {};
@@ -66,7 +75,8 @@ struct Tallies {
   std::mutex mutex;
 
   template <class Describe>
-  void add(const Judge& judge, const Judgement& ours, const Judgement& embree, const CaseFacts& facts, const Describe& where) {
+  void add(const Judge& judge, const Judgement& ours, const Judgement& embree,
+           const CaseFacts& facts, const Describe& where) {
     if (judge.begins_at_surface()) {
       const std::lock_guard lock(mutex);
       ++outside.left_out;
@@ -88,13 +98,16 @@ struct Tallies {
   }
 };
 
-/// Embree refuses rays that are not finite or beyond FLT_LARGE (the cases make some where a triangle has no normal).
+/// Embree refuses rays that are not finite or beyond FLT_LARGE (the cases make some where a
+/// triangle has no normal).
 std::uint64_t drop_invalid_rays(CaseSet& cases) {
   std::size_t kept = 0;
   for (std::size_t i = 0; i < cases.rays.size(); ++i) {
     const RayRecord& r = cases.rays[i];
     const float all[] = {r.ox, r.oy, r.oz, r.dx, r.dy, r.dz};
-    if (!std::all_of(std::begin(all), std::end(all), [](float x) { return std::abs(x) < 1.844e18f; })) continue;
+    if (!std::all_of(std::begin(all), std::end(all),
+                     [](float x) { return std::abs(x) < 1.844e18f; }))
+      continue;
     cases.rays[kept] = r;
     cases.which[kept++] = cases.which[i];
   }
@@ -112,8 +125,12 @@ struct ByAspect {
   std::array<Count, 5> counts;
 
   static std::size_t row(const FlatPrimitive& p) {
-    const double length = glm::length(dvec3(p.data[3], p.data[4], p.data[5]) - dvec3(p.data[0], p.data[1], p.data[2]));
-    const double decade = std::floor(std::log10(length / std::max(p.data[6], p.shape == shape_capsule ? 0 : p.data[7]))) + 1;
+    const double length = glm::length(dvec3(p.data[3], p.data[4], p.data[5]) -
+                                      dvec3(p.data[0], p.data[1], p.data[2]));
+    const double decade =
+        std::floor(
+            std::log10(length / std::max(p.data[6], p.shape == shape_capsule ? 0 : p.data[7]))) +
+        1;
     return static_cast<std::size_t>(std::clamp(decade, 0.0, 4.0));
   }
   void add(const FlatPrimitive& p, const Judgement& embree, double size) {
@@ -125,8 +142,10 @@ struct ByAspect {
   void print() const {
     const char* const names[] = {"below 1", "1 to 10", "10 to 100", "100 to 1000", "1000 and more"};
     for (std::size_t i = 0; i < counts.size(); ++i)
-      fmt::print("  length in radii {:<13}: {} rays, Embree beyond the bound {}, by more than 1 % of the radius {}\n", names[i],
-                 counts[i].rays, counts[i].wrong, counts[i].far_off);
+      fmt::print(
+          "  length in radii {:<13}: {} rays, Embree beyond the bound {}, by more than 1 % of the "
+          "radius {}\n",
+          names[i], counts[i].rays, counts[i].wrong, counts[i].far_off);
   }
 };
 
@@ -138,24 +157,28 @@ void compare_singles(const Kind& kind, bool hard, double least) {
     CaseMaker maker(7000 + static_cast<std::uint32_t>(part));
     CaseSet cases = maker.set(kind.shape, hard, 400, 50);
     tallies.refused += drop_invalid_rays(cases);
-    const auto ours = Probe(test_device(), test_width(), cases.primitives).trace(cases.which, cases.rays);
+    const auto ours =
+        Probe(test_device(), test_width(), cases.primitives).trace(cases.which, cases.rays);
     std::vector<PeerHit> theirs;
     for (std::uint32_t i = 0; i < cases.primitives.size(); ++i) {
       const auto [first, last] = std::equal_range(cases.which.begin(), cases.which.end(), i);
       const Peer peer(std::span(&cases.primitives[i], 1), PeerMode::robust);
-      const auto some =
-          peer.closest({&*cases.rays.begin() + (first - cases.which.begin()), static_cast<std::size_t>(last - first)});
+      const auto some = peer.closest({&*cases.rays.begin() + (first - cases.which.begin()),
+                                      static_cast<std::size_t>(last - first)});
       theirs.insert(theirs.end(), some.begin(), some.end());
     }
     tbb::parallel_for(std::size_t{0}, cases.rays.size(), [&](std::size_t i) {
       const FlatPrimitive& primitive = cases.primitive(i);
       const Judge judge({&primitive, 1}, {&cases.reference(i), 1}, cases.rays[i]);
       const HitRecord& hit = ours[i].hit;
-      const Judgement embree = judge.judge(theirs[i].id == CAPLET_NONE ? CAPLET_NONE : 0, theirs[i].t);
+      const Judgement embree =
+          judge.judge(theirs[i].id == CAPLET_NONE ? CAPLET_NONE : 0, theirs[i].t);
       const CaseFacts facts = facts_of(primitive, cases.reference(i), cases.rays[i]);
-      tallies.add(judge, judge.judge(hit.slot == CAPLET_NONE ? CAPLET_NONE : 0, hit.t), embree, facts, [&] {
-        return fmt::format("  t {} ours {} Embree\n  ", hit.t, theirs[i].t) + described(primitive, cases.rays[i]);
-      });
+      tallies.add(judge, judge.judge(hit.slot == CAPLET_NONE ? CAPLET_NONE : 0, hit.t), embree,
+                  facts, [&] {
+                    return fmt::format("  t {} ours {} Embree\n  ", hit.t, theirs[i].t) +
+                           described(primitive, cases.rays[i]);
+                  });
       if (!is_capsule(kind.shape) || judge.begins_at_surface() || judge.begins_inside()) return;
       const std::lock_guard lock(mutex);
       by_aspect.add(primitive, embree, facts.size);
@@ -223,7 +246,8 @@ TEST_P(ThirdOpinion, OnScenes) {
       const std::uint32_t id = ours[i].slot == CAPLET_NONE ? CAPLET_NONE : id_of[ours[i].slot];
       const Judgement embree = judge.judge(theirs[i].id, theirs[i].t);
       tallies.add(judge, judge.judge(id, ours[i].t), embree,
-                  facts_of(primitives[embree.primitive], references[embree.primitive], rays[i]), [&] {
+                  facts_of(primitives[embree.primitive], references[embree.primitive], rays[i]),
+                  [&] {
                     return fmt::format("  t {} ours {} Embree\n  ", ours[i].t, theirs[i].t) +
                            described(primitives[embree.primitive], rays[i]);
                   });

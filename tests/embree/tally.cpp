@@ -47,8 +47,8 @@ std::string Tally::text_of(const Judgement& judgement, double size) {
     case Verdict::false_hit:
       return fmt::format("hit falsely, passed {:.3g} radii away", judgement.depth / size);
     default:
-      return fmt::format("displaced, {:.3g} radii off the surface, t off by {:.3g} of itself", judgement.off_surface / size,
-                         judgement.t_error);
+      return fmt::format("displaced, {:.3g} radii off the surface, t off by {:.3g} of itself",
+                         judgement.off_surface / size, judgement.t_error);
   }
 }
 
@@ -57,14 +57,16 @@ void Tally::report(const Judgement& judgement, double size, const std::string& w
 }
 
 void Tally::print(const std::string& name) const {
-  fmt::print("{}: {} rays, {} hits ({} along axis), {} left out\n", name, rays, hits, hits_along, left_out);
+  fmt::print("{}: {} rays, {} hits ({} along axis), {} left out\n", name, rays, hits, hits_along,
+             left_out);
   const auto row = [&](const char* side, const Errors& e) {
     fmt::print(
-        "  {:<6} | missed {} (> 1 % deep {}, along axis {}) | false {} | displaced {} (> 1 % off {}, t > 1e-3 {}, t > 1e-2 {}, "
+        "  {:<6} | missed {} (> 1 % deep {}, along axis {}) | false {} | displaced {} (> 1 % off "
+        "{}, t > 1e-3 {}, t > 1e-2 {}, "
         "later {}, grazing {}) "
         "| beyond the world bound {} | touching {}\n",
-        side, e.missed, e.missed_deep, e.missed_along, e.false_hits, e.displaced, e.off_1e2, e.t_beyond_1e3, e.t_beyond_1e2,
-        e.later, e.grazing, e.beyond_world, e.touching);
+        side, e.missed, e.missed_deep, e.missed_along, e.false_hits, e.displaced, e.off_1e2,
+        e.t_beyond_1e3, e.t_beyond_1e2, e.later, e.grazing, e.beyond_world, e.touching);
   };
   row("ours", our_errors);
   row("Embree", embree_errors);
@@ -74,7 +76,8 @@ void Tally::print(const std::string& name) const {
 }
 
 std::string described(const RayRecord& r) {
-  return fmt::format("ray: {:.9g} {:.9g} {:.9g}  {:.9g} {:.9g} {:.9g}", r.ox, r.oy, r.oz, r.dx, r.dy, r.dz);
+  return fmt::format("ray: {:.9g} {:.9g} {:.9g}  {:.9g} {:.9g} {:.9g}", r.ox, r.oy, r.oz, r.dx,
+                     r.dy, r.dz);
 }
 
 std::string described(const FlatPrimitive& p, const RayRecord& r) {

@@ -16,26 +16,31 @@ namespace caplet::test {
 struct CaseFacts {
   double size = 1;          // the larger radius; of a triangle, its ball's
   bool along_axis = false;  // the ray runs along the (tapered) capsule's axis or side
-  double world_bound = 0;   // what an answer worked out in world coordinates may be off by, for comparison
+  double world_bound =
+      0;  // what an answer worked out in world coordinates may be off by, for comparison
 };
 
 /// How often one side was wrong.
 struct Errors {
   std::uint64_t missed = 0, false_hits = 0, displaced = 0;
-  std::uint64_t missed_deep = 0, missed_along = 0;                // of the missed: deeper than 1 % of the size; along the axis
-  std::uint64_t off_1e2 = 0, t_beyond_1e3 = 0, t_beyond_1e2 = 0;  // of the displaced: 1 % of the size off; t off by 1e-3, 1e-2
-  std::uint64_t later = 0, grazing = 0;                           // of the displaced: as Judgement's
-  std::uint64_t beyond_world = 0;                                 // of all wrong: by more than the world_bound
-  std::uint64_t touching = 0;                                     // not wrong
+  std::uint64_t missed_deep = 0,
+                missed_along = 0;  // of the missed: deeper than 1 % of the size; along the axis
+  std::uint64_t off_1e2 = 0, t_beyond_1e3 = 0,
+                t_beyond_1e2 = 0;  // of the displaced: 1 % of the size off; t off by 1e-3, 1e-2
+  std::uint64_t later = 0, grazing = 0;  // of the displaced: as Judgement's
+  std::uint64_t beyond_world = 0;        // of all wrong: by more than the world_bound
+  std::uint64_t touching = 0;            // not wrong
   std::uint64_t wrong() const { return missed + false_hits + displaced; }
   void add(const Judgement& judgement, const CaseFacts& facts);
 };
 
 class Tally {
  public:
-  /// Safe to call from many threads. `where` describes the case; it is called for cases that are kept.
+  /// Safe to call from many threads. `where` describes the case; it is called for cases that are
+  /// kept.
   template <class Describe>
-  void add(const Judge& judge, const Judgement& ours, const Judgement& embree, const CaseFacts& facts, const Describe& where) {
+  void add(const Judge& judge, const Judgement& ours, const Judgement& embree,
+           const CaseFacts& facts, const Describe& where) {
     const std::lock_guard lock(mutex_);
     ++rays;
     hits += judge.hit();
@@ -53,7 +58,8 @@ class Tally {
   void print(const std::string& name) const;
   /// Share of rays on which Embree is not wrong.
   double embree_agrees() const {
-    return rays == 0 ? 1 : 1 - static_cast<double>(embree_errors.wrong()) / static_cast<double>(rays);
+    return rays == 0 ? 1
+                     : 1 - static_cast<double>(embree_errors.wrong()) / static_cast<double>(rays);
   }
 
   std::uint64_t rays = 0, hits = 0, hits_along = 0;

@@ -12,16 +12,20 @@ namespace caplet::test {
 
 template <class T>
 bool same_bytes(const std::vector<T>& a, const std::vector<T>& b) {
-  return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0);
+  return a.size() == b.size() &&
+         (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0);
 }
 /// Sizes, and where the first byte differs.
 template <class T>
 std::string how(const std::vector<T>& a, const std::vector<T>& b) {
-  if (a.size() != b.size()) return "(" + std::to_string(a.size()) + " and " + std::to_string(b.size()) + ") ";
+  if (a.size() != b.size())
+    return "(" + std::to_string(a.size()) + " and " + std::to_string(b.size()) + ") ";
   std::size_t at = 0;
-  const auto *x = reinterpret_cast<const char*>(a.data()), *y = reinterpret_cast<const char*>(b.data());
+  const auto *x = reinterpret_cast<const char*>(a.data()),
+             *y = reinterpret_cast<const char*>(b.data());
   while (x[at] == y[at]) ++at;
-  return "(from " + std::to_string(at / sizeof(T)) + " on, byte " + std::to_string(at % sizeof(T)) + ") ";
+  return "(from " + std::to_string(at / sizeof(T)) + " on, byte " + std::to_string(at % sizeof(T)) +
+         ") ";
 }
 template <class T>
 std::string how(const T&, const T&) {

@@ -26,8 +26,9 @@ std::vector<std::uint64_t> film_of(Scene scene) {
 }
 
 void expect_same_pictures(const fs::path& folder) {
-  each_written_again(
-      folder, [](const Scene& scene, const Scene& read, const fs::path&) { EXPECT_TRUE(film_of(scene) == film_of(read)); });
+  each_written_again(folder, [](const Scene& scene, const Scene& read, const fs::path&) {
+    EXPECT_TRUE(film_of(scene) == film_of(read));
+  });
 }
 
 TEST(WrittenPictures, OfExampleScenes) { expect_same_pictures(source_folder() / "scenes"); }

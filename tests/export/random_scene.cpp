@@ -27,12 +27,15 @@ float pixel(const fs::path& path, std::size_t i) {
 class Random : public Draws {
  public:
   explicit Random(unsigned seed) : engine_(seed) {}
-  double uniform(double low, double high) override { return std::uniform_real_distribution<>(low, high)(engine_); }
+  double uniform(double low, double high) override {
+    return std::uniform_real_distribution<>(low, high)(engine_);
+  }
   double power(double low, double high) override { return std::pow(10, uniform(low, high)); }
   std::size_t below(std::size_t n) override { return engine_() % n; }
   glm::dvec3 direction() override {
     for (;;)
-      if (const glm::dvec3 d(uniform(-1, 1), uniform(-1, 1), uniform(-1, 1)); glm::length(d) > 0.1) return glm::normalize(d);
+      if (const glm::dvec3 d(uniform(-1, 1), uniform(-1, 1), uniform(-1, 1)); glm::length(d) > 0.1)
+        return glm::normalize(d);
   }
   glm::dmat3 turn() {
     const glm::dvec3 x = direction(), z = glm::normalize(glm::cross(x, direction()));
@@ -46,7 +49,9 @@ class Random : public Draws {
     return out;
   }
   double within(double low, double high) {
-    return uniform(std::isfinite(low) ? low : -3, std::isfinite(high) ? std::min(high, 1e3) : std::isfinite(low) ? low + 3 : 3);
+    return uniform(std::isfinite(low) ? low : -3, std::isfinite(high)  ? std::min(high, 1e3)
+                                                  : std::isfinite(low) ? low + 3
+                                                                       : 3);
   }
   Spectrum spectrum(double most) {
     const auto part = [&] { return uniform(0.01, most); };
@@ -58,7 +63,8 @@ class Random : public Draws {
       case 2:
         return SampledSpectrum{{400, uniform(450, 600), 700}, {part(), part(), part()}};
       default:
-        return most < 1 ? Spectrum(ConstantSpectrum{part()}) : Spectrum(BlackbodySpectrum{uniform(1000, 9000)});
+        return most < 1 ? Spectrum(ConstantSpectrum{part()})
+                        : Spectrum(BlackbodySpectrum{uniform(1000, 9000)});
     }
   }
 
@@ -72,11 +78,13 @@ struct Files {
   std::string named(const std::string& name) const {
     const fs::path path = folder / name;
     if (!fs::exists(path))
-      std::ofstream(path) << "IESNA:LM-63-2002\nTILT=NONE\n1 1000 1 3 1 1 2 0 0 0 1 1 60\n0 45 90\n0\n100 80 7\n";
+      std::ofstream(path)
+          << "IESNA:LM-63-2002\nTILT=NONE\n1 1000 1 3 1 1 2 0 0 0 1 1 60\n0 45 90\n0\n100 80 7\n";
     return path.string();
   }
   // Each once, as importers have them.
-  std::shared_ptr<const TextureImage> texture(const std::string& name, const ImageEncoding& encoding) const {
+  std::shared_ptr<const TextureImage> texture(const std::string& name,
+                                              const ImageEncoding& encoding) const {
     auto& image = textures[{name, encoding}];
     if (!image) image = std::make_shared<TextureImage>(images.read_texture(named(name), encoding));
     return image;
@@ -86,7 +94,8 @@ struct Files {
     if (!image) image = std::make_shared<EnvironmentImage>(images.read_rgb(named(name)));
     return image;
   }
-  mutable std::map<std::pair<std::string, ImageEncoding>, std::shared_ptr<const TextureImage>> textures = {};
+  mutable std::map<std::pair<std::string, ImageEncoding>, std::shared_ptr<const TextureImage>>
+      textures = {};
   mutable std::map<std::string, std::shared_ptr<const EnvironmentImage>> lights = {};
   mutable std::shared_ptr<const IesProfile> lamp = {};
 };
@@ -120,15 +129,19 @@ struct FillTexture : IgnoresFields {
   }
   void flag(const Field&, bool& value) { value = random.one_in(2); }
   void image(const Field&, std::shared_ptr<const TextureImage>& of) {
-    const ImageEncoding encodings[] = {{}, {ImageEncoding::Kind::linear, 1}, {ImageEncoding::Kind::gamma, 2.1}};
+    const ImageEncoding encodings[] = {
+        {}, {ImageEncoding::Kind::linear, 1}, {ImageEncoding::Kind::gamma, 2.1}};
     of = files.texture("colors.png", encodings[random.below(3)]);
   }
   void mapping(TextureMapping& of) {
     of.kind = static_cast<TextureMapping::Kind>(random.below(4));
     if (of.kind != TextureMapping::Kind::uv) of.texture_from_world = random.transform();
-    if (of.kind == TextureMapping::Kind::uv) of.uscale = random.uniform(1, 9), of.vscale = random.uniform(1, 9);
-    if (of.kind == TextureMapping::Kind::planar) of.v1 = random.direction(), of.v2 = random.direction();
-    if (of.kind == TextureMapping::Kind::planar || of.kind == TextureMapping::Kind::uv) of.udelta = 0.3, of.vdelta = 0.7;
+    if (of.kind == TextureMapping::Kind::uv)
+      of.uscale = random.uniform(1, 9), of.vscale = random.uniform(1, 9);
+    if (of.kind == TextureMapping::Kind::planar)
+      of.v1 = random.direction(), of.v2 = random.direction();
+    if (of.kind == TextureMapping::Kind::planar || of.kind == TextureMapping::Kind::uv)
+      of.udelta = 0.3, of.vdelta = 0.7;
   }
   void board(TextureMapping& of) {
     mapping(of);
@@ -139,13 +152,16 @@ struct FillTexture : IgnoresFields {
   }
   void place(glm::dmat4& of) { of = random.transform(); }
   void direction(const Field&, glm::dvec3& of) { of = random.direction(); }
-  void integer(const Field& field, int& value) { value = static_cast<int>(field.low) + 1 + static_cast<int>(random.below(6)); }
+  void integer(const Field& field, int& value) {
+    value = static_cast<int>(field.low) + 1 + static_cast<int>(random.below(6));
+  }
   void only(bool floats) { fits = fits && floats == is_float; }
   void vectors(const Field&, std::shared_ptr<const TextureImage>&) { fits = false; }
 };
 
 struct FillMaterial : CompositesInParts<FillMaterial> {
-  FillMaterial(Random& draws, const Scene& of, Material& to) : random(draws), scene(of), material(to) {}
+  FillMaterial(Random& draws, const Scene& of, Material& to)
+      : random(draws), scene(of), material(to) {}
   Random& random;
   const Scene& scene;
   Material& material;
@@ -154,7 +170,8 @@ struct FillMaterial : CompositesInParts<FillMaterial> {
     if (!random.one_in(3)) return false;
     std::vector<std::uint32_t> fitting;
     for (std::uint32_t i = 0; i < scene.textures.size(); ++i)
-      if (scene.textures[i].is_float == floats && !std::holds_alternative<NormalmapTexture>(scene.textures[i].model))
+      if (scene.textures[i].is_float == floats &&
+          !std::holds_alternative<NormalmapTexture>(scene.textures[i].model))
         fitting.push_back(i);
     material.textures.push_back({field, fitting[random.below(fitting.size())]});
     return true;
@@ -166,19 +183,24 @@ struct FillMaterial : CompositesInParts<FillMaterial> {
     if (!textured(field.name, false)) of = random.spectrum(3);
   }
   void index(const Field&, Spectrum& of) {
-    of = random.one_in(2) ? Spectrum(ConstantSpectrum{random.uniform(1.1, 2)}) : SampledSpectrum{{400, 700}, {1.6, 1.5}};
+    of = random.one_in(2) ? Spectrum(ConstantSpectrum{random.uniform(1.1, 2)})
+                          : SampledSpectrum{{400, 700}, {1.6, 1.5}};
   }
   void number(const Field& field, double& of) {
     if (!textured(field.name, true)) of = random.within(field.low, field.high);
   }
-  void integer(const Field& field, int& of) { of = static_cast<int>(field.low) + 1 + static_cast<int>(random.below(9)); }
+  void integer(const Field& field, int& of) {
+    of = static_cast<int>(field.low) + 1 + static_cast<int>(random.below(9));
+  }
   void flag(const Field&, bool& of) { of = random.one_in(2); }
   void parts(const Field&, std::array<std::uint32_t, 2>& of) { of = {0, 1}; }
-  void pigment(const PigmentFields& fields, Spectrum& sigma_a, std::optional<Spectrum>& reflectance) {
+  void pigment(const PigmentFields& fields, Spectrum& sigma_a,
+               std::optional<Spectrum>& reflectance) {
     if (random.one_in(2)) reflectance = ConstantSpectrum{0.5};
     CompositesInParts::pigment(fields, sigma_a, reflectance);
   }
-  void metal(const MetalFields& fields, Spectrum& eta, Spectrum& k, std::optional<Spectrum>& reflectance) {
+  void metal(const MetalFields& fields, Spectrum& eta, Spectrum& k,
+             std::optional<Spectrum>& reflectance) {
     if (random.one_in(2)) reflectance = ConstantSpectrum{0.5};
     CompositesInParts::metal(fields, eta, k, reflectance);
   }
@@ -191,7 +213,8 @@ struct FillMedium {
 
   template <class Preset>
   void scattering(ScatteringProperties& of, Preset&&) {
-    of = {random.spectrum(2), random.spectrum(2), random.uniform(0.5, 2), random.uniform(-0.9, 0.9)};
+    of = {random.spectrum(2), random.spectrum(2), random.uniform(0.5, 2),
+          random.uniform(-0.9, 0.9)};
   }
   void asymmetry(double& g) { g = random.uniform(-0.9, 0.9); }
   void emission(const Field&, std::optional<Spectrum>& of) {
@@ -201,19 +224,25 @@ struct FillMedium {
     emission(field, of);
     scale = random.uniform(0.1, 2);
   }
-  void bounds(MediumBounds& of) { of = {random.direction() - 2.0, random.direction() + 2.0, random.transform()}; }
+  void bounds(MediumBounds& of) {
+    of = {random.direction() - 2.0, random.direction() + 2.0, random.transform()};
+  }
   void counts(GridCounts& of) { of = counts_ = {2, 3, 1 + static_cast<int>(random.below(3))}; }
   void grid(const Field& field, FloatGrid& of, const GridCounts&, bool is_needed) {
     if (is_needed || std::string(field.name) != "temperature") of = values(1);
   }
-  void grid(const Field&, ColorGrid& of, const GridCounts&) { of = {values(3), static_cast<ColorSpace>(random.below(4))}; }
+  void grid(const Field&, ColorGrid& of, const GridCounts&) {
+    of = {values(3), static_cast<ColorSpace>(random.below(4))};
+  }
   FloatGrid values(std::size_t each) {
     std::vector<float> out(each * cells_of(counts_));
     for (float& value : out) value = static_cast<float>(random.uniform(0, 2));
     return std::make_shared<const std::vector<float>>(std::move(out));
   }
   void number(const Field& field, double& of) { of = random.within(field.low, field.high); }
-  void volume(SparseGridPointer&, SparseGridPointer&, glm::dmat4&) { fits = false; }  // of files: round_trip_test.cpp
+  void volume(SparseGridPointer&, SparseGridPointer&, glm::dmat4&) {
+    fits = false;
+  }  // of files: round_trip_test.cpp
   void heat(const std::optional<Spectrum>&, const FloatGrid&) {}
   void any_of(const ColorGrid&, const ColorGrid&, const ColorGrid&) {}
 };
@@ -231,7 +260,9 @@ struct FillLight {
     turn = random.turn();
   }
   void image(const Field&, std::shared_ptr<const EnvironmentImage>& of) { of = read("wide.exr"); }
-  void directions(const Field&, std::shared_ptr<const EnvironmentImage>& of) { of = read("square.exr"); }
+  void directions(const Field&, std::shared_ptr<const EnvironmentImage>& of) {
+    of = read("square.exr");
+  }
   void profile(const Field&, std::shared_ptr<const IesProfile>& of) {
     if ((of = files.lamp)) return;
     auto made = std::make_shared<IesProfile>();
@@ -284,27 +315,30 @@ class Maker {
       BilerpTexture::fields(first, fill);
       scene_.textures.push_back({first, is_float, "first", {}});
     }
-#define TEXTURE_MODEL(row, Type)                                                                    \
-  for (const bool is_float : {true, false}) {                                                       \
-    Type model;                                                                                     \
-    FillTexture fill(random_, files_, scene_, is_float);                                            \
-    Type::fields(model, fill);                                                                      \
-    if (fill.fits) scene_.textures.push_back({model, is_float, random_.one_in(3) ? "" : #row, {}}); \
+#define TEXTURE_MODEL(row, Type)                                                       \
+  for (const bool is_float : {true, false}) {                                          \
+    Type model;                                                                        \
+    FillTexture fill(random_, files_, scene_, is_float);                               \
+    Type::fields(model, fill);                                                         \
+    if (fill.fits)                                                                     \
+      scene_.textures.push_back({model, is_float, random_.one_in(3) ? "" : #row, {}}); \
   }
 #include "scene/textures.def"
   }
 
   void materials() {
-    for (int i = 0; i < 2; ++i) scene_.materials.push_back({DiffuseMaterial{random_.spectrum(0.9)}, "", {}});
-#define MATERIAL_MODEL(row, Type)                                                                            \
-  for (int i = 0; i < 2; ++i) {                                                                              \
-    Material material;                                                                                       \
-    Type model;                                                                                              \
-    Type::fields(model, FillMaterial(random_, scene_, material));                                            \
-    material.model = model;                                                                                  \
-    material.name = i == 0 ? #row : "two of \"" #row "\"";                                                   \
-    if (!std::is_same_v<Type, InterfaceMaterial>) bend(material);                                            \
-    if (i == 0 || !std::is_same_v<Type, InterfaceMaterial>) scene_.materials.push_back(std::move(material)); \
+    for (int i = 0; i < 2; ++i)
+      scene_.materials.push_back({DiffuseMaterial{random_.spectrum(0.9)}, "", {}});
+#define MATERIAL_MODEL(row, Type)                                 \
+  for (int i = 0; i < 2; ++i) {                                   \
+    Material material;                                            \
+    Type model;                                                   \
+    Type::fields(model, FillMaterial(random_, scene_, material)); \
+    material.model = model;                                       \
+    material.name = i == 0 ? #row : "two of \"" #row "\"";        \
+    if (!std::is_same_v<Type, InterfaceMaterial>) bend(material); \
+    if (i == 0 || !std::is_same_v<Type, InterfaceMaterial>)       \
+      scene_.materials.push_back(std::move(material));            \
   }
 #include "scene/materials.def"
   }
@@ -328,13 +362,14 @@ class Maker {
   }
 
   void lights() {
-#define LIGHT_MODEL(row, Type)                                                                              \
-  for (int i = 0; i < 2; ++i) {                                                                             \
-    Type model;                                                                                             \
-    Type::fields(model, FillLight{random_, files_});                                                        \
-    Light light{model, random_.uniform(0.5, 2), {}, {}, {}};                                                \
-    if (i == 1) (Type::unit == LightUnit::power ? light.power : light.illuminance) = random_.uniform(1, 9); \
-    scene_.lights.push_back(std::move(light));                                                              \
+#define LIGHT_MODEL(row, Type)                                                                    \
+  for (int i = 0; i < 2; ++i) {                                                                   \
+    Type model;                                                                                   \
+    Type::fields(model, FillLight{random_, files_});                                              \
+    Light light{model, random_.uniform(0.5, 2), {}, {}, {}};                                      \
+    if (i == 1)                                                                                   \
+      (Type::unit == LightUnit::power ? light.power : light.illuminance) = random_.uniform(1, 9); \
+    scene_.lights.push_back(std::move(light));                                                    \
   }
 #include "scene/lights.def"
   }
@@ -353,7 +388,8 @@ class Maker {
     csg.operation = static_cast<CsgShape::Operation>(random_.below(3));
     for (int i = 0; i < 3; ++i) {
       Shape operand;
-      operand.geometry = i == 0 ? Geometry(SphereShape{1}) : Geometry(BoxShape{glm::dvec3(-0.7), glm::dvec3(0.5 + 0.1 * i)});
+      operand.geometry = i == 0 ? Geometry(SphereShape{1})
+                                : Geometry(BoxShape{glm::dvec3(-0.7), glm::dvec3(0.5 + 0.1 * i)});
       operand.world_from_object = random_.transform();
       operand.world_from_object[3] = glm::dvec4(0, 0, 0, 1);
       operand.material = static_cast<std::uint32_t>(i);
@@ -361,7 +397,8 @@ class Maker {
       scene_.objects.push_back({"", {operand}, {}});
     }
     finish(csg);
-    if (Shape& made = scene_.shapes.back(); made.materials.empty()) made.material = csg.operands[0]->material;
+    if (Shape& made = scene_.shapes.back(); made.materials.empty())
+      made.material = csg.operands[0]->material;
   }
 
   /// A shape of the world or of the object, with all that a shape may have.
@@ -380,7 +417,8 @@ class Maker {
       for (std::size_t i = 0; i < surface_count(shape); ++i) shape.materials.push_back(some());
       shape.material = shape.materials[0];
     }
-    if (auto* capsules = std::get_if<CapsulesShape>(&shape.geometry); capsules && capsules->p0.size() > 1 && random_.one_in(2))
+    if (auto* capsules = std::get_if<CapsulesShape>(&shape.geometry);
+        capsules && capsules->p0.size() > 1 && random_.one_in(2))
       for (std::size_t i = 0; i < capsules->p0.size(); ++i) capsules->materials.push_back(some());
     if (random_.one_in(3)) shape.name = "a shape \\ named";
     shape.reverse_orientation = random_.one_in(3);
@@ -406,7 +444,8 @@ class Maker {
     else
       emission.radiance = random_.spectrum(4);
     emission.scale = random_.uniform(0.5, 2);
-    if (random_.one_in(2) && !std::holds_alternative<CsgShape>(shape.geometry)) emission.power = random_.uniform(1, 5);
+    if (random_.one_in(2) && !std::holds_alternative<CsgShape>(shape.geometry))
+      emission.power = random_.uniform(1, 5);
     emission.two_sided = random_.one_in(2);
     if (surface_count(shape) > 1) emission.surfaces = {1};
     shape.emission = emission;
@@ -426,8 +465,9 @@ class Maker {
     }
     finish(many);
     // A box of no light's business around a medium.
-    const auto interface = std::ranges::find_if(
-        scene_.materials, [](const Material& one) { return std::holds_alternative<InterfaceMaterial>(one.model); });
+    const auto interface = std::ranges::find_if(scene_.materials, [](const Material& one) {
+      return std::holds_alternative<InterfaceMaterial>(one.model);
+    });
     Shape box;
     box.geometry = BoxShape{glm::dvec3(-9), glm::dvec3(9)};
     box.material = static_cast<std::uint32_t>(interface - scene_.materials.begin());
@@ -441,7 +481,8 @@ class Maker {
     }
     scene_.objects.push_back(object);
     for (int i = 0; i < 3; ++i)
-      scene_.instances.push_back({static_cast<std::uint32_t>(scene_.objects.size() - 1), random_.transform(), {}});
+      scene_.instances.push_back(
+          {static_cast<std::uint32_t>(scene_.objects.size() - 1), random_.transform(), {}});
   }
 
   void camera() {
@@ -451,14 +492,17 @@ class Maker {
     if (projection < 2) scene_.camera.projection = PerspectiveProjection{random_.uniform(0.3, 1.5)};
     if (projection == 2) scene_.camera.projection = OrthographicProjection{};
     if (projection == 3)
-      scene_.camera.projection = SphericalProjection{static_cast<SphericalProjection::Mapping>(random_.below(2))};
+      scene_.camera.projection =
+          SphericalProjection{static_cast<SphericalProjection::Mapping>(random_.below(2))};
     scene_.camera.frame_aspect_ratio = random_.uniform(0.5, 2);
     scene_.camera.screen_window = {-random_.uniform(0.5, 1), 0.9, -0.8, random_.uniform(0.5, 1)};
     scene_.camera.lens_radius = random_.uniform(0.01, 0.1);
     scene_.camera.focal_distance = random_.uniform(1, 30);
-    scene_.filter = {static_cast<PixelFilter::Kind>(random_.below(5)), random_.uniform(0.5, 2), random_.uniform(0.5, 2)};
+    scene_.filter = {static_cast<PixelFilter::Kind>(random_.below(5)), random_.uniform(0.5, 2),
+                     random_.uniform(0.5, 2)};
     if (scene_.filter.kind == PixelFilter::Kind::gaussian) scene_.filter.sigma = 0.4;
-    if (scene_.filter.kind == PixelFilter::Kind::mitchell) scene_.filter.b = 0.2, scene_.filter.c = 0.4;
+    if (scene_.filter.kind == PixelFilter::Kind::mitchell)
+      scene_.filter.b = 0.2, scene_.filter.c = 0.4;
     if (scene_.filter.kind == PixelFilter::Kind::sinc) scene_.filter.tau = 2.5;
     scene_.film = {64,   48,   std::array<int, 4>{3, 50, 2, 40},         "a name.exr", 200, 0.7,
                    12.5, 5200, static_cast<ColorSpace>(random_.below(4))};
@@ -489,7 +533,9 @@ class Maker {
     if (random_.one_in(2)) scene_.framing.up = random_.direction();
     if (random_.one_in(2)) scene_.unit = "\xc2\xb5m";
     if (random_.one_in(2)) scene_.film.backdrop = Backdrop{};
-    if (random_.one_in(2)) scene_.film.backdrop = Backdrop{Backdrop::Kind::color, {0.25, 0.5, random_.uniform(0, 1)}, nullptr};
+    if (random_.one_in(2))
+      scene_.film.backdrop =
+          Backdrop{Backdrop::Kind::color, {0.25, 0.5, random_.uniform(0, 1)}, nullptr};
     if (random_.one_in(2)) scene_.film.least_width = random_.uniform(0, 3);
   }
 

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Random scenes with every row of every list, by what the rows' `fields` visit: a new row is among them.
+// Random scenes with every row of every list, by what the rows' `fields` visit: a new row is among
+// them.
 #pragma once
 
 #include <filesystem>
@@ -15,7 +16,8 @@ namespace caplet::test {
 class NamedImages : public ImageReader {
  public:
   EnvironmentImage read_rgb(const std::filesystem::path& path) const override;
-  TextureImage read_texture(const std::filesystem::path& path, const ImageEncoding& encoding) const override;
+  TextureImage read_texture(const std::filesystem::path& path,
+                            const ImageEncoding& encoding) const override;
 };
 
 /// `folder` gets the files that the scene names. All parameters are others than those by default.

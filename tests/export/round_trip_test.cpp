@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// What is written is read as the same scene: the same buffers of the device to the bit, and the same text when it is written
-// again.
+// What is written is read as the same scene: the same buffers of the device to the bit, and the
+// same text when it is written again.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -102,7 +102,8 @@ TEST(RoundTrip, EveryRowOfEveryList) {
       if (!scene.materials[i].name.empty()) {
         EXPECT_EQ(read.materials[i].name, scene.materials[i].name);
       }
-    for (std::size_t i = 0; i < scene.shapes.size(); ++i) EXPECT_EQ(read.shapes[i].name, scene.shapes[i].name);
+    for (std::size_t i = 0; i < scene.shapes.size(); ++i)
+      EXPECT_EQ(read.shapes[i].name, scene.shapes[i].name);
   }
 }
 
@@ -125,7 +126,8 @@ TEST(RoundTrip, SharedScenesAreTheSameText) {
 
 TEST(RoundTrip, SeedsOfTheFuzzersAreTheSameText) {
   std::size_t count = 0;
-  for (const auto& entry : fs::recursive_directory_iterator(source_folder() / "tests/fuzz/seeds/pbrt")) {
+  for (const auto& entry :
+       fs::recursive_directory_iterator(source_folder() / "tests/fuzz/seeds/pbrt")) {
     if (!entry.is_regular_file()) continue;
     SCOPED_TRACE(entry.path());
     const fs::path beside = source_folder() / "tests/fuzz/beside";
@@ -218,8 +220,9 @@ ObjectBegin "lock" NamedMaterial "fibre" Shape "capsule" "point3 p0" [0 0 0] "po
 ObjectBegin "cut" Shape "csg" "string operation" "union" "string operands" ["die" "lock"] ObjectEnd
 )";
   const auto csg = [&](const std::string& of, const std::string& more = "") {
-    return scene_of(world + operands + "Shape \"csg\" \"string operation\" \"union\" \"string operands\" [" + of + "] " + more +
-                    "\n");
+    return scene_of(world + operands +
+                    "Shape \"csg\" \"string operation\" \"union\" \"string operands\" [" + of +
+                    "] " + more + "\n");
   };
   struct Row {
     const char *operands, *materials;
@@ -231,14 +234,22 @@ ObjectBegin "cut" Shape "csg" "string operation" "union" "string operands" ["die
         {R"("lock" "ball")", "", true},
         {R"("ball" "cut")", "", true},
         {R"("ball" "die")", "", false},
-        {R"("ball" "die")", R"("string materials" ["stone" "stone" "stone" "fibre" "stone" "stone" "stone"])", true}}) {
+        {R"("ball" "die")",
+         R"("string materials" ["stone" "stone" "stone" "fibre" "stone" "stone" "stone"])",
+         true}}) {
     SCOPED_TRACE(std::string(row.operands) + row.materials);
     Scene scene = csg(row.operands, row.materials);
     ASSERT_EQ(scene.shapes.size(), 1u);
     EXPECT_EQ(scene.shapes[0].one_sided, row.has_hair);
     EXPECT_THAT(text_of(scene, "/tmp"), Not(HasSubstr("onesided")));
-    EXPECT_EQ(csg(row.operands, std::string(row.materials) + R"( "bool onesided" false)").shapes[0].one_sided, false);
-    EXPECT_EQ(csg(row.operands, std::string(row.materials) + R"( "bool onesided" true)").shapes[0].one_sided, true);
+    EXPECT_EQ(csg(row.operands, std::string(row.materials) + R"( "bool onesided" false)")
+                  .shapes[0]
+                  .one_sided,
+              false);
+    EXPECT_EQ(csg(row.operands, std::string(row.materials) + R"( "bool onesided" true)")
+                  .shapes[0]
+                  .one_sided,
+              true);
     for (const bool one_sided : {false, true}) {
       scene.shapes[0].one_sided = one_sided;
       EXPECT_EQ(scene_of(text_of(scene, "/tmp")).shapes[0].one_sided, one_sided);
@@ -246,7 +257,8 @@ ObjectBegin "cut" Shape "csg" "string operation" "union" "string operands" ["die
   }
 }
 
-// Operands that no object holds get objects, whose shapes are as they are: of hair, one-sided or not.
+// Operands that no object holds get objects, whose shapes are as they are: of hair, one-sided or
+// not.
 TEST(RoundTrip, OperandsOfHairKeepTheirSides) {
   const Scene original = scene_of(world + R"(Material "hair"
 ObjectBegin "one" Shape "capsule" "point3 p0" [0 0 0] "point3 p1" [2 0 0] "float radius" 0.5 ObjectEnd
@@ -272,36 +284,45 @@ TEST(RoundTrip, FilesAreNamedFromTheFolder) {
   fs::create_directories(folder / "images");
   fs::create_directories(folder / "out");
   std::ofstream(folder / "images/sky.exr") << "x";
-  std::ofstream(folder / "a.pbrt") << world +
-                                          "LightSource \"infinite\" \"string filename\" \"images/sky.exr\"\nShape \"sphere\"\n";
+  std::ofstream(folder / "a.pbrt")
+      << world +
+             "LightSource \"infinite\" \"string filename\" \"images/sky.exr\"\nShape \"sphere\"\n";
   const Scene scene = import_scene(folder / "a.pbrt", NamedImages());
   EXPECT_THAT(text_of(scene, folder), HasSubstr("\"string filename\" \"images/sky.exr\""));
-  EXPECT_THAT(text_of(scene, folder / "out"), HasSubstr("\"string filename\" \"../images/sky.exr\""));
-  EXPECT_THAT(text_of(scene, "/nowhere/else"), HasSubstr("\"string filename\" \"" + fs::canonical(folder).string()));
+  EXPECT_THAT(text_of(scene, folder / "out"),
+              HasSubstr("\"string filename\" \"../images/sky.exr\""));
+  EXPECT_THAT(text_of(scene, "/nowhere/else"),
+              HasSubstr("\"string filename\" \"" + fs::canonical(folder).string()));
 }
 
 TEST(RoundTrip, SpectraWithNamesKeepThem) {
-  const std::string text =
-      text_of(scene_of(world + R"(Material "conductor" "spectrum eta" "metal-Ag-eta" "spectrum k" "metal-Ag-k"
+  const std::string text = text_of(
+      scene_of(world +
+               R"(Material "conductor" "spectrum eta" "metal-Ag-eta" "spectrum k" "metal-Ag-k"
 Shape "sphere")"),
-              "/tmp");
+      "/tmp");
   EXPECT_THAT(text, HasSubstr("\"spectrum eta\" \"metal-Ag-eta\""));
   EXPECT_THAT(text, HasSubstr("\"spectrum k\" \"metal-Ag-k\""));
 }
 
-// Small whole numbers are no defaults: lights and emissions of each scale, power and illuminance are read as they were.
+// Small whole numbers are no defaults: lights and emissions of each scale, power and illuminance
+// are read as they were.
 TEST(RoundTrip, ScalesAndPowersOfLights) {
   for (const std::string scale : {"0.5", "1", "2", "3"})
     for (const std::string power : {"", "0.5", "1", "2"}) {
       SCOPED_TRACE(scale + " " + power);
-      const std::string by = "\"float scale\" " + scale + (power.empty() ? "" : " \"float power\" " + power);
-      const std::string illuminance = "\"float scale\" " + scale + (power.empty() ? "" : " \"float illuminance\" " + power);
-      const Scene scene =
-          scene_of(world + "LightSource \"point\" \"rgb I\" [1 1 1] " + by + "\nLightSource \"distant\" \"rgb L\" [1 1 1] " +
-                   illuminance + "\nAreaLightSource \"diffuse\" \"rgb L\" [1 1 1] " + by + "\nShape \"sphere\"\n");
+      const std::string by =
+          "\"float scale\" " + scale + (power.empty() ? "" : " \"float power\" " + power);
+      const std::string illuminance =
+          "\"float scale\" " + scale + (power.empty() ? "" : " \"float illuminance\" " + power);
+      const Scene scene = scene_of(world + "LightSource \"point\" \"rgb I\" [1 1 1] " + by +
+                                   "\nLightSource \"distant\" \"rgb L\" [1 1 1] " + illuminance +
+                                   "\nAreaLightSource \"diffuse\" \"rgb L\" [1 1 1] " + by +
+                                   "\nShape \"sphere\"\n");
       const Scene read = scene_of(text_of(scene, "/tmp"));
       const double scaled = std::stod(scale);
-      const std::optional<double> given = power.empty() ? std::nullopt : std::optional(std::stod(power));
+      const std::optional<double> given =
+          power.empty() ? std::nullopt : std::optional(std::stod(power));
       ASSERT_EQ(read.lights.size(), 2u);
       for (const Light& light : read.lights) EXPECT_EQ(light.scale, scaled);
       EXPECT_EQ(read.lights[0].power, given);
@@ -315,14 +336,17 @@ TEST(RoundTrip, ScalesAndPowersOfLights) {
 // --- Refusals ---
 
 TEST(WriteScene, WhatNoTextSaysIsRefusedAtItsPlace) {
-  const Scene good = scene_of(world + "LightSource \"infinite\" \"rgb L\" [1 1 1]\nShape \"sphere\" \"string name\" \"a\"\n");
+  const Scene good = scene_of(
+      world +
+      "LightSource \"infinite\" \"rgb L\" [1 1 1]\nShape \"sphere\" \"string name\" \"a\"\n");
   EXPECT_EQ(refusal_of(good), "");
   Scene scene = good;
   auto image = std::make_shared<EnvironmentImage>();
   image->width = image->height = 1;
   image->rgb = {1, 1, 1};
   std::get<InfiniteLight>(scene.lights[0].model).image = image;
-  EXPECT_THAT(refusal_of(scene), HasSubstr("scene.pbrt:3:1: the light's image was read from no file"));
+  EXPECT_THAT(refusal_of(scene),
+              HasSubstr("scene.pbrt:3:1: the light's image was read from no file"));
   scene = good;
   scene.shapes[0].name = "a\x02";
   EXPECT_THAT(refusal_of(scene), HasSubstr("scene.pbrt:4:1: the name holds a control character"));
@@ -356,14 +380,16 @@ TEST(WriteScene, AFileIsReplacedAsAWholeOrNotAtAll) {
   EXPECT_EQ(std::distance(fs::directory_iterator(folder), fs::directory_iterator()), 1);
   scene.shapes[0].name = "a";
   write_scene(scene, file);
-  EXPECT_THAT(contents(file), HasSubstr("Shape \"sphere\" \"float radius\" 1 \"string name\" \"a\"\n"));
+  EXPECT_THAT(contents(file),
+              HasSubstr("Shape \"sphere\" \"float radius\" 1 \"string name\" \"a\"\n"));
 }
 
 // --- What importers read for the writer's sake ---
 
 TEST(OurStatements, CapsulesInLists) {
   const std::string materials =
-      "MakeNamedMaterial \"a\" \"string type\" \"diffuse\"\nMakeNamedMaterial \"b\" \"string type\" \"diffuse\"\n";
+      "MakeNamedMaterial \"a\" \"string type\" \"diffuse\"\nMakeNamedMaterial \"b\" \"string "
+      "type\" \"diffuse\"\n";
   const Scene scene = scene_of(world + materials + R"(NamedMaterial "a"
 Shape "capsules" "point3 p0" [0 0 0 1 0 0] "point3 p1" [0 1 0
 1 1 0] "float radius" [0.1 0.2] "float radius1" [0.1 0.3] "string capsulematerials" ["" "b"] "integer materialindices" [1 0] "float u" [0 0.5
@@ -385,24 +411,32 @@ Shape "capsules" "point3 p0" [0 0 0 1 0 0] "point3 p1" [0 1 0
   };
   const std::string ends = "\"point3 p1\" [0 1 0 1 1 0] ";
   EXPECT_THAT(said("\"float radius\" [1 1]"), HasSubstr("\"p1\" is missing"));
-  EXPECT_THAT(said("\"point3 p1\" [0 1 0] \"float radius\" [1 1]"), HasSubstr("has 1 points for 2"));
+  EXPECT_THAT(said("\"point3 p1\" [0 1 0] \"float radius\" [1 1]"),
+              HasSubstr("has 1 points for 2"));
   EXPECT_THAT(said(ends + "\"float radius\" [1]"), HasSubstr("has 1 values for 2 capsules"));
   EXPECT_THAT(said(ends + "\"float radius\" [1 -1]"), HasSubstr("must not be negative"));
-  EXPECT_THAT(said(ends + "\"float radius\" [1 1] \"float u\" [0 1 2]"), HasSubstr("\"u\" takes two values a capsule, 4, not 3"));
-  EXPECT_THAT(said(ends + "\"float radius\" [1 1] \"float u\" [0 1 2 1e20]"), HasSubstr("\"u\" is too large a number"));
-  EXPECT_THAT(said(ends + "\"float radius\" [1 1] \"float u\" [-1e20 1 2 1]"), HasSubstr("\"u\" is too large a number"));
+  EXPECT_THAT(said(ends + "\"float radius\" [1 1] \"float u\" [0 1 2]"),
+              HasSubstr("\"u\" takes two values a capsule, 4, not 3"));
+  EXPECT_THAT(said(ends + "\"float radius\" [1 1] \"float u\" [0 1 2 1e20]"),
+              HasSubstr("\"u\" is too large a number"));
+  EXPECT_THAT(said(ends + "\"float radius\" [1 1] \"float u\" [-1e20 1 2 1]"),
+              HasSubstr("\"u\" is too large a number"));
   EXPECT_THAT(said(ends + "\"float radius\" [1 1] \"string capsulematerials\" \"a\""),
               HasSubstr("needs \"integer materialindices\""));
-  EXPECT_THAT(said(ends + "\"float radius\" [1 1] \"string capsulematerials\" \"a\" \"integer materialindices\" [0 1]"),
+  EXPECT_THAT(said(ends + "\"float radius\" [1 1] \"string capsulematerials\" \"a\" \"integer "
+                          "materialindices\" [0 1]"),
               HasSubstr("must be below"));
-  EXPECT_THAT(said(ends + "\"float radius\" [1 1] \"string capsulematerials\" \"c\" \"integer materialindices\" [0 0]"),
+  EXPECT_THAT(said(ends + "\"float radius\" [1 1] \"string capsulematerials\" \"c\" \"integer "
+                          "materialindices\" [0 0]"),
               HasSubstr("\"c\" is not defined"));
 }
 
 TEST(OurStatements, OneCapsuleOfAChain) {
-  const Scene scene = scene_of(
-      world + "Shape \"capsule\" \"point3 p0\" [0 0 0] \"point3 p1\" [0 1 0] \"float radius\" 0.1 \"float u\" [0.1 0.7]");
-  EXPECT_EQ(std::get<CapsulesShape>(scene.shapes[0].geometry).u, (std::vector<glm::vec2>{{0.1f, 0.7f}}));
+  const Scene scene = scene_of(world +
+                               "Shape \"capsule\" \"point3 p0\" [0 0 0] \"point3 p1\" [0 1 0] "
+                               "\"float radius\" 0.1 \"float u\" [0.1 0.7]");
+  EXPECT_EQ(std::get<CapsulesShape>(scene.shapes[0].geometry).u,
+            (std::vector<glm::vec2>{{0.1f, 0.7f}}));
   EXPECT_THAT(text_of(scene, "/tmp"), HasSubstr("\"float u\" [0.1 0.7]"));
 }
 
@@ -426,28 +460,44 @@ ObjectInstance "straight"
 
 TEST(OurStatements, InverseTransformIsNotComputed) {
   const std::string matrix = "[0.6 0.8 0 0 -0.8 0.6 0 0 0 0 1 0 1 2 3 1]";
-  const Scene scene = scene_of("InverseTransform " + matrix + "\nCamera \"perspective\"\nWorldBegin\nShape \"sphere\"\n");
-  EXPECT_EQ(scene.camera.world_from_camera, glm::dmat4(0.6, 0.8, 0, 0, -0.8, 0.6, 0, 0, 0, 0, 1, 0, 1, 2, 3, 1));
-  EXPECT_THROW(scene_of("InverseTransform [1 0 0 0 0 0 0 0 0 0 1 0 0 0 0 1] Camera \"perspective\" WorldBegin Shape \"sphere\""),
+  const Scene scene = scene_of("InverseTransform " + matrix +
+                               "\nCamera \"perspective\"\nWorldBegin\nShape \"sphere\"\n");
+  EXPECT_EQ(scene.camera.world_from_camera,
+            glm::dmat4(0.6, 0.8, 0, 0, -0.8, 0.6, 0, 0, 0, 0, 1, 0, 1, 2, 3, 1));
+  EXPECT_THROW(scene_of("InverseTransform [1 0 0 0 0 0 0 0 0 0 1 0 0 0 0 1] Camera \"perspective\" "
+                        "WorldBegin Shape \"sphere\""),
                InputError);
   // A later statement of a transform takes its place.
-  const Scene moved = scene_of("InverseTransform " + matrix + " Identity Camera \"perspective\" WorldBegin Shape \"sphere\"");
+  const Scene moved = scene_of("InverseTransform " + matrix +
+                               " Identity Camera \"perspective\" WorldBegin Shape \"sphere\"");
   EXPECT_EQ(moved.camera.world_from_camera, glm::dmat4(1));
 }
 
 TEST(OurStatements, ANumberIsASpectrum) {
-  const Scene scene = scene_of(
-      world + "LightSource \"point\" \"float I\" 3\nMaterial \"diffuse\" \"float reflectance\" 0.25\nShape \"sphere\"\n");
-  EXPECT_EQ(std::get<ConstantSpectrum>(std::get<PointLight>(scene.lights[0].model).intensity).value, 3);
-  EXPECT_EQ(std::get<ConstantSpectrum>(std::get<DiffuseMaterial>(scene.materials[0].model).reflectance).value, 0.25);
-  EXPECT_THROW(scene_of(world + "Material \"diffuse\" \"float reflectance\" 1.25\nShape \"sphere\"\n"), InputError);
-  EXPECT_THROW(scene_of(world + "LightSource \"point\" \"float I\" -1\nShape \"sphere\"\n"), InputError);
+  const Scene scene = scene_of(world +
+                               "LightSource \"point\" \"float I\" 3\nMaterial \"diffuse\" \"float "
+                               "reflectance\" 0.25\nShape \"sphere\"\n");
+  EXPECT_EQ(std::get<ConstantSpectrum>(std::get<PointLight>(scene.lights[0].model).intensity).value,
+            3);
+  EXPECT_EQ(
+      std::get<ConstantSpectrum>(std::get<DiffuseMaterial>(scene.materials[0].model).reflectance)
+          .value,
+      0.25);
+  EXPECT_THROW(
+      scene_of(world + "Material \"diffuse\" \"float reflectance\" 1.25\nShape \"sphere\"\n"),
+      InputError);
+  EXPECT_THROW(scene_of(world + "LightSource \"point\" \"float I\" -1\nShape \"sphere\"\n"),
+               InputError);
 }
 
 TEST(OurStatements, TheStudioHasAName) {
-  const Scene scene = scene_of(world + "LightSource \"infinite\" \"string preset\" \"studio\"\nShape \"sphere\"\n");
+  const Scene scene =
+      scene_of(world + "LightSource \"infinite\" \"string preset\" \"studio\"\nShape \"sphere\"\n");
   EXPECT_EQ(std::get<InfiniteLight>(scene.lights[0].model).image, studio_image());
-  EXPECT_THROW(scene_of(world + "LightSource \"infinite\" \"string preset\" \"studium\"\nShape \"sphere\"\n"), InputError);
+  EXPECT_THROW(
+      scene_of(world +
+               "LightSource \"infinite\" \"string preset\" \"studium\"\nShape \"sphere\"\n"),
+      InputError);
 }
 
 }  // namespace

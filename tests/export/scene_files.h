@@ -21,7 +21,8 @@ inline std::vector<std::filesystem::path> scene_files(const std::filesystem::pat
   std::vector<std::filesystem::path> out;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
     const std::string extension = entry.path().extension().string();
-    if (entry.is_regular_file() && (extension == ".pbrt" || extension == ".swc" || extension == ".capsules"))
+    if (entry.is_regular_file() &&
+        (extension == ".pbrt" || extension == ".swc" || extension == ".capsules"))
       out.push_back(entry.path());
   }
   std::ranges::sort(out);
@@ -36,8 +37,8 @@ inline std::optional<Scene> readable_scene(const std::filesystem::path& file) {
   }
 }
 
-/// Every scene file of a folder that can be read, written and read again: `check` gets the scene, what was read and the file
-/// between. Fails where there is none.
+/// Every scene file of a folder that can be read, written and read again: `check` gets the scene,
+/// what was read and the file between. Fails where there is none.
 template <class Check>
 void each_written_again(const std::filesystem::path& folder, const Check& check) {
   std::size_t count = 0;

@@ -43,13 +43,16 @@ TEST(ExportText, NumbersAreReadAgain) {
     const double wide = value * 1.0000000001;
     EXPECT_EQ(std::strtod(number_text(wide).c_str(), nullptr), wide);
   }
-  for (const float value : {std::numeric_limits<float>::denorm_min(), std::numeric_limits<float>::max(), 16777216.f})
+  for (const float value :
+       {std::numeric_limits<float>::denorm_min(), std::numeric_limits<float>::max(), 16777216.f})
     EXPECT_EQ(static_cast<float>(std::strtod(text(value).c_str(), nullptr)), value);
 }
 
 TEST(ExportText, DegreesAreThoseOfTheFile) {
-  for (const double degrees : {45.0, 90.0, 30.0, 0.1, 33.3, 359.999, 1e-3, 57.29577951308232, 77.123456789012})
-    EXPECT_EQ(degrees_of(degrees * std::numbers::pi / 180) * std::numbers::pi / 180, degrees * std::numbers::pi / 180);
+  for (const double degrees :
+       {45.0, 90.0, 30.0, 0.1, 33.3, 359.999, 1e-3, 57.29577951308232, 77.123456789012})
+    EXPECT_EQ(degrees_of(degrees * std::numbers::pi / 180) * std::numbers::pi / 180,
+              degrees * std::numbers::pi / 180);
   EXPECT_EQ(degrees_of(std::numbers::pi / 4), 45);
   // Not all radians are some degrees': then the nearest are.
   std::mt19937 random(6);
@@ -62,10 +65,13 @@ TEST(ExportText, DegreesAreThoseOfTheFile) {
 }
 
 TEST(ExportText, TransformsAreTurnedAroundToTheBit) {
-  EXPECT_EQ(inverse_text(glm::inverse(glm::dmat4(1))), "Transform [1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1]\n");
-  EXPECT_THAT(inverse_text(glm::inverse(glm::translate(glm::dmat4(1), {1, 2, 3}))), StartsWith("Transform ["));
+  EXPECT_EQ(inverse_text(glm::inverse(glm::dmat4(1))),
+            "Transform [1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1]\n");
+  EXPECT_THAT(inverse_text(glm::inverse(glm::translate(glm::dmat4(1), {1, 2, 3}))),
+              StartsWith("Transform ["));
   // A file's own matrix has an inverse of few digits.
-  const glm::dmat4 stated = glm::dmat4(0.5, 0.25, 0, 0, -0.125, 2, 0, 0, 0, 0.375, 1.1, 0, 3.7, -2.1, 0.3, 1);
+  const glm::dmat4 stated =
+      glm::dmat4(0.5, 0.25, 0, 0, -0.125, 2, 0, 0, 0, 0.375, 1.1, 0, 3.7, -2.1, 0.3, 1);
   EXPECT_THAT(inverse_text(glm::inverse(stated)), StartsWith("Transform [0.5 0.25 0 0 -0.125 2 "));
   // Others mostly have none.
   const auto looking = camera_looking({1, 2, 3}, {-0.3, 0.7, 0.1}, {0, 1, 0.3});

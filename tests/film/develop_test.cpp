@@ -55,13 +55,16 @@ Film film_of(const std::vector<Pixel>& pixels, Size size) {
       test::set_sum(film, Layer::normal, c, i, p.normal[c]);
       test::set_sum(film, Layer::position, c, i, p.position[c]);
     }
-    film.words()[i * layout.words_per_pixel() + layout.first_word(Layer::object)] = ~std::uint64_t{p.object};
-    film.words()[i * layout.words_per_pixel() + layout.first_word(Layer::primitive)] = ~std::uint64_t{p.primitive};
+    film.words()[i * layout.words_per_pixel() + layout.first_word(Layer::object)] =
+        ~std::uint64_t{p.object};
+    film.words()[i * layout.words_per_pixel() + layout.first_word(Layer::primitive)] =
+        ~std::uint64_t{p.primitive};
   }
   return film;
 }
 
-LayeredImage develop(const std::vector<Pixel>& pixels, Size size, const Scene& scene, Layers layers) {
+LayeredImage develop(const std::vector<Pixel>& pixels, Size size, const Scene& scene,
+                     Layers layers) {
   return caplet::develop(film_of(pixels, size), scene, layers);
 }
 
@@ -70,7 +73,8 @@ Pixel nothing() { return {}; }
 /// XYZ of linear sRGB as the stages make it.
 std::array<double, 3> xyz_of_srgb(double r, double g, double b) {
   const std::array<double, 9> m = xyz_from_rgb(ColorSpace::srgb);
-  return {m[0] * r + m[1] * g + m[2] * b, m[3] * r + m[4] * g + m[5] * b, m[6] * r + m[7] * g + m[8] * b};
+  return {m[0] * r + m[1] * g + m[2] * b, m[3] * r + m[4] * g + m[5] * b,
+          m[6] * r + m[7] * g + m[8] * b};
 }
 
 Pixel with_samples(std::initializer_list<std::array<double, 3>> rgb_samples) {
@@ -94,31 +98,40 @@ float value(const LayeredImage& image, const char* channel, std::size_t pixel = 
 constexpr double rounding = 1e-6;
 
 TEST(Develop, MeansOfTheSamples) {
-  const auto image = develop({with_samples({{1, 0.5, 0.25}, {3, 0.5, 0.75}})}, window(1, 1), Scene{}, Layers::all());
+  const auto image = develop({with_samples({{1, 0.5, 0.25}, {3, 0.5, 0.75}})}, window(1, 1),
+                             Scene{}, Layers::all());
   EXPECT_NEAR(value(image, "R"), 2, rounding);
   EXPECT_NEAR(value(image, "G"), 0.5, rounding);
   EXPECT_NEAR(value(image, "B"), 0.5, rounding);
 }
 
 TEST(Develop, VarianceOfTheMean) {
-  // Red 1 and 3: variance of the samples (divisor n) 1, of the mean 1 / (n - 1) = 1. Blue 0.25, 0.75: 0.0625. Green: none.
-  const auto image = develop({with_samples({{1, 0.5, 0.25}, {3, 0.5, 0.75}})}, window(1, 1), Scene{}, Layers::all());
+  // Red 1 and 3: variance of the samples (divisor n) 1, of the mean 1 / (n - 1) = 1. Blue 0.25,
+  // 0.75: 0.0625. Green: none.
+  const auto image = develop({with_samples({{1, 0.5, 0.25}, {3, 0.5, 0.75}})}, window(1, 1),
+                             Scene{}, Layers::all());
   EXPECT_NEAR(value(image, "variance.R"), 1, rounding);
   EXPECT_NEAR(value(image, "variance.G"), 0, rounding);
   EXPECT_NEAR(value(image, "variance.B"), 0.0625, rounding);
   EXPECT_GE(value(image, "variance.G"), 0);
   // 1, 3 and 5: 35 / 3 - 9 = 8 / 3, over n - 1 = 2.
-  const auto three = develop({with_samples({{1, 0, 0}, {3, 0, 0}, {5, 0, 0}})}, window(1, 1), Scene{}, Layers::all());
+  const auto three = develop({with_samples({{1, 0, 0}, {3, 0, 0}, {5, 0, 0}})}, window(1, 1),
+                             Scene{}, Layers::all());
   EXPECT_NEAR(value(three, "variance.R"), 4.0 / 3, 2 * rounding);
 }
 
 TEST(Develop, VarianceOfOneSampleIsZeroAndOnRequest) {
-  EXPECT_EQ(value(develop({with_samples({{1, 2, 3}})}, window(1, 1), Scene{}, Layers::all()), "variance.R"), 0);
-  EXPECT_EQ(develop({with_samples({{1, 2, 3}})}, window(1, 1), Scene{}, Layers::usual()).find("variance.R"), nullptr);
+  EXPECT_EQ(value(develop({with_samples({{1, 2, 3}})}, window(1, 1), Scene{}, Layers::all()),
+                  "variance.R"),
+            0);
+  EXPECT_EQ(develop({with_samples({{1, 2, 3}})}, window(1, 1), Scene{}, Layers::usual())
+                .find("variance.R"),
+            nullptr);
 }
 
 TEST(Develop, SumsOfManySamplesLoseNothing) {
-  // 2^24 samples of 1 and one of 2^-20: the mean of white is above 1 by what a float's sum would have lost.
+  // 2^24 samples of 1 and one of 2^-20: the mean of white is above 1 by what a float's sum would
+  // have lost.
   Pixel pixel;
   pixel.samples = 1 << 24;
   const auto white = xyz_of_srgb(1, 1, 1);
@@ -131,7 +144,8 @@ TEST(Develop, ExposureScalesColorAndVariance) {
   Scene scene;
   scene.film.exposure_time = 0.5;
   scene.film.iso = 400;
-  const auto image = develop({with_samples({{1, 0, 0}, {3, 0, 0}})}, window(1, 1), scene, Layers::all());
+  const auto image =
+      develop({with_samples({{1, 0, 0}, {3, 0, 0}})}, window(1, 1), scene, Layers::all());
   EXPECT_NEAR(value(image, "R"), 4, rounding);
   EXPECT_NEAR(value(image, "variance.R"), 4, rounding);
 }
@@ -144,15 +158,16 @@ Pixel with_white(double x, double y) {
   return pixel;
 }
 
-// The whites are tabulated (CIE 15:2018, tables 3 and T.2): D50 and D55 are daylight of 5003 and 5503 K, of 5000 and 5500 by the
-// older constant, and A is a black body of 2856 K.
+// The whites are tabulated (CIE 15:2018, tables 3 and T.2): D50 and D55 are daylight of 5003 and
+// 5503 K, of 5000 and 5500 by the older constant, and A is a black body of 2856 K.
 TEST(Develop, WhiteBalanceMakesDaylightWhite) {
   const auto balanced = [](double kelvin, double x, double y, ColorSpace space) {
     Scene scene;
     scene.film.white_balance = kelvin;
     scene.film.space = space;
     const auto image = develop({with_white(x, y)}, window(1, 1), scene, Layers::usual());
-    for (const char* channel : {"R", "G", "B"}) EXPECT_NEAR(value(image, channel), 1, 1e-3) << kelvin << channel;
+    for (const char* channel : {"R", "G", "B"})
+      EXPECT_NEAR(value(image, channel), 1, 1e-3) << kelvin << channel;
   };
   balanced(5000, 0.34567, 0.35851, ColorSpace::srgb);
   balanced(5500, 0.33243, 0.34744, ColorSpace::srgb);
@@ -161,13 +176,15 @@ TEST(Develop, WhiteBalanceMakesDaylightWhite) {
   balanced(5000, 0.34567, 0.35851, ColorSpace::aces2065_1);
 }
 
-// Lindbloom's matrix of Bradford's adaptation from D50 to D65, of a colour that is not white; sRGB from XYZ by IEC 61966-2-1.
+// Lindbloom's matrix of Bradford's adaptation from D50 to D65, of a colour that is not white; sRGB
+// from XYZ by IEC 61966-2-1.
 TEST(Develop, WhiteBalanceIsBradfords) {
   Scene scene;
   scene.film.white_balance = 5000;
   const auto image = develop({with_white(0.45, 0.35)}, window(1, 1), scene, Layers::usual());
   const double x = 0.45 / 0.35, z = 0.2 / 0.35;
-  const double ax = 0.9555766 * x - 0.0230393 + 0.0631636 * z, ay = -0.0282895 * x + 1.0099416 + 0.0210077 * z,
+  const double ax = 0.9555766 * x - 0.0230393 + 0.0631636 * z,
+               ay = -0.0282895 * x + 1.0099416 + 0.0210077 * z,
                az = 0.0122982 * x - 0.0204830 + 1.3299098 * z;
   EXPECT_NEAR(value(image, "R"), 3.2406 * ax - 1.5372 * ay - 0.4986 * az, 2e-3);
   EXPECT_NEAR(value(image, "G"), -0.9689 * ax + 1.8758 * ay + 0.0415 * az, 2e-3);
@@ -268,7 +285,8 @@ TEST(Develop, NormalsAreAtMostOneLong) {
 TEST(Develop, LayersAreThoseAskedFor) {
   const auto names = [](Layers layers) {
     std::vector<std::string> out;
-    for (const Channel& channel : develop({with_hits()}, window(1, 1), Scene{}, layers).channels) out.push_back(channel.name);
+    for (const Channel& channel : develop({with_hits()}, window(1, 1), Scene{}, layers).channels)
+      out.push_back(channel.name);
     return out;
   };
   const auto with = [](std::vector<std::string> more) {
@@ -278,22 +296,30 @@ TEST(Develop, LayersAreThoseAskedFor) {
   EXPECT_EQ(names(Layers::none()), with({}));
   EXPECT_EQ(names(Layers::none().with(Layer::albedo)), with({"albedo.R", "albedo.G", "albedo.B"}));
   EXPECT_EQ(names(Layers::usual()), names(Layers::all().without(Layer::variance)));
-  const auto image = develop({with_hits()}, window(1, 1), Scene{}, Layers::none().with(Layer::primitive).with(Layer::depth));
+  const auto image = develop({with_hits()}, window(1, 1), Scene{},
+                             Layers::none().with(Layer::primitive).with(Layer::depth));
   EXPECT_EQ(value(image, "Z"), 2.5f);
   EXPECT_EQ(image.find("primitive.id")->uints.at(0), 3000000000u);
 }
 
-// Published matrices from XYZ: IEC 61966-2-1, Display P3 (SMPTE EG 432-1 with the D65 white), ITU-R BT.2020, SMPTE ST 2065-1.
+// Published matrices from XYZ: IEC 61966-2-1, Display P3 (SMPTE EG 432-1 with the D65 white), ITU-R
+// BT.2020, SMPTE ST 2065-1.
 struct Space {
   ColorSpace space;
   std::array<double, 9> from_xyz;
 };
 const Space spaces[] = {
-    {ColorSpace::srgb, {3.2404542, -1.5371385, -0.4985314, -0.9692660, 1.8760108, 0.0415560, 0.0556434, -0.2040259, 1.0572252}},
-    {ColorSpace::dci_p3, {2.4934969, -0.9313836, -0.4027108, -0.8294890, 1.7626641, 0.0236247, 0.0358458, -0.0761724, 0.9568845}},
+    {ColorSpace::srgb,
+     {3.2404542, -1.5371385, -0.4985314, -0.9692660, 1.8760108, 0.0415560, 0.0556434, -0.2040259,
+      1.0572252}},
+    {ColorSpace::dci_p3,
+     {2.4934969, -0.9313836, -0.4027108, -0.8294890, 1.7626641, 0.0236247, 0.0358458, -0.0761724,
+      0.9568845}},
     {ColorSpace::rec2020,
-     {1.7166512, -0.3556708, -0.2533663, -0.6666844, 1.6164812, 0.0157685, 0.0176399, -0.0427706, 0.9421031}},
-    {ColorSpace::aces2065_1, {1.0498110, 0, -0.0000975, -0.4959030, 1.3733130, 0.0982400, 0, 0, 0.9912520}},
+     {1.7166512, -0.3556708, -0.2533663, -0.6666844, 1.6164812, 0.0157685, 0.0176399, -0.0427706,
+      0.9421031}},
+    {ColorSpace::aces2065_1,
+     {1.0498110, 0, -0.0000975, -0.4959030, 1.3733130, 0.0982400, 0, 0, 0.9912520}},
 };
 
 TEST(Develop, ColorsAndAlbedoAreInTheFilmsSpace) {
@@ -310,7 +336,8 @@ TEST(Develop, ColorsAndAlbedoAreInTheFilmsSpace) {
     for (std::size_t c = 0; c < 3; ++c) {
       const double expected = m[3 * c] * xyz[0] + m[3 * c + 1] * xyz[1] + m[3 * c + 2] * xyz[2];
       // Whites by a spectrum or as xy differ by up to 2e-4 in XYZ.
-      EXPECT_NEAR(value(image, std::string(1, "RGB"[c]).c_str()), expected, 1e-3) << static_cast<int>(space) << ' ' << c;
+      EXPECT_NEAR(value(image, std::string(1, "RGB"[c]).c_str()), expected, 1e-3)
+          << static_cast<int>(space) << ' ' << c;
       EXPECT_NEAR(value(image, (std::string("albedo.") + "RGB"[c]).c_str()), expected, 1e-3)
           << static_cast<int>(space) << ' ' << c;
     }
@@ -318,8 +345,8 @@ TEST(Develop, ColorsAndAlbedoAreInTheFilmsSpace) {
 }
 
 TEST(Develop, VarianceIsInTheFilmsSpace) {
-  // Two samples of half and of one and a half times the same colour c: the variance of the mean is (c / 2)^2 in each component.
-  // The squares are the device's: here of the published colours.
+  // Two samples of half and of one and a half times the same colour c: the variance of the mean is
+  // (c / 2)^2 in each component. The squares are the device's: here of the published colours.
   const std::array<double, 3> xyz{0.4, 0.3, 0.2};
   for (const auto& [space, m] : spaces) {
     Scene scene;
@@ -334,7 +361,8 @@ TEST(Develop, VarianceIsInTheFilmsSpace) {
     }
     const auto image = develop({record}, window(1, 1), scene, Layers::all());
     for (std::size_t c = 0; c < 3; ++c)
-      EXPECT_NEAR(value(image, (std::string("variance.") + "RGB"[c]).c_str()), rgb[c] * rgb[c] / 4, 2e-3)
+      EXPECT_NEAR(value(image, (std::string("variance.") + "RGB"[c]).c_str()), rgb[c] * rgb[c] / 4,
+                  2e-3)
           << static_cast<int>(space) << ' ' << c;
   }
 }
@@ -342,7 +370,8 @@ TEST(Develop, VarianceIsInTheFilmsSpace) {
 TEST(Develop, NothingWrittenIsInfiniteOrNotANumber) {
   const float most = std::numeric_limits<float>::max();
   // Finite sums that the exposure takes beyond a float: of the color, or of the variance alone.
-  const Pixel bright = with_samples({{1e9, 0, 0}, {1e9, 0, 0}}), spread = with_samples({{0.5, 0, 0}, {1.5, 0, 0}});
+  const Pixel bright = with_samples({{1e9, 0, 0}, {1e9, 0, 0}}),
+              spread = with_samples({{0.5, 0, 0}, {1.5, 0, 0}});
   const Pixel good = with_samples({{0.5, 0.25, 0.125}});
   testing::internal::CaptureStderr();
   testing::internal::CaptureStdout();
@@ -350,7 +379,8 @@ TEST(Develop, NothingWrittenIsInfiniteOrNotANumber) {
   const auto image = develop({bright, spread, good}, window(3, 1), scene, Layers::all());
   scene.film.exposure_time = 1e30;
   const auto exposed = develop({good, bright, spread}, window(3, 1), scene, Layers::all());
-  const std::string said = testing::internal::GetCapturedStderr() + testing::internal::GetCapturedStdout();
+  const std::string said =
+      testing::internal::GetCapturedStderr() + testing::internal::GetCapturedStdout();
   for (const auto* picture : {&image, &exposed})
     for (const Channel& channel : picture->channels)
       for (const float v : channel.floats) EXPECT_TRUE(std::isfinite(v)) << channel.name;
@@ -371,13 +401,15 @@ TEST(Develop, EmptyPixelsAreFinite) {
   missed.samples = 16;
   const auto image = develop({missed, nothing()}, window(2, 1), Scene{}, Layers::all());
   for (const Channel& channel : image.channels)
-    for (const float v : channel.floats) EXPECT_EQ(v, channel.name == "Z" ? 1e10f : 0.0f) << channel.name;
+    for (const float v : channel.floats)
+      EXPECT_EQ(v, channel.name == "Z" ? 1e10f : 0.0f) << channel.name;
   EXPECT_EQ(image.find("object.id")->uints.at(1), 0xffffffffu);
 }
 
 TEST(Develop, WindowsAndOrder) {
-  const auto image = develop({with_samples({{1, 1, 1}}), with_samples({{2, 2, 2}}), with_samples({{3, 3, 3}})}, window(1, 3),
-                             Scene{}, Layers::usual());
+  const auto image =
+      develop({with_samples({{1, 1, 1}}), with_samples({{2, 2, 2}}), with_samples({{3, 3, 3}})},
+              window(1, 3), Scene{}, Layers::usual());
   EXPECT_EQ(image.width, 10);
   EXPECT_EQ(image.height, 6);
   EXPECT_EQ(image.x, 3);
@@ -389,7 +421,8 @@ TEST(Develop, WindowsAndOrder) {
 }
 
 TEST(Chromaticities, AgreeWithTheSpectralSide) {
-  for (const ColorSpace space : {ColorSpace::srgb, ColorSpace::dci_p3, ColorSpace::rec2020, ColorSpace::aces2065_1}) {
+  for (const ColorSpace space :
+       {ColorSpace::srgb, ColorSpace::dci_p3, ColorSpace::rec2020, ColorSpace::aces2065_1}) {
     const auto round_trip = product(rgb_from_xyz(space), xyz_from_rgb(chromaticities_of(space)));
     // Whites taken from a spectrum or as xy differ by up to 2e-4 in XYZ.
     for (std::size_t i = 0; i < 9; ++i)

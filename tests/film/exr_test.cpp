@@ -63,8 +63,9 @@ TEST(Exr, IsTheSameInMemory) {
 
 TEST(Exr, KeepsWindowsAndMetadata) {
   LayeredImage image = layered_image();
-  image.metadata = {
-      {"caplet.seed", "17"}, {"software", "Caplet"}, {"caplet.command", "caplet render 'a b.pbrt' -o \xc3\xa4.exr"}};
+  image.metadata = {{"caplet.seed", "17"},
+                    {"software", "Caplet"},
+                    {"caplet.command", "caplet render 'a b.pbrt' -o \xc3\xa4.exr"}};
   const auto path = test::temporary_folder() / "windows.exr";
   write_exr(path, image);
   const LayeredImage back = read_exr(path);
@@ -87,11 +88,13 @@ TEST(Exr, HeadersAreUtf8) {
   write_exr(file, image);
   const LayeredImage read = read_exr(file);
   for (std::size_t i = 0; i < std::size(test::broken_utf8); ++i)
-    EXPECT_EQ(read.metadata.at("caplet.test" + std::to_string(i)), test::broken_utf8[i].valid) << test::broken_utf8[i].what;
+    EXPECT_EQ(read.metadata.at("caplet.test" + std::to_string(i)), test::broken_utf8[i].valid)
+        << test::broken_utf8[i].what;
 }
 
 TEST(Exr, KeepsTheColorSpaceByItsChromaticities) {
-  for (const ColorSpace space : {ColorSpace::srgb, ColorSpace::dci_p3, ColorSpace::rec2020, ColorSpace::aces2065_1}) {
+  for (const ColorSpace space :
+       {ColorSpace::srgb, ColorSpace::dci_p3, ColorSpace::rec2020, ColorSpace::aces2065_1}) {
     LayeredImage image = layered_image();
     image.space = space;
     const auto path = test::temporary_folder() / "space.exr";
@@ -113,11 +116,13 @@ TEST(Exr, NamesChannelsAsLayers) {
   const auto entry = [](const char* name, char type) { return name + std::string(1, '\0') + type; };
   for (const char* name : {"R", "A", "Z", "albedo.R", "N.X", "P.Z", "variance.B"})
     EXPECT_THAT(bytes, HasSubstr(entry(name, 2))) << name;
-  for (const char* name : {"object.id", "primitive.id"}) EXPECT_THAT(bytes, HasSubstr(entry(name, 0))) << name;
+  for (const char* name : {"object.id", "primitive.id"})
+    EXPECT_THAT(bytes, HasSubstr(entry(name, 0))) << name;
 }
 
 TEST(Exr, WritesThePixelsWhereOthersLookForThem) {
-  // A value whose bytes survive uncompressed in tiny files: OpenEXR stores a block raw when ZIP does not shrink it.
+  // A value whose bytes survive uncompressed in tiny files: OpenEXR stores a block raw when ZIP
+  // does not shrink it.
   LayeredImage image;
   image.width = image.height = image.data_width = image.data_height = 1;
   image.channels.push_back({"Y", {1234.5678f}, {}});
@@ -152,7 +157,8 @@ TEST(Exr, BandsMakeTheSamePicture) {
         LayeredImage band;
         for (const Channel& channel : image.channels) {
           const auto part = [&](const auto& values, auto& to) {
-            if (!values.empty()) to.assign(values.begin() + 7 * first, values.begin() + 7 * (first + rows));
+            if (!values.empty())
+              to.assign(values.begin() + 7 * first, values.begin() + 7 * (first + rows));
           };
           Channel& copy = band.channels.emplace_back();
           copy.name = channel.name;
@@ -161,7 +167,8 @@ TEST(Exr, BandsMakeTheSamePicture) {
         }
         return band;
       };
-      const auto path = folder / ("bands" + std::to_string(step) + (compression == ExrCompression::zip ? "zip.exr" : "rle.exr"));
+      const auto path = folder / ("bands" + std::to_string(step) +
+                                  (compression == ExrCompression::zip ? "zip.exr" : "rle.exr"));
       write_exr(path, bands, compression);
       const LayeredImage back = read_exr(path);
       EXPECT_EQ(back.x, image.x);
@@ -228,13 +235,15 @@ class ExrOfOthers : public testing::TestWithParam<KnownFile> {};
 // Sizes from the shared data's NOTICE.md: half and float, PIZ and ZIP.
 INSTANTIATE_TEST_SUITE_P(
     Shared, ExrOfOthers,
-    testing::Values(KnownFile{"scenes_pbrt/cornell-box/TungstenRender.exr", 1024, 1024},
-                    KnownFile{"scenes_pbrt/veach-mis/TungstenRender.exr", 1280, 720},
-                    KnownFile{"scenes_pbrt/coffee/TungstenRender.exr", 800, 1000},
-                    KnownFile{"reference/ignis/evaluation/references/ref-cbox-d6-4096.exr", 256, 256},
-                    KnownFile{"reference/ignis/evaluation/references/ref-point-4096.exr", 256, 256},
-                    KnownFile{"reference/mitsuba/mis-grey.exr", 128, 128}, KnownFile{"hdr/ignis/constant.exr", 60, 40},
-                    KnownFile{"fibres/embree_curves/round_line_segments_0.ecs.embree_viewer.exr", 512, 512}));
+    testing::Values(
+        KnownFile{"scenes_pbrt/cornell-box/TungstenRender.exr", 1024, 1024},
+        KnownFile{"scenes_pbrt/veach-mis/TungstenRender.exr", 1280, 720},
+        KnownFile{"scenes_pbrt/coffee/TungstenRender.exr", 800, 1000},
+        KnownFile{"reference/ignis/evaluation/references/ref-cbox-d6-4096.exr", 256, 256},
+        KnownFile{"reference/ignis/evaluation/references/ref-point-4096.exr", 256, 256},
+        KnownFile{"reference/mitsuba/mis-grey.exr", 128, 128},
+        KnownFile{"hdr/ignis/constant.exr", 60, 40},
+        KnownFile{"fibres/embree_curves/round_line_segments_0.ecs.embree_viewer.exr", 512, 512}));
 
 TEST_P(ExrOfOthers, IsRead) {
   CAPLET_NEEDS_DATA();
@@ -245,7 +254,8 @@ TEST_P(ExrOfOthers, IsRead) {
   for (const char* name : {"R", "G", "B"}) {
     const Channel* channel = image.find(name);
     ASSERT_NE(channel, nullptr) << name;
-    ASSERT_EQ(channel->floats.size(), static_cast<std::size_t>(GetParam().width) * static_cast<std::size_t>(GetParam().height));
+    ASSERT_EQ(channel->floats.size(), static_cast<std::size_t>(GetParam().width) *
+                                          static_cast<std::size_t>(GetParam().height));
     for (const float value : channel->floats) {
       ASSERT_TRUE(std::isfinite(value));
       sum += value;
@@ -266,7 +276,8 @@ TEST(ExrOfOthers, MitsubaBringsVariance) {
 
 TEST(BrokenExr, MissingFolderGarbageAndEmpty) {
   const auto folder = test::temporary_folder();
-  EXPECT_THAT(read_error(folder / "none.exr"), AllOf(HasSubstr("none.exr"), HasSubstr("no such file")));
+  EXPECT_THAT(read_error(folder / "none.exr"),
+              AllOf(HasSubstr("none.exr"), HasSubstr("no such file")));
   EXPECT_THAT(read_error(folder), HasSubstr("not a file"));
   write_bytes(folder / "empty.exr", "");
   EXPECT_THAT(read_error(folder / "empty.exr"), HasSubstr("empty.exr"));
@@ -286,7 +297,8 @@ TEST(BrokenExr, TruncatedAnywhere) {
   ASSERT_GT(bytes.size(), 500u);
   for (std::size_t size = 1; size < bytes.size(); size += 1 + size / 16) {
     write_bytes(folder / "cut.exr", bytes.substr(0, size));
-    EXPECT_THAT(read_error(folder / "cut.exr"), HasSubstr("cut.exr")) << size << " of " << bytes.size() << " bytes";
+    EXPECT_THAT(read_error(folder / "cut.exr"), HasSubstr("cut.exr"))
+        << size << " of " << bytes.size() << " bytes";
   }
 }
 
@@ -298,7 +310,8 @@ TEST(BrokenExr, FlippedBytesNeverCrash) {
   int refused = 0;
   for (int i = 0; i < 400; ++i) {
     std::string broken = bytes;
-    for (int flips = 0; flips < 3; ++flips) broken[random() % broken.size()] = static_cast<char>(random() & 255u);
+    for (int flips = 0; flips < 3; ++flips)
+      broken[random() % broken.size()] = static_cast<char>(random() & 255u);
     write_bytes(folder / "flipped.exr", broken);
     try {
       read_exr(folder / "flipped.exr");
@@ -314,11 +327,14 @@ TEST(BrokenExr, HugeClaimsAreRefusedBeforeMemoryIsTaken) {
   write_exr(folder / "small.exr", layered_image());
   const std::string bytes = file_bytes(folder / "small.exr");
   const std::int32_t huge = std::numeric_limits<std::int32_t>::max() / 2;
-  for (const auto& [width, height] :
-       {std::pair{15999, 15999}, {huge, huge}, {huge, 0}, {0, huge}, {(1 << 20) - 1, (1 << 20) - 1}}) {
+  for (const auto& [width, height] : {std::pair{15999, 15999},
+                                      {huge, huge},
+                                      {huge, 0},
+                                      {0, huge},
+                                      {(1 << 20) - 1, (1 << 20) - 1}}) {
     const std::string box = test::little_endian<std::int32_t>(0, 0, width, height);
-    const std::string claimed =
-        test::with_attribute(test::with_attribute(bytes, "dataWindow", "box2i", box), "displayWindow", "box2i", box);
+    const std::string claimed = test::with_attribute(
+        test::with_attribute(bytes, "dataWindow", "box2i", box), "displayWindow", "box2i", box);
     ASSERT_EQ(claimed.size(), bytes.size());
     write_bytes(folder / "huge.exr", claimed);
     EXPECT_THAT(read_error(folder / "huge.exr"), HasSubstr("huge.exr")) << width << " x " << height;
@@ -329,8 +345,10 @@ TEST(BrokenExr, ImpossibleWindowsAreRefused) {
   const auto folder = test::temporary_folder();
   write_exr(folder / "small.exr", layered_image());
   const std::string bytes = file_bytes(folder / "small.exr");
-  for (const auto& box : {test::little_endian<std::int32_t>(5, 5, 4, 4), test::little_endian<std::int32_t>(0, 0, -2147483647, 3),
-                          test::little_endian<std::int32_t>(-2147483647, -2147483647, 2147483646, 2147483646)}) {
+  for (const auto& box :
+       {test::little_endian<std::int32_t>(5, 5, 4, 4),
+        test::little_endian<std::int32_t>(0, 0, -2147483647, 3),
+        test::little_endian<std::int32_t>(-2147483647, -2147483647, 2147483646, 2147483646)}) {
     write_bytes(folder / "window.exr", test::with_attribute(bytes, "dataWindow", "box2i", box));
     EXPECT_THAT(read_error(folder / "window.exr"), HasSubstr("window.exr"));
   }

@@ -16,8 +16,10 @@ inline void set_sum(Film& film, Layer layer, std::size_t c, std::size_t pixel, d
   const FilmLayout& layout = film.layout();
   const LayerRow& row = row_of(layer);
   const auto words = static_cast<std::size_t>(row.words);
-  std::uint64_t* sum = &film.words()[pixel * layout.words_per_pixel() + layout.first_word(layer) + c * words];
-  double left = std::floor(std::ldexp(std::abs(value), -row.unit(layout.color_exponent, layout.length_exponent)));
+  std::uint64_t* sum =
+      &film.words()[pixel * layout.words_per_pixel() + layout.first_word(layer) + c * words];
+  double left = std::floor(
+      std::ldexp(std::abs(value), -row.unit(layout.color_exponent, layout.length_exponent)));
   for (std::size_t w = 0; w < words; ++w) {
     const double next = std::floor(std::ldexp(left, -64));
     sum[w] = static_cast<std::uint64_t>(left - std::ldexp(next, 64));

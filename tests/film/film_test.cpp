@@ -39,8 +39,10 @@ FilmLayout layout_of(int width, int height, Layers layers = Layers::all()) {
   return layout;
 }
 
-/// Whole numbers that a double holds, of either sign, as the sums of every layer; numbers of sample `begin`.
-Film random_film(const FilmLayout& layout, std::uint32_t seed, std::uint32_t begin, std::uint32_t samples) {
+/// Whole numbers that a double holds, of either sign, as the sums of every layer; numbers of sample
+/// `begin`.
+Film random_film(const FilmLayout& layout, std::uint32_t seed, std::uint32_t begin,
+                 std::uint32_t samples) {
   std::mt19937 random(seed);
   Film film(layout, std::vector<std::uint64_t>(layout.window.pixels() * layout.words_per_pixel()),
             {{layout.window, begin, samples}});
@@ -50,21 +52,26 @@ Film random_film(const FilmLayout& layout, std::uint32_t seed, std::uint32_t beg
       const auto layer = static_cast<Layer>(l);
       if (!layout.layers.has(layer)) continue;
       if (layer_rows[l].kind == LayerKind::id) {
-        film.words()[i * layout.words_per_pixel() + layout.first_word(layer)] = ~((std::uint64_t{begin} << 32) | random());
+        film.words()[i * layout.words_per_pixel() + layout.first_word(layer)] =
+            ~((std::uint64_t{begin} << 32) | random());
         continue;
       }
       for (std::size_t c = 0; c < static_cast<std::size_t>(layer_rows[l].count); ++c)
-        test::set_sum(film, layer, c, i, std::ldexp(static_cast<int>(random() % 2001) - 1000, layer_rows[l].unit(3, -2) + 20));
+        test::set_sum(
+            film, layer, c, i,
+            std::ldexp(static_cast<int>(random() % 2001) - 1000, layer_rows[l].unit(3, -2) + 20));
     }
   }
   return film;
 }
 
-bool same(const Film& a, const Film& b) { return a.layout() == b.layout() && std::ranges::equal(a.words(), b.words()); }
+bool same(const Film& a, const Film& b) {
+  return a.layout() == b.layout() && std::ranges::equal(a.words(), b.words());
+}
 
 TEST(Film, WordsOfAPixelAreThoseOfItsLayers) {
-  // Samples 1, R G B of two words each, A 1; Z 1, albedo, N and P 3 each, the two numbers 1 each; the variance of three words
-  // each.
+  // Samples 1, R G B of two words each, A 1; Z 1, albedo, N and P 3 each, the two numbers 1 each;
+  // the variance of three words each.
   EXPECT_EQ(layout_of(1, 1, Layers::none()).words_per_pixel(), 8u);
   EXPECT_EQ(layout_of(1, 1, Layers::usual()).words_per_pixel(), 20u);
   EXPECT_EQ(layout_of(1, 1, Layers::all()).words_per_pixel(), 29u);
@@ -75,7 +82,8 @@ TEST(Film, WordsOfAPixelAreThoseOfItsLayers) {
 
 TEST(Film, SumsHaveTheirUnits) {
   Film film(layout_of(2, 1));
-  // By hand: R of -2.5 units of 2^(3 - 60) is -2 units: ...fffe in two words, all others zero. Z of 3 units of 2^(-2 - 36).
+  // By hand: R of -2.5 units of 2^(3 - 60) is -2 units: ...fffe in two words, all others zero. Z of
+  // 3 units of 2^(-2 - 36).
   std::uint64_t* pixel = &film.words()[film.layout().words_per_pixel()];
   pixel[1] = ~std::uint64_t{1};
   pixel[2] = ~std::uint64_t{0};
@@ -109,10 +117,12 @@ TEST(Film, AddingIsTheSameInAnyOrder) {
   for (std::size_t pixel = 0; pixel < layout.window.pixels(); ++pixel) {
     EXPECT_EQ(in_order.samples(pixel), 60u);
     double color = 0, variance = 0;
-    for (const Film& film : films) color += film.sum(Layer::color, 2, pixel), variance += film.sum(Layer::variance, 1, pixel);
+    for (const Film& film : films)
+      color += film.sum(Layer::color, 2, pixel), variance += film.sum(Layer::variance, 1, pixel);
     EXPECT_EQ(in_order.sum(Layer::color, 2, pixel), color);
     EXPECT_EQ(in_order.sum(Layer::variance, 1, pixel), variance);
-    const auto first = std::ranges::find_if(films, [](const Film& film) { return film.parts()[0].sample_begin == 0; });
+    const auto first = std::ranges::find_if(
+        films, [](const Film& film) { return film.parts()[0].sample_begin == 0; });
     EXPECT_EQ(in_order.number(Layer::object, pixel), first->number(Layer::object, pixel));
   }
 }
@@ -122,7 +132,8 @@ TEST(Film, SamplesAreInItOnce) {
   Film film = random_film(layout, 1, 4, 8);
   const Film before = film;
   EXPECT_THAT([&] { film.add(random_film(layout, 2, 11, 3)); },
-              ThrowsMessage<InputError>(HasSubstr("samples 11 to 12 of pixel 4,3 would be in the film twice")));
+              ThrowsMessage<InputError>(
+                  HasSubstr("samples 11 to 12 of pixel 4,3 would be in the film twice")));
   EXPECT_TRUE(same(film, before));
   EXPECT_EQ(film.parts(), before.parts());
   EXPECT_THROW(film.add(random_film(layout_of(5, 3), 2, 20, 3)), InputError);
@@ -167,31 +178,35 @@ TEST(Film, FilesThatAreNoneAreRefused) {
   picture.width = picture.height = picture.data_width = picture.data_height = 2;
   picture.channels.push_back({"R", std::vector<float>(4), {}});
   write_exr(folder / "picture.exr", picture);
-  EXPECT_THAT([&] { Film::load(folder / "picture.exr"); }, ThrowsMessage<InputError>(HasSubstr("picture.exr: this is no film")));
+  EXPECT_THAT([&] { Film::load(folder / "picture.exr"); },
+              ThrowsMessage<InputError>(HasSubstr("picture.exr: this is no film")));
   const Film film = random_film(layout_of(5, 4), 1, 4, 8);
   film.save(folder / "film.exr");
   int number = 0;
-  for (const auto& [name, wrong] :
-       std::vector<std::pair<std::string, std::string>>{{"caplet.film", "2"},
-                                                        {"caplet.film.layers", "1000000"},
-                                                        {"caplet.film.layers", "7x"},
-                                                        {"caplet.film.color_exponent", "x"},
-                                                        {"caplet.film.length_exponent", "61"},
-                                                        {"caplet.film.samples", "4 3 5 4 4"},
-                                                        {"caplet.film.samples", "0 0 20 10 4 8"},
-                                                        {"caplet.film.samples", "4 3 5 4 4 8,4 3 1 1 6 1"}}) {
+  for (const auto& [name, wrong] : std::vector<std::pair<std::string, std::string>>{
+           {"caplet.film", "2"},
+           {"caplet.film.layers", "1000000"},
+           {"caplet.film.layers", "7x"},
+           {"caplet.film.color_exponent", "x"},
+           {"caplet.film.length_exponent", "61"},
+           {"caplet.film.samples", "4 3 5 4 4"},
+           {"caplet.film.samples", "0 0 20 10 4 8"},
+           {"caplet.film.samples", "4 3 5 4 4 8,4 3 1 1 6 1"}}) {
     LayeredImage image = read_exr(folder / "film.exr");
-    std::erase_if(image.metadata, [](const auto& entry) { return !entry.first.starts_with("caplet."); });
+    std::erase_if(image.metadata,
+                  [](const auto& entry) { return !entry.first.starts_with("caplet."); });
     image.metadata[name] = wrong;
     const auto file = folder / (std::to_string(number++) + ".exr");
     write_exr(file, image);
     EXPECT_THROW(Film::load(file), InputError) << name << ' ' << wrong;
   }
   LayeredImage image = read_exr(folder / "film.exr");
-  std::erase_if(image.metadata, [](const auto& entry) { return !entry.first.starts_with("caplet."); });
+  std::erase_if(image.metadata,
+                [](const auto& entry) { return !entry.first.starts_with("caplet."); });
   image.channels.pop_back();
   write_exr(folder / "broken.exr", image);
-  EXPECT_THAT([&] { Film::load(folder / "broken.exr"); }, ThrowsMessage<InputError>(HasSubstr("is missing")));
+  EXPECT_THAT([&] { Film::load(folder / "broken.exr"); },
+              ThrowsMessage<InputError>(HasSubstr("is missing")));
 }
 
 }  // namespace

@@ -21,7 +21,8 @@ namespace {
 using testing::AllOf;
 using testing::HasSubstr;
 
-LayeredImage exr_of(const std::vector<std::pair<std::string, std::vector<float>>>& channels, int width, int height) {
+LayeredImage exr_of(const std::vector<std::pair<std::string, std::vector<float>>>& channels,
+                    int width, int height) {
   LayeredImage image;
   image.width = image.data_width = width;
   image.height = image.data_height = height;
@@ -46,15 +47,16 @@ std::string error_of(const std::filesystem::path& path) {
 }
 
 TEST(ImageReader, InterleavesFromTheTop) {
-  const EnvironmentImage image =
-      written_and_read(exr_of({{"R", {1, 2}}, {"G", {3, 4}}, {"B", {5, 6}}, {"A", {.5f, .5f}}, {"Z", {9, 9}}}, 1, 2));
+  const EnvironmentImage image = written_and_read(exr_of(
+      {{"R", {1, 2}}, {"G", {3, 4}}, {"B", {5, 6}}, {"A", {.5f, .5f}}, {"Z", {9, 9}}}, 1, 2));
   EXPECT_EQ(image.width, 1);
   EXPECT_EQ(image.height, 2);
   EXPECT_EQ(image.rgb, (std::vector<float>{1, 3, 5, 2, 4, 6}));
 }
 
 TEST(ImageReader, TakesLuminanceSingleChannelsAndLayers) {
-  EXPECT_EQ(written_and_read(exr_of({{"Y", {2}}, {"Z", {7}}}, 1, 1)).rgb, (std::vector<float>{2, 2, 2}));
+  EXPECT_EQ(written_and_read(exr_of({{"Y", {2}}, {"Z", {7}}}, 1, 1)).rgb,
+            (std::vector<float>{2, 2, 2}));
   EXPECT_EQ(written_and_read(exr_of({{"mask", {3}}}, 1, 1)).rgb, (std::vector<float>{3, 3, 3}));
   EXPECT_EQ(written_and_read(exr_of({{"View.R", {1}}, {"View.G", {2}}, {"View.B", {3}}}, 1, 1)).rgb,
             (std::vector<float>{1, 2, 3}));
@@ -67,11 +69,13 @@ TEST(ImageReader, KeepsKnownColorSpacesAndConvertsOthers) {
   LayeredImage image = exr_of({{"R", {1}}, {"G", {.5f}}, {"B", {.25f}}}, 1, 1);
   image.space = ColorSpace::rec2020;
   EXPECT_EQ(written_and_read(image).space, ColorSpace::rec2020);
-  // Primaries of sRGB with the names of red and green exchanged: a colour space nobody knows, whose conversion is plain.
+  // Primaries of sRGB with the names of red and green exchanged: a colour space nobody knows, whose
+  // conversion is plain.
   image.chromaticities = Chromaticities{{0.30, 0.60}, {0.64, 0.33}, {0.15, 0.06}, {0.3127, 0.3290}};
   const EnvironmentImage converted = written_and_read(image);
   EXPECT_EQ(converted.space, ColorSpace::srgb);
-  // Chromaticities are single precision in the file: 2^-24 relative, times the condition of the primaries' matrix (about 10).
+  // Chromaticities are single precision in the file: 2^-24 relative, times the condition of the
+  // primaries' matrix (about 10).
   EXPECT_NEAR(converted.rgb[0], 0.5f, 1e-5);
   EXPECT_NEAR(converted.rgb[1], 1.0f, 1e-5);
   EXPECT_NEAR(converted.rgb[2], 0.25f, 1e-5);
@@ -79,8 +83,12 @@ TEST(ImageReader, KeepsKnownColorSpacesAndConvertsOthers) {
 
 TEST(ImageReader, RefusesNotFiniteAndClampsNegative) {
   const auto path = test::temporary_folder() / "nan.exr";
-  write_exr(path, exr_of({{"R", {1, std::numeric_limits<float>::quiet_NaN()}}, {"G", {1, 1}}, {"B", {1, 1}}}, 2, 1));
-  EXPECT_THAT(error_of(path), AllOf(HasSubstr("nan.exr"), HasSubstr("(1, 0)"), HasSubstr("not finite")));
+  write_exr(
+      path,
+      exr_of({{"R", {1, std::numeric_limits<float>::quiet_NaN()}}, {"G", {1, 1}}, {"B", {1, 1}}}, 2,
+             1));
+  EXPECT_THAT(error_of(path),
+              AllOf(HasSubstr("nan.exr"), HasSubstr("(1, 0)"), HasSubstr("not finite")));
   EXPECT_EQ(written_and_read(exr_of({{"Y", {-1}}}, 1, 1)).rgb, (std::vector<float>{0, 0, 0}));
 }
 
@@ -97,13 +105,16 @@ TEST(ImageLimits, AreCheckedAgainstTheFile) {
 
 TEST(ImageFiles, ConstantHdrEqualsConstantExr) {
   CAPLET_NEEDS_DATA();
-  const EnvironmentImage exr = FileImageReader().read_rgb(test::data_folder() / "hdr/ignis/constant.exr");
-  const EnvironmentImage hdr = FileImageReader().read_rgb(test::data_folder() / "hdr/ignis/constant.hdr");
+  const EnvironmentImage exr =
+      FileImageReader().read_rgb(test::data_folder() / "hdr/ignis/constant.exr");
+  const EnvironmentImage hdr =
+      FileImageReader().read_rgb(test::data_folder() / "hdr/ignis/constant.hdr");
   EXPECT_EQ(hdr.width, 60);
   EXPECT_EQ(hdr.height, 40);
   ASSERT_EQ(exr.rgb.size(), hdr.rgb.size());
   // RGBE has 8 bits of mantissa: half a step of 1/128 at most.
-  for (std::size_t i = 0; i < exr.rgb.size(); ++i) ASSERT_NEAR(hdr.rgb[i], exr.rgb[i], exr.rgb[i] / 256) << i;
+  for (std::size_t i = 0; i < exr.rgb.size(); ++i)
+    ASSERT_NEAR(hdr.rgb[i], exr.rgb[i], exr.rgb[i] / 256) << i;
 }
 
 TEST(ImageFiles, StudioHdr) {
@@ -118,11 +129,13 @@ TEST(ImageFiles, StudioHdr) {
 // A PPM is written by hand, byte by byte: header and samples.
 TEST(ImageFiles, EightBitFilesAreSrgb) {
   const auto path = test::temporary_folder() / "three.ppm";
-  test::write_bytes(path, std::string("P6\n3 1\n255\n") + std::string("\x00\xff\x80\x0a\x40\xc0\xff\xff\xff", 9));
+  test::write_bytes(
+      path, std::string("P6\n3 1\n255\n") + std::string("\x00\xff\x80\x0a\x40\xc0\xff\xff\xff", 9));
   const EnvironmentImage image = FileImageReader().read_rgb(path);
   ASSERT_EQ(image.rgb.size(), 9u);
   // IEC 61966-2-1: 128 -> 0.2158605, 10 -> 10/255/12.92, 64 -> 0.0512695, 192 -> 0.5271151.
-  const std::vector<double> expected{0, 1, 0.2158605, 10.0 / 255 / 12.92, 0.0512695, 0.5271151, 1, 1, 1};
+  const std::vector<double> expected{0, 1, 0.2158605, 10.0 / 255 / 12.92, 0.0512695, 0.5271151,
+                                     1, 1, 1};
   for (std::size_t i = 0; i < 9; ++i) EXPECT_NEAR(image.rgb[i], expected[i], 1e-6) << i;
 }
 
@@ -160,14 +173,16 @@ TEST(ImageFiles, AlphaIsMultipliedIn) {
 // As textures take them: bytes as they are, with what they stand for.
 TEST(ImageFiles, OfTexturesKeepTheirBytesAndTheirEncoding) {
   const auto path = test::temporary_folder() / "texture.ppm";
-  test::write_bytes(path, std::string("P6\n2 1\n255\n") + std::string("\x00\xff\x80\x0a\x40\xc0", 6));
+  test::write_bytes(path,
+                    std::string("P6\n2 1\n255\n") + std::string("\x00\xff\x80\x0a\x40\xc0", 6));
   const TextureImage srgb = FileImageReader().read_texture(path, {});
   EXPECT_EQ(srgb.width, 2);
   EXPECT_EQ(srgb.channels, 3);
   EXPECT_EQ(srgb.bytes, (std::vector<std::uint8_t>{0, 255, 128, 10, 64, 192}));
   EXPECT_NEAR(srgb.decoded[128], 0.2158605, 1e-6);
   EXPECT_EQ(srgb.decoded[255], 1);
-  const TextureImage linear = FileImageReader().read_texture(path, {ImageEncoding::Kind::linear, 1});
+  const TextureImage linear =
+      FileImageReader().read_texture(path, {ImageEncoding::Kind::linear, 1});
   EXPECT_FLOAT_EQ(linear.decoded[128], 128 / 255.f);
   const TextureImage gamma = FileImageReader().read_texture(path, {ImageEncoding::Kind::gamma, 2});
   EXPECT_NEAR(gamma.decoded[128], 128. * 128 / (255 * 255), 1e-6);
@@ -197,14 +212,19 @@ TEST(ImageFiles, OfTexturesKeepAlphaThatIsNotOne) {
 
 TEST(ImageFiles, BrokenFilesAreRefusedByName) {
   const auto folder = test::temporary_folder();
-  EXPECT_THAT(error_of(folder / "none.png"), AllOf(HasSubstr("none.png"), HasSubstr("no such file")));
-  for (const char* name : {"noise.png", "noise.hdr", "noise.jpg", "noise.tif", "noise.xyz", "noise"}) {
+  EXPECT_THAT(error_of(folder / "none.png"),
+              AllOf(HasSubstr("none.png"), HasSubstr("no such file")));
+  for (const char* name :
+       {"noise.png", "noise.hdr", "noise.jpg", "noise.tif", "noise.xyz", "noise"}) {
     test::write_bytes(folder / name, std::string(300, '\x5a'));
-    EXPECT_THAT(error_of(folder / name), AllOf(HasSubstr(name), HasSubstr("not a readable image"))) << name;
+    EXPECT_THAT(error_of(folder / name), AllOf(HasSubstr(name), HasSubstr("not a readable image")))
+        << name;
   }
-  test::write_bytes(folder / "huge.hdr", "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 16000 +X 16000\n");
+  test::write_bytes(folder / "huge.hdr",
+                    "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 16000 +X 16000\n");
   EXPECT_THAT(error_of(folder / "huge.hdr"), HasSubstr("huge.hdr"));
-  test::write_bytes(folder / "cut.hdr", "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 64 +X 64\n\x02\x02");
+  test::write_bytes(folder / "cut.hdr",
+                    "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 64 +X 64\n\x02\x02");
   EXPECT_THAT(error_of(folder / "cut.hdr"), HasSubstr("cut.hdr"));
 }
 

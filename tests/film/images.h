@@ -33,8 +33,9 @@ inline LayeredImage layered_image() {
   image.data_width = 7;
   image.data_height = 5;
   float value = -3.25f;
-  for (const char* name : {"R", "G", "B", "A", "Z", "albedo.R", "albedo.G", "albedo.B", "N.X", "N.Y", "N.Z", "P.X", "P.Y", "P.Z",
-                           "variance.R", "variance.G", "variance.B"}) {
+  for (const char* name :
+       {"R", "G", "B", "A", "Z", "albedo.R", "albedo.G", "albedo.B", "N.X", "N.Y", "N.Z", "P.X",
+        "P.Y", "P.Z", "variance.R", "variance.G", "variance.B"}) {
     Channel channel{name, {}, {}};
     for (int i = 0; i < 35; ++i) channel.floats.push_back(value += 0.37f);
     image.channels.push_back(channel);
@@ -48,7 +49,8 @@ inline LayeredImage layered_image() {
 }
 
 /// `bytes` with the attribute's value (found by its name and type) replaced.
-inline std::string with_attribute(std::string bytes, const std::string& name, const std::string& type, const std::string& value) {
+inline std::string with_attribute(std::string bytes, const std::string& name,
+                                  const std::string& type, const std::string& value) {
   const std::string head = name + '\0' + type + '\0';
   const std::size_t at = bytes.find(head);
   if (at == std::string::npos) return {};

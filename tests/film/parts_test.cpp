@@ -22,13 +22,13 @@ Samples samples_of(const FilmPart& part) {
   for (std::uint32_t y = 0; y < static_cast<std::uint32_t>(part.window.height); ++y)
     for (std::uint32_t x = 0; x < static_cast<std::uint32_t>(part.window.width); ++x)
       for (std::uint32_t i = 0; i < part.sample_count; ++i)
-        out.insert({static_cast<std::uint32_t>(part.window.x) + x, static_cast<std::uint32_t>(part.window.y) + y,
-                    part.sample_begin + i});
+        out.insert({static_cast<std::uint32_t>(part.window.x) + x,
+                    static_cast<std::uint32_t>(part.window.y) + y, part.sample_begin + i});
   return out;
 }
 
-// Small parts at random places, many of which touch: one is refused where a sample would be in the film twice, and else all that
-// were added are there, once.
+// Small parts at random places, many of which touch: one is refused where a sample would be in the
+// film twice, and else all that were added are there, once.
 TEST(FilmParts, HoldEachSampleOnce) {
   std::mt19937 random(1);
   const auto below = [&](unsigned n) { return static_cast<int>(random() % n); };
@@ -51,7 +51,8 @@ TEST(FilmParts, HoldEachSampleOnce) {
         ++refused;
         continue;
       }
-      ASSERT_NO_THROW(add_part(parts, part)) << part.window.x << " " << part.window.y << " " << part.sample_begin;
+      ASSERT_NO_THROW(add_part(parts, part))
+          << part.window.x << " " << part.window.y << " " << part.sample_begin;
       all.insert(its.begin(), its.end());
       ++added;
       Samples held;
@@ -70,12 +71,13 @@ TEST(FilmParts, HoldEachSampleOnce) {
   EXPECT_GT(joined, 20U);
 }
 
-// Beside each other in x, y and samples, on either side: no sample is in both, and two such are one part.
+// Beside each other in x, y and samples, on either side: no sample is in both, and two such are one
+// part.
 TEST(FilmParts, ThatTouchAreApart) {
   const FilmPart middle{{10, 20, 3, 2}, 4, 5};
-  for (const FilmPart& beside :
-       {FilmPart{{13, 20, 3, 2}, 4, 5}, FilmPart{{7, 20, 3, 2}, 4, 5}, FilmPart{{10, 22, 3, 2}, 4, 5},
-        FilmPart{{10, 18, 3, 2}, 4, 5}, FilmPart{{10, 20, 3, 2}, 9, 5}, FilmPart{{10, 20, 3, 2}, 0, 4}}) {
+  for (const FilmPart& beside : {FilmPart{{13, 20, 3, 2}, 4, 5}, FilmPart{{7, 20, 3, 2}, 4, 5},
+                                 FilmPart{{10, 22, 3, 2}, 4, 5}, FilmPart{{10, 18, 3, 2}, 4, 5},
+                                 FilmPart{{10, 20, 3, 2}, 9, 5}, FilmPart{{10, 20, 3, 2}, 0, 4}}) {
     std::vector<FilmPart> parts = {middle};
     EXPECT_NO_THROW(add_part(parts, beside));
     EXPECT_EQ(parts.size(), 1U);
@@ -83,7 +85,8 @@ TEST(FilmParts, ThatTouchAreApart) {
     FilmPart nearer = beside;
     nearer.window.x += (beside.window.x < 10) - (beside.window.x > 10);
     nearer.window.y += (beside.window.y < 20) - (beside.window.y > 20);
-    nearer.sample_begin += static_cast<std::uint32_t>((beside.sample_begin < 4) - (beside.sample_begin > 4));
+    nearer.sample_begin +=
+        static_cast<std::uint32_t>((beside.sample_begin < 4) - (beside.sample_begin > 4));
     parts = {middle};
     EXPECT_THROW(add_part(parts, nearer), InputError);
   }

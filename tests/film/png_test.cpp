@@ -30,8 +30,9 @@ struct Kind {
 };
 
 std::string name_of(const Kind& kind) {
-  return "type " + std::to_string(kind.type) + " depth " + std::to_string(kind.depth) + (kind.key ? " key" : "") +
-         (kind.interlaced ? " interlaced" : "") + " gamma " + std::to_string(kind.gamma) + (kind.srgb ? " srgb" : "");
+  return "type " + std::to_string(kind.type) + " depth " + std::to_string(kind.depth) +
+         (kind.key ? " key" : "") + (kind.interlaced ? " interlaced" : "") + " gamma " +
+         std::to_string(kind.gamma) + (kind.srgb ? " srgb" : "");
 }
 
 constexpr int width = 13, height = 9;
@@ -49,7 +50,8 @@ fs::path write(const Kind& kind) {
   png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, nullptr, nullptr);
   png_infop info = png_create_info_struct(png);
   png_init_io(png, file);
-  png_set_IHDR(png, info, width, height, kind.depth, kind.type, kind.interlaced ? PNG_INTERLACE_ADAM7 : PNG_INTERLACE_NONE,
+  png_set_IHDR(png, info, width, height, kind.depth, kind.type,
+               kind.interlaced ? PNG_INTERLACE_ADAM7 : PNG_INTERLACE_NONE,
                PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
   std::mt19937 random(7);
   const auto byte = [&] { return static_cast<png_byte>(random() & 255); };
@@ -67,7 +69,8 @@ fs::path write(const Kind& kind) {
   if (kind.srgb) png_set_sRGB(png, info, PNG_sRGB_INTENT_RELATIVE);
   png_write_info(png, info);
   const int bits = width * channels_of(kind.type) * kind.depth;
-  std::vector<std::vector<png_byte>> rows(height, std::vector<png_byte>(static_cast<std::size_t>((bits + 7) / 8)));
+  std::vector<std::vector<png_byte>> rows(
+      height, std::vector<png_byte>(static_cast<std::size_t>((bits + 7) / 8)));
   for (auto& row : rows)
     for (png_byte& value : row) value = byte();
   std::vector<png_bytep> pointers;
@@ -83,12 +86,16 @@ std::vector<Kind> kinds() {
   std::vector<Kind> out;
   for (const bool interlaced : {false, true})
     for (const bool key : {false, true}) {
-      for (const int depth : {1, 2, 4, 8}) out.push_back({PNG_COLOR_TYPE_PALETTE, depth, key, interlaced});
-      for (const int depth : {1, 2, 4, 8, 16}) out.push_back({PNG_COLOR_TYPE_GRAY, depth, key, interlaced});
+      for (const int depth : {1, 2, 4, 8})
+        out.push_back({PNG_COLOR_TYPE_PALETTE, depth, key, interlaced});
+      for (const int depth : {1, 2, 4, 8, 16})
+        out.push_back({PNG_COLOR_TYPE_GRAY, depth, key, interlaced});
       for (const int depth : {8, 16}) out.push_back({PNG_COLOR_TYPE_RGB, depth, key, interlaced});
       if (key) continue;
-      for (const int depth : {8, 16}) out.push_back({PNG_COLOR_TYPE_GRAY_ALPHA, depth, false, interlaced});
-      for (const int depth : {8, 16}) out.push_back({PNG_COLOR_TYPE_RGB_ALPHA, depth, false, interlaced});
+      for (const int depth : {8, 16})
+        out.push_back({PNG_COLOR_TYPE_GRAY_ALPHA, depth, false, interlaced});
+      for (const int depth : {8, 16})
+        out.push_back({PNG_COLOR_TYPE_RGB_ALPHA, depth, false, interlaced});
     }
   for (const double gamma : {1 / 2.2, 1.0, 1 / 1.8, 0.3}) {
     out.push_back({PNG_COLOR_TYPE_RGB, 8, false, false, gamma});
@@ -123,8 +130,10 @@ TEST(Png, IsReadAsOpenImageIoReadsIt) {
     EXPECT_EQ(pixels.channels, linear.channels);
     EXPECT_EQ(pixels.alpha, linear.alpha);
     ASSERT_EQ(pixels.values.size(), linear.values.size());
-    // One rounding of a whole number's share of 255 or 65,535, which the power of a gamma makes up to three of.
-    for (std::size_t i = 0; i < pixels.values.size(); ++i) EXPECT_NEAR(pixels.values[i], linear.values[i], 3e-7) << i;
+    // One rounding of a whole number's share of 255 or 65,535, which the power of a gamma makes up
+    // to three of.
+    for (std::size_t i = 0; i < pixels.values.size(); ++i)
+      EXPECT_NEAR(pixels.values[i], linear.values[i], 3e-7) << i;
   }
 }
 
@@ -132,7 +141,8 @@ TEST(Png, WrittenIsReadByOpenImageIoToTheByte) {
   const fs::path path = test::temporary_folder() / "written.png";
   for (const int channels : {3, 4}) {
     std::vector<std::uint8_t> values(static_cast<std::size_t>(width * height * channels));
-    for (std::size_t i = 0; i < values.size(); ++i) values[i] = static_cast<std::uint8_t>(37 * i + i * i / 11);
+    for (std::size_t i = 0; i < values.size(); ++i)
+      values[i] = static_cast<std::uint8_t>(37 * i + i * i / 11);
     std::string bytes;
     ASSERT_EQ(encode_png(width, height, channels, values, bytes), "");
     std::ofstream(path, std::ios::binary) << bytes;
@@ -146,7 +156,8 @@ TEST(Png, WrittenIsReadByOpenImageIoToTheByte) {
 }
 #endif
 
-// A gamma of 1 / 2.2 in the file means a power of 2.2; without, the sRGB curve; whole numbers in 255ths.
+// A gamma of 1 / 2.2 in the file means a power of 2.2; without, the sRGB curve; whole numbers in
+// 255ths.
 TEST(Png, IsLinearisedByWhatItSays) {
   for (const auto& [gamma, exponent] : {std::pair{1 / 2.2, 2.2}, {1.0, 1.0}, {0.0, 0.0}}) {
     const fs::path path = write({PNG_COLOR_TYPE_RGB, 8, false, false, gamma});
@@ -172,7 +183,8 @@ TEST(Png, BrokenIsRefusedWithItsName) {
     std::ifstream file(path, std::ios::binary);
     bytes.assign(std::istreambuf_iterator<char>(file), {});
   }
-  for (const std::size_t length : {std::size_t{8}, std::size_t{20}, std::size_t{40}, bytes.size() / 2}) {
+  for (const std::size_t length :
+       {std::size_t{8}, std::size_t{20}, std::size_t{40}, bytes.size() / 2}) {
     std::ofstream(path, std::ios::binary) << bytes.substr(0, length);
     try {
       FileImageReader().read_texture(path, {});

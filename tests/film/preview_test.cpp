@@ -34,7 +34,8 @@ LayeredImage picture(const std::vector<std::array<float, 3>>& pixels) {
 }
 
 TEST(Transfer, IsTheStandardsCurve) {
-  // IEC 61966-2-1: both pieces meet at 0.0031308; middle values from the formula worked out separately.
+  // IEC 61966-2-1: both pieces meet at 0.0031308; middle values from the formula worked out
+  // separately.
   EXPECT_FLOAT_EQ(srgb_from_linear(0), 0);
   EXPECT_NEAR(srgb_from_linear(1), 1, 1e-6);
   EXPECT_NEAR(srgb_from_linear(0.18f), 0.4613561, 1e-6);
@@ -60,7 +61,8 @@ TEST(ToneMap, IsMonotoneSmoothAndBelowOne) {
     ASSERT_GE(out, last - 1.2e-7f) << v;  // two roundings near 1
     ASSERT_LE(out, 1.0f);
     const float next_slope = (out - last) / 0.005f;
-    // exp's slope falls by 2 a unit at most: 0.01 a step, and rounding of out (6e-8) over the step is 2.4e-5.
+    // exp's slope falls by 2 a unit at most: 0.01 a step, and rounding of out (6e-8) over the step
+    // is 2.4e-5.
     ASSERT_NEAR(next_slope, slope, 0.0101f) << v;
     slope = next_slope;
     last = out;
@@ -80,8 +82,10 @@ TEST(ToneMap, KeepsTheOrderAndHueOfComponents) {
 }
 
 TEST(ToneMap, SurvivesWhateverComes) {
-  const float infinity = std::numeric_limits<float>::infinity(), nan = std::numeric_limits<float>::quiet_NaN();
-  for (const auto& odd : {std::array<float, 3>{nan, 0.25f, -1}, {infinity, 0, 0}, {-infinity, 0, nan}, {3e38f, 1, 0}})
+  const float infinity = std::numeric_limits<float>::infinity(),
+              nan = std::numeric_limits<float>::quiet_NaN();
+  for (const auto& odd :
+       {std::array<float, 3>{nan, 0.25f, -1}, {infinity, 0, 0}, {-infinity, 0, nan}, {3e38f, 1, 0}})
     for (const float v : tone_map(odd)) {
       EXPECT_GE(v, 0);
       EXPECT_LE(v, 1);
@@ -99,7 +103,8 @@ TEST(Preview, BytesAreSrgb) {
 }
 
 TEST(Preview, ConvertsToSrgbPrimaries) {
-  // (0.18, 0.18, 0.18) is grey in every D65 space; saturated Rec. 2020 green lies outside sRGB and clips its red to 0.
+  // (0.18, 0.18, 0.18) is grey in every D65 space; saturated Rec. 2020 green lies outside sRGB and
+  // clips its red to 0.
   LayeredImage image = picture({{0.18f, 0.18f, 0.18f}, {0, 0.3f, 0}, {0.2f, 0.3f, 0.1f}});
   image.space = ColorSpace::rec2020;
   const auto bytes = preview_rgb8(image);
@@ -108,7 +113,8 @@ TEST(Preview, ConvertsToSrgbPrimaries) {
   EXPECT_EQ(bytes[2], 118);
   EXPECT_EQ(bytes[3], 0);
   EXPECT_GT(bytes[4], 118);
-  // By the matrix of ITU-R BT.2087 (0.148521, 0.314125, 0.078069), and sRGB's curve: 107.5, 152.0 and 78.9.
+  // By the matrix of ITU-R BT.2087 (0.148521, 0.314125, 0.078069), and sRGB's curve: 107.5, 152.0
+  // and 78.9.
   EXPECT_EQ(bytes[6], 108);
   EXPECT_EQ(bytes[7], 152);
   EXPECT_EQ(bytes[8], 79);
@@ -127,7 +133,8 @@ TEST(Preview, FilesComeBack) {
     ASSERT_EQ(back.width, 2) << name;
     ASSERT_EQ(back.height, 1) << name;
     for (std::size_t i = 0; i < bytes.size(); ++i)
-      EXPECT_NEAR(back.rgb[i], linear_from_srgb(static_cast<float>(bytes[i]) / 255), 1e-6) << name << " " << i;
+      EXPECT_NEAR(back.rgb[i], linear_from_srgb(static_cast<float>(bytes[i]) / 255), 1e-6)
+          << name << " " << i;
   }
   write_preview(folder / "a.jpg", image);
   EXPECT_EQ(FileImageReader().read_rgb(folder / "a.jpg").width, 2);

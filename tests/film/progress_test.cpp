@@ -24,7 +24,8 @@ struct Bench {
   ProgressReporter reporter;
   explicit Bench(ProgressReporter::Style style)
       : reporter(
-            style, [this](std::string_view text) { written.emplace_back(text); }, [this] { return now; }) {}
+            style, [this](std::string_view text) { written.emplace_back(text); },
+            [this] { return now; }) {}
 };
 
 TEST(Progress, Texts) {
@@ -41,7 +42,8 @@ TEST(Progress, Texts) {
 TEST(Progress, BarFitsTheTerminal) {
   const ProgressState state{0.5, 10, 2e6, "32/64 samples"};
   for (int columns = 0; columns < 200; ++columns)
-    EXPECT_LE(static_cast<int>(progress_bar(state, columns).size()), std::max(0, columns - 1)) << columns;
+    EXPECT_LE(static_cast<int>(progress_bar(state, columns).size()), std::max(0, columns - 1))
+        << columns;
   const std::string bar = progress_bar(state, 100);
   EXPECT_THAT(bar, HasSubstr("50 %"));
   EXPECT_THAT(bar, HasSubstr("2.00 Mpaths/s"));

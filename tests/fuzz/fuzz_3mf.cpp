@@ -10,5 +10,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const std::string text(reinterpret_cast<const char*>(data), size);
   if (text.starts_with("PK")) return caplet::test::fuzz_importer(caplet::import_3mf, data, size);
   const std::string package = caplet::test::package_3mf(text);
-  return caplet::test::fuzz_importer(caplet::import_3mf, reinterpret_cast<const std::uint8_t*>(package.data()), package.size());
+  return caplet::test::fuzz_importer(
+      caplet::import_3mf, reinterpret_cast<const std::uint8_t*>(package.data()), package.size());
 }

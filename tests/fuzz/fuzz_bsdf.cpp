@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Any material, light, camera and pixel filter that validation lets through, and any directions and random numbers: what
-// kernels/bsdf, lights and math, compiled for the host, say is finite and not negative.
+// Any material, light, camera and pixel filter that validation lets through, and any directions and
+// random numbers: what kernels/bsdf, lights and math, compiled for the host, say is finite and not
+// negative.
 #include <algorithm>
 #include <cmath>
 
@@ -40,7 +41,8 @@ Direction direction(FuzzNumbers& numbers) {
   if (!(largest > 0)) return {{0, 0, 1}};
   for (double& x : v) x /= largest;
   const double length = std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-  return {{static_cast<float>(v[0] / length), static_cast<float>(v[1] / length), static_cast<float>(v[2] / length)}};
+  return {{static_cast<float>(v[0] / length), static_cast<float>(v[1] / length),
+           static_cast<float>(v[2] / length)}};
 }
 
 /// In [0, 1), the ends as random numbers have them (24 bits).
@@ -58,7 +60,8 @@ bool unit(const float (&v)[3]) {
   return std::abs(length - 1) <= 64 * 0x1p-24;
 }
 
-void material(const HostGroups* g, std::uint32_t number, const float (&lambda)[4], FuzzNumbers& numbers) {
+void material(const HostGroups* g, std::uint32_t number, const float (&lambda)[4],
+              FuzzNumbers& numbers) {
   const HostKernels& kernels = host_kernels(8);
   const Direction wo = direction(numbers), wi = direction(numbers);
   float f[4];
@@ -92,7 +95,8 @@ void lights(const HostGroups* g, const float (&lambda)[4], FuzzNumbers& numbers)
   }
   const Direction d = direction(numbers);
   float sky[4];
-  host_kernels(8).light_infinite(g, p, d.v, lambda, random_number(numbers), numbers.below(2) != 0, sky);
+  host_kernels(8).light_infinite(g, p, d.v, lambda, random_number(numbers), numbers.below(2) != 0,
+                                 sky);
   require(radiometric(sky));
 }
 

@@ -8,6 +8,8 @@
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using caplet::ImportOptions;
   using Values = std::map<std::string, std::string>;
-  caplet::test::fuzz_importer(caplet::import_mjcf, data, size, ImportOptions(Values{{"groups", "all"}, {"pose", "k"}}));
-  return caplet::test::fuzz_importer(caplet::import_mjcf, data, size, ImportOptions(Values{{"groups", "all"}}));
+  caplet::test::fuzz_importer(caplet::import_mjcf, data, size,
+                              ImportOptions(Values{{"groups", "all"}, {"pose", "k"}}));
+  return caplet::test::fuzz_importer(caplet::import_mjcf, data, size,
+                                     ImportOptions(Values{{"groups", "all"}}));
 }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// A NanoVDB file either gives a grid of finite densities or is refused: any bytes, and the memory of a sound grid with some bytes
-// of it changed.
+// A NanoVDB file either gives a grid of finite densities or is refused: any bytes, and the memory
+// of a sound grid with some bytes of it changed.
 #include <cmath>
 #include <cstring>
 #include <string>
@@ -12,13 +12,15 @@
 
 namespace {
 
-constexpr std::size_t root = 736, upper = root + 64 + 32, lower = upper + 8256 + 262144, leaf = lower + 1088 + 32768,
-                      end = leaf + 2144;
+constexpr std::size_t root = 736, upper = root + 64 + 32, lower = upper + 8256 + 262144,
+                      leaf = lower + 1088 + 32768, end = leaf + 2144;
 
 /// One leaf, uncompressed and without a header (tests/import/nanovdb_test.cpp has the layout).
 std::string sound_grid() {
   std::string memory(end, '\0');
-  const auto put = [&](std::size_t at, auto value) { std::memcpy(&memory[at], &value, sizeof value); };
+  const auto put = [&](std::size_t at, auto value) {
+    std::memcpy(&memory[at], &value, sizeof value);
+  };
   put(0, std::uint64_t{0x314244566f6e614e});
   put(16, std::uint32_t{32u << 21});
   put(32, std::uint64_t{end});
@@ -51,7 +53,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       std::memcpy(&bytes[at % (end - 8)], data + i + 4, 8);
     }
   }
-  const caplet::test::MemoryFile file(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size());
+  const caplet::test::MemoryFile file(reinterpret_cast<const std::uint8_t*>(bytes.data()),
+                                      bytes.size());
   return caplet::test::run_target([&] {
     const caplet::SparseGridPointer grid = caplet::read_nanovdb(file.path(), "density", {});
     if (!grid) return;

@@ -38,11 +38,30 @@ class FuzzNumbers : public NumberSource {
   /// Any float.
   float number() {
     constexpr float infinity = std::numeric_limits<float>::infinity();
-    static constexpr float specials[] = {
-        0.0f,     -0.0f,         1.0f,      -1.0f,      infinity,  -infinity, std::numeric_limits<float>::quiet_NaN(),
-        FLT_MIN,  -FLT_MIN,      0x1p-149f, -0x1p-149f, 0x1p-126f, FLT_MAX,   -FLT_MAX,
-        0x1p-60f, 1e18f,         -1e18f,    1e9f,       1e-9f,     1e-18f,    0x1p-24f,
-        0x1p24f,  0x1.000002p0f, 1e15f};
+    static constexpr float specials[] = {0.0f,
+                                         -0.0f,
+                                         1.0f,
+                                         -1.0f,
+                                         infinity,
+                                         -infinity,
+                                         std::numeric_limits<float>::quiet_NaN(),
+                                         FLT_MIN,
+                                         -FLT_MIN,
+                                         0x1p-149f,
+                                         -0x1p-149f,
+                                         0x1p-126f,
+                                         FLT_MAX,
+                                         -FLT_MAX,
+                                         0x1p-60f,
+                                         1e18f,
+                                         -1e18f,
+                                         1e9f,
+                                         1e-9f,
+                                         1e-18f,
+                                         0x1p-24f,
+                                         0x1p24f,
+                                         0x1.000002p0f,
+                                         1e15f};
     const std::uint8_t first = byte();
     if (first < 160) return static_cast<float>(first - 80) / 8;
     if (first < 160 + std::size(specials)) return specials[first - 160];
@@ -54,7 +73,8 @@ class FuzzNumbers : public NumberSource {
     for (std::uint8_t& part : word) part = byte();
     float any;
     std::memcpy(&any, word, sizeof any);
-    if (first < 228) any = std::ldexp(std::fmod(any, 1.0f), first - 214);  // of a scale that scenes have
+    if (first < 228)
+      any = std::ldexp(std::fmod(any, 1.0f), first - 214);  // of a scale that scenes have
     return any;
   }
 

@@ -6,7 +6,8 @@
 #include "importer.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  caplet::test::fuzz_importer(caplet::import_trk, data, size,
-                              caplet::ImportOptions(std::map<std::string, std::string>{{"color", "scalar"}}));
+  caplet::test::fuzz_importer(
+      caplet::import_trk, data, size,
+      caplet::ImportOptions(std::map<std::string, std::string>{{"color", "scalar"}}));
   return caplet::test::fuzz_importer(caplet::import_trk, data, size);
 }

@@ -14,7 +14,8 @@
 
 namespace caplet::test {
 
-/// Whatever is read as a mesh of such an ending has finite vertices, and triangles of vertices that are there.
+/// Whatever is read as a mesh of such an ending has finite vertices, and triangles of vertices that
+/// are there.
 inline int fuzz_robot_mesh(const std::string& ending, const std::uint8_t* data, std::size_t size) {
   // Readers go by the name's ending, so the file in memory gets one.
   static const std::filesystem::path folder = [] {
@@ -36,7 +37,8 @@ inline int fuzz_robot_mesh(const std::string& ending, const std::uint8_t* data, 
     for (const TriangleMeshShape& part : *parts) {
       require(!part.triangles.empty());
       require(part.normals.empty() || part.normals.size() == part.positions.size());
-      for (const glm::vec3& p : part.positions) require(std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z));
+      for (const glm::vec3& p : part.positions)
+        require(std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z));
       for (const auto& triangle : part.triangles)
         for (const std::uint32_t vertex : triangle) require(vertex < part.positions.size());
     }

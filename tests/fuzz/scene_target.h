@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// The target of scenes: a few shapes of any size that validation lets through, lowered, and any rays. The traversal, surfaces and
-// lights of kernels/, compiled for the host, must stay within their arrays and answer with numbers that mean something.
+// The target of scenes: a few shapes of any size that validation lets through, lowered, and any
+// rays. The traversal, surfaces and lights of kernels/, compiled for the host, must stay within
+// their arrays and answer with numbers that mean something.
 #pragma once
 
 #include <tbb/global_control.h>
@@ -27,18 +28,21 @@ bool finite(const float (&v)[n]) {
   return std::all_of(v, v + n, [](float x) { return std::isfinite(x); });
 }
 
-/// Unit length: kernels divide by a square root, OpenCL allows them 6 and 5 eps each, and three products and sums, 16 in all;
-/// twice that.
+/// Unit length: kernels divide by a square root, OpenCL allows them 6 and 5 eps each, and three
+/// products and sums, 16 in all; twice that.
 inline bool unit(const float (&v)[3]) {
   const double length = std::sqrt(double(v[0]) * v[0] + double(v[1]) * v[1] + double(v[2]) * v[2]);
   return std::abs(length - 1) <= 32 * 0x1p-24;
 }
 
 inline bool within_reach(const float (&p)[3]) {
-  return std::all_of(p, p + 3, [](float x) { return std::abs(x) <= static_cast<float>(largest_length); });
+  return std::all_of(p, p + 3,
+                     [](float x) { return std::abs(x) <= static_cast<float>(largest_length); });
 }
 
-inline bool same(const HitRecord& a, const HitRecord& b) { return std::memcmp(&a, &b, sizeof a) == 0; }
+inline bool same(const HitRecord& a, const HitRecord& b) {
+  return std::memcmp(&a, &b, sizeof a) == 0;
+}
 
 /// The order that lists promise.
 inline bool before(const FlatScene& scene, const HitRecord& a, const HitRecord& b) {
@@ -46,15 +50,18 @@ inline bool before(const FlatScene& scene, const HitRecord& a, const HitRecord& 
   const bool a_leaves = a.surface & CAPLET_LEAVING, b_leaves = b.surface & CAPLET_LEAVING;
   if (a_leaves != b_leaves) return a_leaves;
   const auto key = [&](const HitRecord& hit) {
-    const std::uint32_t object = hit.instance == CAPLET_NONE ? 0 : scene.instances[hit.instance].object + 1;
-    return std::tuple(object, std::bit_cast<std::uint32_t>(scene.leaves[hit.slot]), hit.instance, hit.surface);
+    const std::uint32_t object =
+        hit.instance == CAPLET_NONE ? 0 : scene.instances[hit.instance].object + 1;
+    return std::tuple(object, std::bit_cast<std::uint32_t>(scene.leaves[hit.slot]), hit.instance,
+                      hit.surface);
   };
   return key(a) < key(b);
 }
 
 class Checker {
  public:
-  Checker(const FlatScene& scene, FuzzNumbers& numbers) : scene_(scene), arrays_({scene, {}}), numbers_(numbers) {}
+  Checker(const FlatScene& scene, FuzzNumbers& numbers)
+      : scene_(scene), arrays_({scene, {}}), numbers_(numbers) {}
 
   void ray(const RayRecord& ray) {
     const HostGroups* g = arrays_.groups();
@@ -100,7 +107,8 @@ class Checker {
     if (!host_kernels(8).light_sample(arrays_.groups(), p, lambda, u, &sample)) return;
     require(std::isfinite(sample.pdf) && sample.pdf > 0);
     require(unit(sample.wi));
-    require(finite(sample.radiance) && *std::min_element(sample.radiance, sample.radiance + 4) >= 0);
+    require(finite(sample.radiance) &&
+            *std::min_element(sample.radiance, sample.radiance + 4) >= 0);
     require(sample.infinite || finite(sample.target));
   }
 
@@ -135,7 +143,8 @@ class Checker {
     if (s.light == CAPLET_NONE) return;
     // Light densities are for unit directions.
     RayRecord unit_ray = ray;
-    const double length = std::sqrt(double(ray.dx) * ray.dx + double(ray.dy) * ray.dy + double(ray.dz) * ray.dz);
+    const double length =
+        std::sqrt(double(ray.dx) * ray.dx + double(ray.dy) * ray.dy + double(ray.dz) * ray.dz);
     unit_ray.dx = static_cast<float>(ray.dx / length);
     unit_ray.dy = static_cast<float>(ray.dy / length);
     unit_ray.dz = static_cast<float>(ray.dz / length);
@@ -167,7 +176,9 @@ inline RayRecord make_ray(FuzzNumbers& numbers, const WorldRecord& world) {
   ray.oy = numbers.number();
   ray.oz = numbers.number();
   // Towards a point near the middle of the scene.
-  const auto offset = [&] { return world.radius * (static_cast<float>(numbers.byte()) - 128) / 128; };
+  const auto offset = [&] {
+    return world.radius * (static_cast<float>(numbers.byte()) - 128) / 128;
+  };
   ray.dx = world.center_x + offset() - ray.ox;
   ray.dy = world.center_y + offset() - ray.oy;
   ray.dz = world.center_z + offset() - ray.oz;
@@ -188,16 +199,18 @@ inline int fuzz_scene(const std::uint8_t* data, std::size_t size, bool csg) {
   return run_target([&] {
     FuzzNumbers numbers(data, size);
     const unsigned kind = numbers.below(ModelMaker::csg_kind + 1), count = 1 + numbers.below(3);
-    const Scene scene = ModelMaker(numbers).scene(csg                           ? ModelMaker::csg_kind
-                                                  : kind < ModelMaker::csg_kind ? kind
-                                                                                : ModelMaker::simple_kinds,
-                                                  count);
+    const Scene scene =
+        ModelMaker(numbers).scene(csg                           ? ModelMaker::csg_kind
+                                  : kind < ModelMaker::csg_kind ? kind
+                                                                : ModelMaker::simple_kinds,
+                                  count);
     Diagnostics diagnostics;
     validate(scene, diagnostics);
     diagnostics.finish();
     const FlatScene flat = lower(scene);
     Checker checker(flat, numbers);
-    for (int i = 0; i < 16 && (i < 2 || !numbers.ended()); ++i) checker.ray(make_ray(numbers, flat.world));
+    for (int i = 0; i < 16 && (i < 2 || !numbers.ended()); ++i)
+      checker.ray(make_ray(numbers, flat.world));
     float p[3];
     for (float& x : p) {
       x = numbers.number();

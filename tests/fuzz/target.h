@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// What the fuzz targets share: how one is run, bytes as a file, and what must hold for every scene that an importer returns.
+// What the fuzz targets share: how one is run, bytes as a file, and what must hold for every scene
+// that an importer returns.
 #pragma once
 
 #include <sys/mman.h>
@@ -26,7 +27,8 @@
 namespace caplet::test {
 
 /// Names its place and aborts when something does not hold, which libFuzzer reports with the input.
-inline void require(bool condition, const char* file = __builtin_FILE(), int line = __builtin_LINE()) {
+inline void require(bool condition, const char* file = __builtin_FILE(),
+                    int line = __builtin_LINE()) {
   if (condition) return;
   std::fprintf(stderr, "%s:%d: this does not hold\n", file, line);
   std::abort();
@@ -65,7 +67,9 @@ class MemoryFile {
 /// Every image is one grey pixel.
 class OnePixel : public ImageReader {
  public:
-  EnvironmentImage read_rgb(const std::filesystem::path&) const override { return {1, 1, {1, 1, 1}}; }
+  EnvironmentImage read_rgb(const std::filesystem::path&) const override {
+    return {1, 1, {1, 1, 1}};
+  }
   TextureImage read_texture(const std::filesystem::path&, const ImageEncoding&) const override {
     TextureImage image;
     image.width = image.height = 1;
@@ -75,8 +79,8 @@ class OnePixel : public ImageReader {
   }
 };
 
-/// What holds for every scene that was imported and validated: indices in range, sizes positive (a tapered capsule may end in a
-/// point), all of it finite.
+/// What holds for every scene that was imported and validated: indices in range, sizes positive (a
+/// tapered capsule may end in a point), all of it finite.
 inline void check_scene(const Scene& scene) {
   const auto check_shapes = [&scene](const std::vector<Shape>& shapes) {
     for (const Shape& shape : shapes) {
@@ -89,11 +93,13 @@ inline void check_scene(const Scene& scene) {
         require(capsules->u.empty() || capsules->u.size() == count);
         for (const glm::vec2& u : capsules->u) require(std::isfinite(u.x) && std::isfinite(u.y));
         for (std::size_t i = 0; i < count; ++i) {
-          const float radius0 = capsules->radius0[i], radius1 = capsules->radius1.empty() ? radius0 : capsules->radius1[i];
+          const float radius0 = capsules->radius0[i],
+                      radius1 = capsules->radius1.empty() ? radius0 : capsules->radius1[i];
           require(radius0 >= 0 && radius1 >= 0 && std::max(radius0, radius1) > 0);
           require(std::isfinite(radius0) && std::isfinite(radius1));
         }
-        for (const std::uint32_t material : capsules->materials) require(material < scene.materials.size());
+        for (const std::uint32_t material : capsules->materials)
+          require(material < scene.materials.size());
       } else if (const auto* mesh = std::get_if<TriangleMeshShape>(&shape.geometry)) {
         for (const auto& triangle : mesh->triangles)
           for (const std::uint32_t vertex : triangle) require(vertex < mesh->positions.size());
@@ -106,7 +112,8 @@ inline void check_scene(const Scene& scene) {
   for (const Object& object : scene.objects) check_shapes(object.shapes);
   for (const Instance& instance : scene.instances) require(instance.object < scene.objects.size());
   for (int column = 0; column < 4; ++column)
-    for (int row = 0; row < 4; ++row) require(std::isfinite(scene.camera.world_from_camera[column][row]));
+    for (int row = 0; row < 4; ++row)
+      require(std::isfinite(scene.camera.world_from_camera[column][row]));
   bounds_of(scene);
   count_primitives(scene);
 }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Build tool: flatten_kernels ROOT FILE OUTPUT writes FILE with its includes put in, which are looked for in ROOT, then beside
-// FILE.
+// Build tool: flatten_kernels ROOT FILE OUTPUT writes FILE with its includes put in, which are
+// looked for in ROOT, then beside FILE.
 #include <exception>
 #include <filesystem>
 #include <fstream>
@@ -34,7 +34,8 @@ int main(int argc, char** argv) {
       const std::optional<std::string> text = read(root / path);
       return text ? text : read(file.parent_path() / path);
     };
-    std::ofstream(argv[3]) << caplet::flatten(reader(file.filename().string()).value(), file.string(), reader);
+    std::ofstream(argv[3]) << caplet::flatten(reader(file.filename().string()).value(),
+                                              file.string(), reader);
     return 0;
   } catch (const std::exception& error) {
     std::cerr << error.what() << '\n';

@@ -2,10 +2,10 @@
 // Copyright Caplet authors
 //
 // host_kernels.def for one CAPLET_REAL_WIDTH, from the text of kernels/.
-#include "groups.cl"
 #include "bsdf/bsdf.cl"
-#include "lights/lights.cl"
 #include "camera/camera.cl"
+#include "groups.cl"
+#include "lights/lights.cl"
 #include "math/filter.cl"
 #include "shapes/surface.cl"
 #include "stages/pick_record.cl"
@@ -20,7 +20,7 @@ typedef struct {
 #undef GROUP_BEGIN
 #undef BUFFER
 #undef GROUP_END
-  __global const float* packed_nodes;  // of the tree, for width 1
+      __global const float* packed_nodes;  // of the tree, for width 1
 } HostGroups;
 
 #include "host_kernels.h"
@@ -47,12 +47,14 @@ int HOST(trace_any)(const HostGroups* g, const RayRecord* ray) {
   return trace_any(&tree, *ray);
 }
 
-uint HOST(trace_all)(const HostGroups* g, const RayRecord* ray, uint capacity, __global HitRecord* sorted) {
+uint HOST(trace_all)(const HostGroups* g, const RayRecord* ray, uint capacity,
+                     __global HitRecord* sorted) {
   const Tree tree = traced_tree(g);
   return trace_all(&tree, *ray, capacity, sorted);
 }
 
-void HOST(surface_at)(const HostGroups* g, const RayRecord* ray, const HitRecord* hit, HostSurface* out) {
+void HOST(surface_at)(const HostGroups* g, const RayRecord* ray, const HitRecord* hit,
+                      HostSurface* out) {
   const Surface s = surface_at(&g->tree, &g->surfaces, ray, hit);
   vstore3(s.p, 0, out->p);
   vstore3(s.ng, 0, out->ng);
@@ -69,17 +71,23 @@ void HOST(surface_at)(const HostGroups* g, const RayRecord* ray, const HitRecord
   out->leaving = s.leaving;
 }
 
-PickRecord HOST(pick_record)(const HostGroups* g, const RayRecord* ray, const HitRecord* hit) { return pick_record(&g->tree, &g->surfaces, ray, hit); }
-
-void HOST(offset_origin)(const HostSurface* surface, const float* direction, float* origin) {
-  vstore3(offset_origin(three(surface->p), three(surface->ng), surface->error, three(direction)), 0, origin);
+PickRecord HOST(pick_record)(const HostGroups* g, const RayRecord* ray, const HitRecord* hit) {
+  return pick_record(&g->tree, &g->surfaces, ray, hit);
 }
 
-int HOST(light_sample)(const HostGroups* g, const float* p, const float* lambda, const float* u, HostLightSample* out) {
+void HOST(offset_origin)(const HostSurface* surface, const float* direction, float* origin) {
+  vstore3(offset_origin(three(surface->p), three(surface->ng), surface->error, three(direction)), 0,
+          origin);
+}
+
+int HOST(light_sample)(const HostGroups* g, const float* p, const float* lambda, const float* u,
+                       HostLightSample* out) {
   LightSample s;
   const Scene scene = {g->tree, g->surfaces, g->spectra, g->lights, g->materials};
   const LightReceiver at = {three(p), CAPLET_NONE};
-  if (!light_sample(&scene, at, four(lambda), (uint)(fmin(u[0], 0x1.fffffep-1f) * 4294967296.0f), (float2)(u[1], u[2]), &s)) return 0;
+  if (!light_sample(&scene, at, four(lambda), (uint)(fmin(u[0], 0x1.fffffep-1f) * 4294967296.0f),
+                    (float2)(u[1], u[2]), &s))
+    return 0;
   vstore3(s.wi, 0, out->wi);
   vstore3(s.target, 0, out->target);
   vstore4(s.radiance, 0, out->radiance);
@@ -89,17 +97,22 @@ int HOST(light_sample)(const HostGroups* g, const float* p, const float* lambda,
   return 1;
 }
 
-float HOST(light_area)(const HostGroups* g, const RayRecord* ray, const HitRecord* hit, const float* lambda, float* emitted) {
+float HOST(light_area)(const HostGroups* g, const RayRecord* ray, const HitRecord* hit,
+                       const float* lambda, float* emitted) {
   const Surface s = surface_at(&g->tree, &g->surfaces, ray, hit);
   const float3 d = (float3)(ray->dx, ray->dy, ray->dz);
-  vstore4(light_emitted(&g->spectra, &g->lights, s.light, s.ng, s.uv, -d, four(lambda)), 0, emitted);
+  vstore4(light_emitted(&g->spectra, &g->lights, s.light, s.ng, s.uv, -d, four(lambda)), 0,
+          emitted);
   const Scene scene = {g->tree, g->surfaces, g->spectra, g->lights, g->materials};
   const LightReceiver at = {(float3)(ray->ox, ray->oy, ray->oz), CAPLET_NONE};
   return light_area_pdf(&scene, s.light, at, &s, d);
 }
 
-void HOST(light_infinite)(const HostGroups* g, const float* origin, const float* direction, const float* lambda, float last_pdf, int specular, float* out) {
-  vstore4(light_infinite(&g->spectra, &g->lights, three(origin), three(direction), four(lambda), last_pdf, specular), 0, out);
+void HOST(light_infinite)(const HostGroups* g, const float* origin, const float* direction,
+                          const float* lambda, float last_pdf, int specular, float* out) {
+  vstore4(light_infinite(&g->spectra, &g->lights, three(origin), three(direction), four(lambda),
+                         last_pdf, specular),
+          0, out);
 }
 
 static Bsdf host_bsdf(const HostGroups* g, uint material, const float* lambda) {
@@ -108,7 +121,8 @@ static Bsdf host_bsdf(const HostGroups* g, uint material, const float* lambda) {
   return bsdf_make(&g->materials, &g->spectra, chosen, &place, four(lambda));
 }
 
-int HOST(bsdf_sample)(const HostGroups* g, uint material, const float* lambda, const float* wo, const float* u, HostBsdfSample* out) {
+int HOST(bsdf_sample)(const HostGroups* g, uint material, const float* lambda, const float* wo,
+                      const float* u, HostBsdfSample* out) {
   const Bsdf b = host_bsdf(g, material, lambda);
   BsdfSample s;
   if (!bsdf_sample(&b, three(wo), u[0], (float2)(u[1], u[2]), &s)) return 0;
@@ -121,21 +135,27 @@ int HOST(bsdf_sample)(const HostGroups* g, uint material, const float* lambda, c
   return 1;
 }
 
-float HOST(bsdf_eval)(const HostGroups* g, uint material, const float* lambda, const float* wo, const float* wi, float* f) {
+float HOST(bsdf_eval)(const HostGroups* g, uint material, const float* lambda, const float* wo,
+                      const float* wi, float* f) {
   const Bsdf b = host_bsdf(g, material, lambda);
   float pdf;
   vstore4(bsdf_eval(&b, three(wo), three(wi), &pdf), 0, f);
   return pdf;
 }
 
-void HOST(bsdf_albedo)(const HostGroups* g, uint material, const float* lambda, const float* wo, float* albedo) {
+void HOST(bsdf_albedo)(const HostGroups* g, uint material, const float* lambda, const float* wo,
+                       float* albedo) {
   const Bsdf b = host_bsdf(g, material, lambda);
   vstore4(bsdf_albedo(&b, three(wo)), 0, albedo);
 }
 
-void HOST(camera)(const HostGroups* g, uint x, uint y, const float* u, RayRecord* ray, HostCameraSample* out) {
-  const float2 offset = filter_sample(g->camera.filter_table, g->view.view->filter_width, g->view.view->filter_height, (float2)(u[0], u[1]), &out->filter_weight);
-  *ray = camera_ray(g->camera.camera, (float2)((float)x + 0.5f, (float)y + 0.5f) + offset, (float2)(u[2], u[3]));
+void HOST(camera)(const HostGroups* g, uint x, uint y, const float* u, RayRecord* ray,
+                  HostCameraSample* out) {
+  const float2 offset =
+      filter_sample(g->camera.filter_table, g->view.view->filter_width, g->view.view->filter_height,
+                    (float2)(u[0], u[1]), &out->filter_weight);
+  *ray = camera_ray(g->camera.camera, (float2)((float)x + 0.5f, (float)y + 0.5f) + offset,
+                    (float2)(u[2], u[3]));
   float4 pdf;
   vstore4(wavelengths_sample(g->observer.wavelength_table, u[4], &pdf), 0, out->lambda);
   vstore4(pdf, 0, out->lambda_pdf);
@@ -148,7 +168,8 @@ void HOST(answer)(const HostGroups* g, const HostQuestion* question, __global Ho
   a.closest = HOST(trace_closest)(g, &q.ray);
   a.any = HOST(trace_any)(g, &q.ray);
   HOST(camera)(g, q.x, q.y, q.u, &a.camera_ray, &a.camera);
-  const float from[3] = {q.ray.ox, q.ray.oy, q.ray.oz}, direction[3] = {q.ray.dx, q.ray.dy, q.ray.dz};
+  const float from[3] = {q.ray.ox, q.ray.oy, q.ray.oz},
+              direction[3] = {q.ray.dx, q.ray.dy, q.ray.dz};
   if (a.closest.slot == CAPLET_NONE) {
     HOST(light_infinite)(g, from, direction, q.lambda, q.u[7], q.x & 1u, a.sky);
   } else {
@@ -168,9 +189,11 @@ void HOST(answer)(const HostGroups* g, const HostQuestion* question, __global Ho
     float wo[3];
     vstore3(to_local(&frame, backward), 0, wo);
     HOST(bsdf_albedo)(g, a.surface.material, q.lambda, wo, a.albedo);
-    a.found_scattered = HOST(bsdf_sample)(g, a.surface.material, q.lambda, wo, q.u + 3, &a.scattered);
+    a.found_scattered =
+        HOST(bsdf_sample)(g, a.surface.material, q.lambda, wo, q.u + 3, &a.scattered);
     if (a.found_scattered)
-      a.scattered_pdf = HOST(bsdf_eval)(g, a.surface.material, q.lambda, wo, a.scattered.wi, a.scattered_value);
+      a.scattered_pdf =
+          HOST(bsdf_eval)(g, a.surface.material, q.lambda, wo, a.scattered.wi, a.scattered_value);
   }
   *out = a;
   out->count = HOST(trace_all)(g, &q.ray, HOST_LIST_CAPACITY, out->list);

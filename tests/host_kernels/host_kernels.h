@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// The pure folders of kernels/ as functions of the host: compiled from the same text (host_kernels.cl), for both widths. Valid as
-// OpenCL C and as C++.
+// The pure folders of kernels/ as functions of the host: compiled from the same text
+// (host_kernels.cl), for both widths. Valid as OpenCL C and as C++.
 #ifndef CAPLET_TESTS_HOST_KERNELS_H
 #define CAPLET_TESTS_HOST_KERNELS_H
 
@@ -60,7 +60,8 @@ typedef struct {
   float filter_weight, lambda[4], lambda_pdf[4];
 } HostCameraSample;
 
-// One ray and what is asked of it, and all that the kernels say. `found` fields tell which others have a meaning.
+// One ray and what is asked of it, and all that the kernels say. `found` fields tell which others
+// have a meaning.
 #define HOST_LIST_CAPACITY 8
 typedef struct {
   RayRecord ray;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// That the kernels compiled for the host are the device's: the same rays, of every kind of shape, answered by both. What
-// sanitizers and fuzzers see of them is then what devices compute.
+// That the kernels compiled for the host are the device's: the same rays, of every kind of shape,
+// answered by both. What sanitizers and fuzzers see of them is then what devices compute.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -64,22 +64,26 @@ std::optional<std::string> read_text(const std::filesystem::path& path) {
 
 /// host_kernels.cl for a device.
 std::string device_text() {
-  const std::filesystem::path here = source_folder() / "tests/host_kernels", kernels = source_folder() / "kernels";
+  const std::filesystem::path here = source_folder() / "tests/host_kernels",
+                              kernels = source_folder() / "kernels";
   const auto read = [&](const std::string& path) {
-    return std::filesystem::exists(here / path) ? read_text(here / path) : read_text(kernels / path);
+    return std::filesystem::exists(here / path) ? read_text(here / path)
+                                                : read_text(kernels / path);
   };
   return flatten(*read("host_kernels.cl") + entry_text, "host_kernels", read);
 }
 
 Program device_program(int width) {
-  return Program::from_source(test_device(), "host kernels", device_text(), fmt::format("-DCAPLET_REAL_WIDTH={}", width));
+  return Program::from_source(test_device(), "host kernels", device_text(),
+                              fmt::format("-DCAPLET_REAL_WIDTH={}", width));
 }
 
 std::vector<HostAnswer> ask_device(Program& program, int width, const LoweredModel& model,
                                    const std::vector<HostQuestion>& questions) {
   cl::Kernel kernel = program.kernel("answers");
   cl_uint index = 0;
-  const SceneBuffers scene(test_device(), model.scene, width == 1 ? Encoding::single : Encoding::wide);
+  const SceneBuffers scene(test_device(), model.scene,
+                           width == 1 ? Encoding::single : Encoding::wide);
   const SensorBuffers view(test_device(), model.view);
 #define BUFFER(name, type, access) kernel.setArg(index++, buffers.name.handle());
 #define GROUP_END(Type) }
@@ -111,7 +115,9 @@ class Tame : public NumberSource {
   double coordinate() override { return between(-2, 2); }
   double length() override { return between(0.2, 1.5); }
   double fraction() override { return between(0.05, 1); }
-  double between(double low, double high) { return low + (high - low) * static_cast<double>(random_() >> 5) * 0x1p-27; }
+  double between(double low, double high) {
+    return low + (high - low) * static_cast<double>(random_() >> 5) * 0x1p-27;
+  }
 
  private:
   std::mt19937 random_;
@@ -137,7 +143,8 @@ std::vector<HostQuestion> rays_into(const Bounds& bounds, std::uint32_t seed, st
   Tame numbers(seed);
   const glm::dvec3 center = 0.5 * (bounds.min + bounds.max), half = 0.5 * (bounds.max - bounds.min);
   const auto point = [&](double reach) {
-    const double x = numbers.between(-reach, reach), y = numbers.between(-reach, reach), z = numbers.between(-reach, reach);
+    const double x = numbers.between(-reach, reach), y = numbers.between(-reach, reach),
+                 z = numbers.between(-reach, reach);
     return center + glm::dvec3(x, y, z) * half;
   };
   std::vector<HostQuestion> out(count);
@@ -153,12 +160,13 @@ std::vector<HostQuestion> rays_into(const Bounds& bounds, std::uint32_t seed, st
   return out;
 }
 
-/// Words of an answer side by side. Both sides round in their own way (one contracts products and sums, and both have their own
-/// sine), so numbers may differ; by how much depends on how obliquely surfaces are met. Derived bounds are the shape tests'
-/// business: here a word counts as the same within 1e-3 of its size, 8,000 roundings, and the share of others is what is looked
-/// at.
+/// Words of an answer side by side. Both sides round in their own way (one contracts products and
+/// sums, and both have their own sine), so numbers may differ; by how much depends on how obliquely
+/// surfaces are met. Derived bounds are the shape tests' business: here a word counts as the same
+/// within 1e-3 of its size, 8,000 roundings, and the share of others is what is looked at.
 struct Tally {
-  std::size_t answers = 0, same_bits = 0, other_hits = 0, words = 0, other_words = 0, hits = 0, lit = 0, scattered = 0;
+  std::size_t answers = 0, same_bits = 0, other_hits = 0, words = 0, other_words = 0, hits = 0,
+              lit = 0, scattered = 0;
 };
 
 bool same_number(float a, float b) {
@@ -185,9 +193,9 @@ void compare(const HostAnswer& host, const HostAnswer& there, Tally& tally) {
   tally.lit += host.found_light != 0;
   tally.scattered += host.found_scattered != 0;
   if (host.closest.slot != there.closest.slot || host.closest.instance != there.closest.instance ||
-      host.closest.surface != there.closest.surface || host.any != there.any || host.count != there.count ||
-      host.found_light != there.found_light || host.found_area != there.found_area ||
-      host.found_scattered != there.found_scattered) {
+      host.closest.surface != there.closest.surface || host.any != there.any ||
+      host.count != there.count || host.found_light != there.found_light ||
+      host.found_area != there.found_area || host.found_scattered != there.found_scattered) {
     ++tally.other_hits;
     return;
   }
@@ -234,10 +242,11 @@ TEST_P(HostKernels, SayWhatTheDeviceSays) {
       }
     }
     std::printf(
-        "%s, width %d: %zu rays, %zu hits, %zu lit, %zu scattered; %zu hits of the same bits, %zu others; %zu of %zu numbers "
+        "%s, width %d: %zu rays, %zu hits, %zu lit, %zu scattered; %zu hits of the same bits, %zu "
+        "others; %zu of %zu numbers "
         "differ\n",
-        ModelMaker::kind_name(GetParam()), width, tally.answers, tally.hits, tally.lit, tally.scattered, tally.same_bits,
-        tally.other_hits, tally.other_words, tally.words);
+        ModelMaker::kind_name(GetParam()), width, tally.answers, tally.hits, tally.lit,
+        tally.scattered, tally.same_bits, tally.other_hits, tally.other_words, tally.words);
     EXPECT_EQ(scenes, 12);
     EXPECT_GT(tally.hits, tally.answers / 10);
     EXPECT_GT(tally.lit, tally.answers / 100);
@@ -248,7 +257,9 @@ TEST_P(HostKernels, SayWhatTheDeviceSays) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Kinds, HostKernels, testing::Range(0u, ModelMaker::kinds),
-                         [](const auto& info) { return std::string(ModelMaker::kind_name(info.param)); });
+                         [](const auto& info) {
+                           return std::string(ModelMaker::kind_name(info.param));
+                         });
 
 // The same operations one lane at a time and eight at once, with nothing contracted: the same bits.
 TEST(HostKernels, DoNotDependOnTheWidth) {
@@ -268,7 +279,8 @@ TEST(HostKernels, DoNotDependOnTheWidth) {
       ASSERT_EQ(wide.any, scalar.any);
       ASSERT_EQ(wide.count, scalar.count) << "seed " << seed;
       for (std::uint32_t i = 0; i < std::min<std::uint32_t>(wide.count, HOST_LIST_CAPACITY); ++i)
-        ASSERT_EQ(std::memcmp(&wide.list[i], &scalar.list[i], sizeof wide.list[i]), 0) << "seed " << seed;
+        ASSERT_EQ(std::memcmp(&wide.list[i], &scalar.list[i], sizeof wide.list[i]), 0)
+            << "seed " << seed;
     }
   }
   EXPECT_GT(rays, 5000u);

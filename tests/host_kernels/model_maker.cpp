@@ -28,10 +28,12 @@ glm::dmat4 ModelMaker::transform() {
     case 0:
       return glm::translate(m, point());
     case 1:
-      m = glm::rotate(glm::translate(m, point()), full_turn * numbers_.fraction(), glm::dvec3(0.6, 0, 0.8));
+      m = glm::rotate(glm::translate(m, point()), full_turn * numbers_.fraction(),
+                      glm::dvec3(0.6, 0, 0.8));
       return glm::scale(m, glm::dvec3{numbers_.length(), numbers_.length(), numbers_.length()});
     case 2:
-      for (int column = 0; column < 4; ++column) m[column] = glm::dvec4(point(), column == 3 ? 1 : 0);
+      for (int column = 0; column < 4; ++column)
+        m[column] = glm::dvec4(point(), column == 3 ? 1 : 0);
       return m;
     default:
       return m;
@@ -43,9 +45,12 @@ Spectrum ModelMaker::spectrum(double greatest) {
     case 0:
       return ConstantSpectrum{greatest * numbers_.fraction()};
     case 1:
-      return RgbSpectrum{{greatest * numbers_.fraction(), greatest * numbers_.fraction(), greatest * numbers_.fraction()}, {}};
+      return RgbSpectrum{{greatest * numbers_.fraction(), greatest * numbers_.fraction(),
+                          greatest * numbers_.fraction()},
+                         {}};
     case 2:
-      return SampledSpectrum{{400, 500 + 100 * numbers_.fraction()}, {greatest * numbers_.fraction(), greatest}};
+      return SampledSpectrum{{400, 500 + 100 * numbers_.fraction()},
+                             {greatest * numbers_.fraction(), greatest}};
     default:
       return ConstantSpectrum{greatest};
   }
@@ -61,7 +66,8 @@ void ModelMaker::mesh(Mesh& out, std::vector<std::array<std::uint32_t, corners>>
     for (unsigned i = 0; i < vertices; ++i) out.uvs.push_back(glm::vec2(point()));
   faces.resize(1 + numbers_.below(2));
   for (auto& face : faces)
-    for (std::size_t i = 0; i < corners; ++i) face[i] = (static_cast<std::uint32_t>(i) + numbers_.below(vertices)) % vertices;
+    for (std::size_t i = 0; i < corners; ++i)
+      face[i] = (static_cast<std::uint32_t>(i) + numbers_.below(vertices)) % vertices;
   for (std::uint32_t i = 0; i < corners; ++i) faces[0][i] = i;
 }
 
@@ -161,7 +167,8 @@ Shape ModelMaker::shape(unsigned kind) {
   out.world_from_object = transform();
   out.material = numbers_.below(materials_);
   if (numbers_.below(4) == 0)
-    for (std::size_t i = 0; i < surface_count(out); ++i) out.materials.push_back(numbers_.below(materials_));
+    for (std::size_t i = 0; i < surface_count(out); ++i)
+      out.materials.push_back(numbers_.below(materials_));
   out.one_sided = numbers_.below(4) == 0;
   out.reverse_orientation = numbers_.below(4) == 0;
   if (numbers_.below(3) == 0) {
@@ -169,7 +176,8 @@ Shape ModelMaker::shape(unsigned kind) {
     emission.radiance = spectrum(10);
     emission.two_sided = numbers_.below(2) == 0;
     if (numbers_.below(4) == 0)
-      emission.surfaces = {numbers_.below(static_cast<unsigned>(std::max<std::size_t>(1, surface_count(out))))};
+      emission.surfaces = {
+          numbers_.below(static_cast<unsigned>(std::max<std::size_t>(1, surface_count(out))))};
     out.emission = emission;
   }
   return out;
@@ -212,7 +220,8 @@ Material ModelMaker::material() {
       out.model = CoatedDiffuseMaterial{spectrum(1), spectrum(2), u, v, layer()};
       break;
     case 5:
-      out.model = CoatedConductorMaterial{spectrum(2), u, v, spectrum(4), spectrum(4), std::nullopt, v, u, layer()};
+      out.model = CoatedConductorMaterial{spectrum(2),  u, v, spectrum(4), spectrum(4),
+                                          std::nullopt, v, u, layer()};
       break;
     case 6:
       out.model = HairMaterial{spectrum(4), std::nullopt, 1 + u, u, v, 4 * v};
@@ -230,7 +239,8 @@ Material ModelMaker::material() {
 Light ModelMaker::light() {
   Light out;
   const auto unit = [&] {
-    const double z = 2 * numbers_.fraction() - 1, phi = full_turn * numbers_.fraction(), r = std::sqrt(std::max(0.0, 1 - z * z));
+    const double z = 2 * numbers_.fraction() - 1, phi = full_turn * numbers_.fraction(),
+                 r = std::sqrt(std::max(0.0, 1 - z * z));
     return glm::dvec3(r * std::cos(phi), r * std::sin(phi), z);
   };
   const auto image = [&](int width, int height) {
@@ -238,7 +248,8 @@ Light ModelMaker::light() {
     made->width = width;
     made->height = height;
     made->equal_area = width == height;
-    for (int i = 0; i < 3 * width * height; ++i) made->rgb.push_back(static_cast<float>(numbers_.fraction()));
+    for (int i = 0; i < 3 * width * height; ++i)
+      made->rgb.push_back(static_cast<float>(numbers_.fraction()));
     return made;
   };
   switch (numbers_.below(5)) {
@@ -246,7 +257,8 @@ Light ModelMaker::light() {
       out.model = PointLight{spectrum(10), point()};
       break;
     case 1:
-      out.model = SpotLight{spectrum(10), point(), unit(), numbers_.fraction(), numbers_.fraction()};
+      out.model =
+          SpotLight{spectrum(10), point(), unit(), numbers_.fraction(), numbers_.fraction()};
       break;
     case 2:
       out.model = DistantLight{spectrum(10), unit()};
@@ -257,16 +269,19 @@ Light ModelMaker::light() {
           out.model = GoniometricLight{spectrum(10), image(2, 2), point(), glm::dmat3(1)};
           break;
         case 2:
-          out.model = ProjectionLight{image(2, 1), 1 + 170 * numbers_.fraction(), point(), glm::dmat3(1)};
+          out.model =
+              ProjectionLight{image(2, 1), 1 + 170 * numbers_.fraction(), point(), glm::dmat3(1)};
           break;
         case 3:
-          out.model = IesLight{
-              spectrum(10), std::make_shared<IesProfile>(IesProfile{{0, 1 + numbers_.fraction()}, {0}, {numbers_.fraction(), 1}}),
-              point(), glm::dmat3(1)};
+          out.model = IesLight{spectrum(10),
+                               std::make_shared<IesProfile>(IesProfile{
+                                   {0, 1 + numbers_.fraction()}, {0}, {numbers_.fraction(), 1}}),
+                               point(), glm::dmat3(1)};
           break;
         case 4: {
           const glm::dvec3 corner = point(), x(numbers_.length(), 0, 0), y(0, numbers_.length(), 0);
-          InfiniteLight model{spectrum(10), nullptr, glm::dmat3(1), LightPortal{corner, corner + y, corner + x + y, corner + x}};
+          InfiniteLight model{spectrum(10), nullptr, glm::dmat3(1),
+                              LightPortal{corner, corner + y, corner + x + y, corner + x}};
           if (numbers_.below(2) == 0) model.image = image(2, 2);
           out.model = model;
           break;
@@ -290,7 +305,8 @@ Scene ModelMaker::scene(unsigned kind, unsigned count) {
   for (unsigned i = 0; i < materials_; ++i) out.materials.push_back(material());
   const bool instanced = numbers_.below(3) == 0;
   for (unsigned i = 0; i < count; ++i) {
-    const unsigned this_kind = kind < kinds ? kind : numbers_.below(kind == simple_kinds ? csg_kind : kinds);
+    const unsigned this_kind =
+        kind < kinds ? kind : numbers_.below(kind == simple_kinds ? csg_kind : kinds);
     if (instanced && i % 2 == 0) {
       if (out.objects.empty()) out.objects.emplace_back();
       out.objects[0].shapes.push_back(shape(this_kind));

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Scenes of any shapes, materials and lights from a source of numbers: tame ones for a test, any at all for a fuzzer.
+// Scenes of any shapes, materials and lights from a source of numbers: tame ones for a test, any at
+// all for a fuzzer.
 #pragma once
 
 #include <cstdint>
@@ -32,7 +33,8 @@ class ModelMaker {
   static constexpr unsigned simple_kinds = kinds, any_kind = kinds + 1;
   static const char* kind_name(unsigned kind);
 
-  /// `count` shapes of one kind or any, some of them in an object with instances; materials; lights.
+  /// `count` shapes of one kind or any, some of them in an object with instances; materials;
+  /// lights.
   Scene scene(unsigned kind, unsigned count);
   Shape shape(unsigned kind);
   Material material();

@@ -1,28 +1,34 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// The built-in functions of OpenCL C 1.2 that kernels call, for a clang that compiles OpenCL C for the host (see CMakeLists.txt).
-// Vector types, literals, swizzles, vector comparisons (-1 for true), `mask ? a : b` and shifts modulo the width are the
-// compiler's own. What the standard leaves open is taken as C takes it, so that UBSan sees it: a conversion of what the target
-// type cannot hold, for one.
+// The built-in functions of OpenCL C 1.2 that kernels call, for a clang that compiles OpenCL C for
+// the host (see CMakeLists.txt). Vector types, literals, swizzles, vector comparisons (-1 for
+// true), `mask ? a : b` and shifts modulo the width are the compiler's own. What the standard
+// leaves open is taken as C takes it, so that UBSan sees it: a conversion of what the target type
+// cannot hold, for one.
 #ifndef CAPLET_TESTS_OPENCL_C_H
 #define CAPLET_TESTS_OPENCL_C_H
 
 #define BUILTIN static inline __attribute__((overloadable, unused))
 
-#define VECTORS(macro, ...) macro(2, __VA_ARGS__) macro(3, __VA_ARGS__) macro(4, __VA_ARGS__) macro(8, __VA_ARGS__)
+#define VECTORS(macro, ...) \
+  macro(2, __VA_ARGS__) macro(3, __VA_ARGS__) macro(4, __VA_ARGS__) macro(8, __VA_ARGS__)
 #define LANES(n, result, type, value)           \
   {                                             \
     result##n out;                              \
     for (int i = 0; i < n; ++i) out[i] = value; \
     return out;                                 \
   }
-#define VECTOR_1(n, name, result, type) BUILTIN result##n name(type##n x) LANES(n, result, type, name(x[i]))
-#define VECTOR_2(n, name, result, type) BUILTIN result##n name(type##n x, type##n y) LANES(n, result, type, name(x[i], y[i]))
-#define VECTOR_3(n, name, result, type) \
-  BUILTIN result##n name(type##n x, type##n y, type##n z) LANES(n, result, type, name(x[i], y[i], z[i]))
+#define VECTOR_1(n, name, result, type) \
+  BUILTIN result##n name(type##n x) LANES(n, result, type, name(x[i]))
+#define VECTOR_2(n, name, result, type) \
+  BUILTIN result##n name(type##n x, type##n y) LANES(n, result, type, name(x[i], y[i]))
+#define VECTOR_3(n, name, result, type)                   \
+  BUILTIN result##n name(type##n x, type##n y, type##n z) \
+      LANES(n, result, type, name(x[i], y[i], z[i]))
 // With a scalar in place of the last one or two vectors.
-#define VECTOR_2_SCALAR(n, name, result, type) BUILTIN result##n name(type##n x, type y) LANES(n, result, type, name(x[i], y))
+#define VECTOR_2_SCALAR(n, name, result, type) \
+  BUILTIN result##n name(type##n x, type y) LANES(n, result, type, name(x[i], y))
 #define VECTOR_3_SCALAR(n, name, result, type) \
   BUILTIN result##n name(type##n x, type##n y, type z) LANES(n, result, type, name(x[i], y[i], z))
 #define VECTOR_3_SCALARS(n, name, result, type) \
@@ -101,7 +107,9 @@ BUILTIN uint mul_hi(uint x, uint y) { return (uint)(((ulong)x * (ulong)y) >> 32)
 DOT(2)
 DOT(3)
 DOT(4)
-BUILTIN float3 cross(float3 x, float3 y) { return (float3)(x.y * y.z - x.z * y.y, x.z * y.x - x.x * y.z, x.x * y.y - x.y * y.x); }
+BUILTIN float3 cross(float3 x, float3 y) {
+  return (float3)(x.y * y.z - x.z * y.y, x.z * y.x - x.x * y.z, x.x * y.y - x.y * y.x);
+}
 // Through double: neither squares of large nor of small numbers are lost.
 #define LENGTH(n, ...)                                              \
   BUILTIN float length(float##n x) {                                \
@@ -135,8 +143,9 @@ BUILTIN int isless(float x, float y) { return x < y; }
 VECTORS(COMPARE)
 
 // By the most significant bit of each lane; of scalars, by any bit.
-#define SELECT_VECTOR(n, type) \
-  BUILTIN type##n select(type##n a, type##n b, int##n c) LANES(n, type, type, (c[i] < 0 ? b[i] : a[i]))
+#define SELECT_VECTOR(n, type)                           \
+  BUILTIN type##n select(type##n a, type##n b, int##n c) \
+      LANES(n, type, type, (c[i] < 0 ? b[i] : a[i]))
 BUILTIN float select(float a, float b, int c) { return c ? b : a; }
 BUILTIN int select(int a, int b, int c) { return c ? b : a; }
 VECTORS(SELECT_VECTOR, float)
@@ -159,8 +168,9 @@ VECTORS(ANY_ALL)
 
 // --- Vector data (6.12.7) ---
 
-#define LOAD_STORE_OF(n, type, space) \
-  BUILTIN type##n vload##n(size_t offset, const space type* p) LANES(n, type, type, p[n * offset + (size_t)i])
+#define LOAD_STORE_OF(n, type, space)                          \
+  BUILTIN type##n vload##n(size_t offset, const space type* p) \
+      LANES(n, type, type, p[n * offset + (size_t)i])
 #define LOAD_STORE(n, type)                                             \
   LOAD_STORE_OF(n, type, __global)                                      \
   LOAD_STORE_OF(n, type, __private)                                     \

@@ -25,7 +25,8 @@ const T* first(const T& value) {
 }  // namespace
 
 // A copied vector has no room to spare.
-SceneArrays::SceneArrays(const LoweredModel& model) : model_(model), packed_nodes_(packed_nodes(model.scene.nodes)) {
+SceneArrays::SceneArrays(const LoweredModel& model)
+    : model_(model), packed_nodes_(packed_nodes(model.scene.nodes)) {
   groups_.packed_nodes = packed_nodes_.data();
 #define GROUP_BEGIN(Type, group) \
   {                              \

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// A lowered scene in memory of exactly its size, so that AddressSanitizer sees the first access beyond an array.
+// A lowered scene in memory of exactly its size, so that AddressSanitizer sees the first access
+// beyond an array.
 #pragma once
 
 #include "host_kernels/host_kernels.h"

@@ -50,7 +50,8 @@ TEST(Model, LensesBeyondFloats) {
   for (const auto& [radius, distance] : {std::pair{1.0, 1e-40}, {1e19, 1e19}, {1e10, 1e-10}}) {
     scene.camera.lens_radius = radius;
     scene.camera.focal_distance = distance;
-    EXPECT_THAT(complaint(scene), testing::HasSubstr("where 32-bit floats end")) << radius << " at " << distance;
+    EXPECT_THAT(complaint(scene), testing::HasSubstr("where 32-bit floats end"))
+        << radius << " at " << distance;
   }
 }
 

@@ -26,7 +26,8 @@ namespace {
 using glm::dvec3;
 using testing::ElementsAre;
 
-pbrt::Parameter numbers(const std::string& type, const std::string& name, std::vector<double> values) {
+pbrt::Parameter numbers(const std::string& type, const std::string& name,
+                        std::vector<double> values) {
   pbrt::Parameter out;
   out.type = type;
   out.name = name;
@@ -42,7 +43,8 @@ struct Read {
 Read read(std::vector<pbrt::Parameter> own) {
   Diagnostics diagnostics;
   const std::string file = "scene.pbrt";
-  pbrt::Parameters parameters(std::move(own), {}, "Shape \"slab\"", {"scene.pbrt", 3, 1}, file, ColorSpace::srgb, diagnostics);
+  pbrt::Parameters parameters(std::move(own), {}, "Shape \"slab\"", {"scene.pbrt", 3, 1}, file,
+                              ColorSpace::srgb, diagnostics);
   Read out{pbrt::read_fields<Slab>(parameters), {}};
   parameters.finish();
   try {
@@ -53,7 +55,8 @@ Read read(std::vector<pbrt::Parameter> own) {
   return out;
 }
 
-const pbrt::Parameter p0 = numbers("point3", "p0", {4, -2, 3}), p1 = numbers("point3", "p1", {-4, 2, -3});
+const pbrt::Parameter p0 = numbers("point3", "p0", {4, -2, 3}),
+                      p1 = numbers("point3", "p1", {-4, 2, -3});
 
 TEST(FieldsOfShapes, CornersComeInOrderAndNumbersAsGiven) {
   const Read given = read({p0, p1, numbers("float", "radius", {0.5})});
@@ -65,13 +68,16 @@ TEST(FieldsOfShapes, CornersComeInOrderAndNumbersAsGiven) {
 }
 
 TEST(FieldsOfShapes, WhatIsWrongIsAtItsParameter) {
-  EXPECT_THAT(read({p0}).complaints, ElementsAre("scene.pbrt:3:1: Shape \"slab\": \"point3 p1\" is missing"));
+  EXPECT_THAT(read({p0}).complaints,
+              ElementsAre("scene.pbrt:3:1: Shape \"slab\": \"point3 p1\" is missing"));
   EXPECT_THAT(read({p0, p1, numbers("float", "radius", {-1})}).complaints,
               ElementsAre("scene.pbrt:3:4: Shape \"slab\": \"radius\" must be positive"));
-  EXPECT_THAT(read({p0, p1, numbers("float", "radius", {1e-60})}).complaints,
-              ElementsAre("scene.pbrt:3:4: Shape \"slab\": \"radius\" is too small for a 32-bit float"));
+  EXPECT_THAT(
+      read({p0, p1, numbers("float", "radius", {1e-60})}).complaints,
+      ElementsAre("scene.pbrt:3:4: Shape \"slab\": \"radius\" is too small for a 32-bit float"));
   const Read wide = read({p0, p1, numbers("float", "radius", {7})});
-  EXPECT_THAT(wide.complaints, ElementsAre("scene.pbrt:3:4: Shape \"slab\": \"radius\" is above 5"));
+  EXPECT_THAT(wide.complaints,
+              ElementsAre("scene.pbrt:3:4: Shape \"slab\": \"radius\" is above 5"));
   EXPECT_EQ(wide.slab.radius, 2);  // something harmless
   EXPECT_THAT(read({p0, numbers("point3", "p1", {0, 0, 101})}).complaints,
               ElementsAre("scene.pbrt:3:1: Shape \"slab\": the slab is too high"));

@@ -21,19 +21,22 @@ class FileShapes : public testing::Test {
     write_file(folder_ / "t.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
     write_file(folder_ / "inner.pbrt", "WorldBegin\nShape \"sphere\"\n");
     // Two nodes share a mesh: instances.
-    write_file(folder_ / "two.gltf",
-               R"({"asset":{"version":"2.0"},"scenes":[{"nodes":[0,1]}],"nodes":[{"mesh":0},{"mesh":0,"translation":[5,0,0]}],
+    write_file(
+        folder_ / "two.gltf",
+        R"({"asset":{"version":"2.0"},"scenes":[{"nodes":[0,1]}],"nodes":[{"mesh":0},{"mesh":0,"translation":[5,0,0]}],
 "meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],
 "accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3"}],"bufferViews":[{"buffer":0,"byteLength":36}],
 "buffers":[{"byteLength":36,"uri":"data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}]})");
   }
   Scene world(const std::string& text) const {
     return pbrt::import_text((folder_ / "scene.pbrt").string(),
-                             "Camera \"perspective\"\nWorldBegin\nLightSource \"point\"\n" + text, test::StubImages());
+                             "Camera \"perspective\"\nWorldBegin\nLightSource \"point\"\n" + text,
+                             test::StubImages());
   }
   std::string said(const std::string& text) const {
     std::string out;
-    for (const std::string& one : test::complaints_when([&] { return world(text); })) out += one + "\n";
+    for (const std::string& one : test::complaints_when([&] { return world(text); }))
+      out += one + "\n";
     return out;
   }
   static const std::string& material_of(const Scene& scene, const Shape& shape) {
@@ -48,18 +51,23 @@ TEST_F(FileShapes, FilesOfOptionsLieBesideTheScene) {
   std::string header = "{'descr': '<f8', 'fortran_order': False, 'shape': (1, 1, 3), }";
   header.resize(117, ' ');
   const double place[3] = {1, 2, 3};
-  write_file(folder_ / "m.npy", std::string("\x93NUMPY\x01\x00\x76\x00", 10) + header + "\n" +
-                                    std::string(reinterpret_cast<const char*>(place), sizeof place));
-  const Scene scene = world("Shape \"file\" \"string filename\" \"m.xyz\" \"string positions\" \"m.npy\"\n");
+  write_file(folder_ / "m.npy",
+             std::string("\x93NUMPY\x01\x00\x76\x00", 10) + header + "\n" +
+                 std::string(reinterpret_cast<const char*>(place), sizeof place));
+  const Scene scene =
+      world("Shape \"file\" \"string filename\" \"m.xyz\" \"string positions\" \"m.npy\"\n");
   ASSERT_EQ(scene.shapes.size(), 1U);
-  EXPECT_EQ(std::get<CapsulesShape>(scene.shapes[0].geometry).p0, (std::vector<glm::vec3>{{1, 2, 3}}));
+  EXPECT_EQ(std::get<CapsulesShape>(scene.shapes[0].geometry).p0,
+            (std::vector<glm::vec3>{{1, 2, 3}}));
 }
 
 TEST_F(FileShapes, HaveTheStatementsTransformAndMaterial) {
   const Scene scene = world(
-      "MakeNamedMaterial \"m\" \"string type\" \"diffuse\"\nNamedMaterial \"m\"\nTranslate 10 0 0\nScale 2 2 "
+      "MakeNamedMaterial \"m\" \"string type\" \"diffuse\"\nNamedMaterial \"m\"\nTranslate 10 0 "
+      "0\nScale 2 2 "
       "2\nReverseOrientation\n"
-      "AreaLightSource \"diffuse\"\nShape \"swc\" \"string filename\" \"n.swc\" \"string name\" \"cell\"\n");
+      "AreaLightSource \"diffuse\"\nShape \"swc\" \"string filename\" \"n.swc\" \"string name\" "
+      "\"cell\"\n");
   ASSERT_EQ(scene.shapes.size(), 2U);
   EXPECT_EQ(scene.shapes[0].name, "cell: sample 1");
   EXPECT_EQ(scene.shapes[1].name, "cell: n");
@@ -78,28 +86,36 @@ TEST_F(FileShapes, HaveTheStatementsTransformAndMaterial) {
 
 TEST_F(FileShapes, HaveTheirOwnMaterialsWhereTheStatementSaysSo) {
   const std::string before =
-      "MakeNamedMaterial \"axon\" \"string type\" \"conductor\"\nNamedMaterial \"axon\"\nShape \"sphere\"\n";
-  const Scene scene = world(before + "Shape \"file\" \"string filename\" \"n.swc\" \"bool ownmaterials\" true\nShape \"disk\"\n");
+      "MakeNamedMaterial \"axon\" \"string type\" \"conductor\"\nNamedMaterial \"axon\"\nShape "
+      "\"sphere\"\n";
+  const Scene scene = world(
+      before +
+      "Shape \"file\" \"string filename\" \"n.swc\" \"bool ownmaterials\" true\nShape \"disk\"\n");
   ASSERT_EQ(scene.shapes.size(), 4U);
   EXPECT_EQ(material_of(scene, scene.shapes[1]), "soma");
   const auto& capsules = std::get<CapsulesShape>(scene.shapes[2].geometry);
   EXPECT_EQ(scene.materials.at(capsules.materials[0]).name, "basal dendrite");
-  EXPECT_TRUE(std::holds_alternative<DiffuseMaterial>(scene.materials.at(capsules.materials[1]).model));  // of the file
+  EXPECT_TRUE(std::holds_alternative<DiffuseMaterial>(
+      scene.materials.at(capsules.materials[1]).model));  // of the file
   for (const std::size_t i : {0U, 3U})
-    EXPECT_TRUE(std::holds_alternative<ConductorMaterial>(scene.materials.at(scene.shapes[i].material).model));
+    EXPECT_TRUE(std::holds_alternative<ConductorMaterial>(
+        scene.materials.at(scene.shapes[i].material).model));
   // An option of the format, which colours.
-  const Scene colored = world("Shape \"swc\" \"string filename\" \"n.swc\" \"string color\" \"depth\"\n");
+  const Scene colored =
+      world("Shape \"swc\" \"string filename\" \"n.swc\" \"string color\" \"depth\"\n");
   EXPECT_EQ(material_of(colored, colored.shapes[0]), "depth 0");
 }
 
 TEST_F(FileShapes, SwcIsReadWhateverItsName) {
   EXPECT_EQ(world("Shape \"swc\" \"string filename\" \"n.txt\"\n").shapes.size(), 2U);
-  EXPECT_THAT(said("Shape \"file\" \"string filename\" \"n.txt\"\n"), HasSubstr("no known scene format"));
+  EXPECT_THAT(said("Shape \"file\" \"string filename\" \"n.txt\"\n"),
+              HasSubstr("no known scene format"));
 }
 
 TEST_F(FileShapes, AreInObjectsLikeAnyShape) {
   const Scene scene = world(
-      "ObjectBegin \"o\"\nShape \"sphere\"\nTranslate 1 0 0\nShape \"file\" \"string filename\" \"t.off\"\nObjectEnd\n"
+      "ObjectBegin \"o\"\nShape \"sphere\"\nTranslate 1 0 0\nShape \"file\" \"string filename\" "
+      "\"t.off\"\nObjectEnd\n"
       "ObjectInstance \"o\"\nTranslate 0 7 0\nObjectInstance \"o\"\n");
   EXPECT_TRUE(scene.shapes.empty());
   ASSERT_EQ(scene.objects.size(), 1U);
@@ -122,11 +138,15 @@ TEST_F(FileShapes, OfInstancesAreInstances) {
 TEST_F(FileShapes, SayWhatIsWrong) {
   EXPECT_THAT(said("Shape \"file\"\n"), HasSubstr("\"string filename\" is missing"));
   EXPECT_THAT(said("Shape \"file\" \"string filename\" \"none.swc\"\n"), HasSubstr("no such file"));
-  EXPECT_THAT(said("Shape \"file\" \"string filename\" \"inner.pbrt\"\n"), HasSubstr("Include or Import"));
+  EXPECT_THAT(said("Shape \"file\" \"string filename\" \"inner.pbrt\"\n"),
+              HasSubstr("Include or Import"));
   EXPECT_THAT(said("Shape \"swc\" \"string filename\" \"t.off\"\n"), HasSubstr("t.off:1"));
-  EXPECT_THAT(said("Shape \"swc\" \"string filename\" \"n.swc\" \"string colour\" \"order\"\n"), HasSubstr("\"color\""));
-  EXPECT_THAT(said("Shape \"swc\" \"string filename\" \"n.swc\" \"string color\" \"moon\"\n"), HasSubstr("scene.pbrt:4"));
-  EXPECT_THAT(said("Shape \"file\" \"string filename\" \"t.off\" \"string color\" \"order\"\n"), HasSubstr("color"));
+  EXPECT_THAT(said("Shape \"swc\" \"string filename\" \"n.swc\" \"string colour\" \"order\"\n"),
+              HasSubstr("\"color\""));
+  EXPECT_THAT(said("Shape \"swc\" \"string filename\" \"n.swc\" \"string color\" \"moon\"\n"),
+              HasSubstr("scene.pbrt:4"));
+  EXPECT_THAT(said("Shape \"file\" \"string filename\" \"t.off\" \"string color\" \"order\"\n"),
+              HasSubstr("color"));
 }
 
 }  // namespace

@@ -27,7 +27,8 @@ class StubImages : public ImageReader {
     return image;
   }
   /// Floats from 0 up, as large: of three channels, but of one called "grey".
-  TextureImage read_texture(const std::filesystem::path& path, const ImageEncoding& encoding) const override {
+  TextureImage read_texture(const std::filesystem::path& path,
+                            const ImageEncoding& encoding) const override {
     ++textures_read;
     const std::string name = path.stem().string();
     if (name == "broken") throw InputError(path.string() + ": broken image");
@@ -35,7 +36,8 @@ class StubImages : public ImageReader {
     image.width = image.height = 4;
     image.channels = name == "grey" ? 1 : 3;
     for (std::size_t i = 0; i < image.values(); ++i)
-      image.floats.push_back(static_cast<float>(decoded_value(encoding, static_cast<double>(i) / 64)));
+      image.floats.push_back(
+          static_cast<float>(decoded_value(encoding, static_cast<double>(i) / 64)));
     return image;
   }
   mutable int textures_read = 0;
@@ -45,10 +47,14 @@ inline void write_file(const std::filesystem::path& path, const std::string& tex
   std::ofstream(path, std::ios::binary) << text;
 }
 
-inline Scene scene_of(const std::string& text) { return pbrt::import_text("scene.pbrt", text, StubImages()); }
+inline Scene scene_of(const std::string& text) {
+  return pbrt::import_text("scene.pbrt", text, StubImages());
+}
 
 /// The text after WorldBegin, with a camera before it.
-inline Scene world_of(const std::string& text) { return scene_of("Camera \"perspective\"\nWorldBegin\n" + text); }
+inline Scene world_of(const std::string& text) {
+  return scene_of("Camera \"perspective\"\nWorldBegin\n" + text);
+}
 
 /// The complaints about what `read` reads (validation included); empty when there are none.
 template <class Read>

@@ -33,7 +33,8 @@ TEST(Names, DocumentationListsThem) {
     std::vector<std::string> cells;
     std::istringstream text(line);
     for (std::string cell; std::getline(text, cell, '|');) cells.push_back(cell);
-    if (cells.size() == 4 && names_in(cells[1]).size() == 1) rows[names_in(cells[1])[0]] = {cells[2], cells[3]};
+    if (cells.size() == 4 && names_in(cells[1]).size() == 1)
+      rows[names_in(cells[1])[0]] = {cells[2], cells[3]};
   }
   EXPECT_EQ(rows.size(), pbrt::name_tables().size());
   for (const pbrt::NameTable& table : pbrt::name_tables()) {
@@ -46,15 +47,20 @@ TEST(Names, DocumentationListsThem) {
 TEST(Names, RefusedOnesAreRefusedByName) {
   for (const pbrt::NameTable& table : pbrt::name_tables())
     for (const std::string& name : table.refused) {
-      if (table.directive == "Texture" || table.directive == "Option" || table.directive == "ActiveTransform") continue;
-      const std::string before = table.directive == "MakeNamedMedium" ? "MakeNamedMedium \"m\" \"string type\" \"" + name +
-                                                                            "\"\nMediumInterface \"m\"\nWorldBegin\n"
-                                 : table.directive == "Material" || table.directive == "LightSource" || table.directive == "Shape"
-                                     ? "WorldBegin\n" + table.directive + " \"" + name + "\"\n"
-                                     : table.directive + " \"" + name + "\"\nWorldBegin\n";
+      if (table.directive == "Texture" || table.directive == "Option" ||
+          table.directive == "ActiveTransform")
+        continue;
+      const std::string before =
+          table.directive == "MakeNamedMedium" ? "MakeNamedMedium \"m\" \"string type\" \"" + name +
+                                                     "\"\nMediumInterface \"m\"\nWorldBegin\n"
+          : table.directive == "Material" || table.directive == "LightSource" ||
+                  table.directive == "Shape"
+              ? "WorldBegin\n" + table.directive + " \"" + name + "\"\n"
+              : table.directive + " \"" + name + "\"\nWorldBegin\n";
       EXPECT_THAT(complaints(before + "Shape \"sphere\""),
-                  testing::ElementsAre(testing::AllOf(testing::HasSubstr(table.directive + " \"" + name + "\""),
-                                                      testing::HasSubstr("is not rendered yet"))));
+                  testing::ElementsAre(
+                      testing::AllOf(testing::HasSubstr(table.directive + " \"" + name + "\""),
+                                     testing::HasSubstr("is not rendered yet"))));
     }
 }
 

@@ -32,11 +32,11 @@ struct Memory {
 };
 
 constexpr std::uint64_t magic = 0x304244566f6e614e;
-constexpr std::size_t root = 736, upper = root + 64 + 32, lower = upper + 8256 + 262144, leaf = lower + 1088 + 32768,
-                      end = leaf + 2144;
+constexpr std::size_t root = 736, upper = root + 64 + 32, lower = upper + 8256 + 262144,
+                      leaf = lower + 1088 + 32768, end = leaf + 2144;
 
-/// A grid of voxels of 0.5, moved by (10, 0, 0): a leaf at (-8, 0, 8) with values 1000 x + 100 y + z, and a constant tile of 8^3
-/// at (0, 0, 8).
+/// A grid of voxels of 0.5, moved by (10, 0, 0): a leaf at (-8, 0, 8) with values 1000 x + 100 y +
+/// z, and a constant tile of 8^3 at (0, 0, 8).
 Memory grid() {
   Memory m;
   m.put<std::uint64_t>(0, magic);
@@ -52,12 +52,16 @@ Memory grid() {
   m.put<std::uint32_t>(root + 24, 1);
   // The root has a tile of x = -8, whose 4096s are -1, and none of x = 0: the tile of that has
   // nodes of its own.
-  const auto key = [](std::int32_t x) { return (std::uint64_t{static_cast<std::uint32_t>(x) >> 12} << 42); };
+  const auto key = [](std::int32_t x) {
+    return (std::uint64_t{static_cast<std::uint32_t>(x) >> 12} << 42);
+  };
   m.put<std::uint64_t>(root + 64, key(-8));
   m.put<std::int64_t>(root + 72, upper - root);
   // x = -8 is the last of 32 in x, the last of 16, the last of 16.
-  const auto child = [&](std::size_t node, std::size_t masks, std::size_t index, std::size_t table, std::int64_t offset) {
-    m.put<std::uint8_t>(node + 32 + masks + index / 8, static_cast<std::uint8_t>(1u << (index % 8)));
+  const auto child = [&](std::size_t node, std::size_t masks, std::size_t index, std::size_t table,
+                         std::int64_t offset) {
+    m.put<std::uint8_t>(node + 32 + masks + index / 8,
+                        static_cast<std::uint8_t>(1u << (index % 8)));
     m.put<std::int64_t>(node + table + 8 * index, offset);
   };
   child(upper, 4096, 31 << 10, 8256, lower - upper);
@@ -75,14 +79,15 @@ Memory grid() {
   return m;
 }
 
-std::string file_of(const std::string& name, const Memory& of, bool zipped, const std::string& grid_name = "density",
-                    std::uint32_t version = 32) {
+std::string file_of(const std::string& name, const Memory& of, bool zipped,
+                    const std::string& grid_name = "density", std::uint32_t version = 32) {
   Memory out;
   std::vector<char> body = of.bytes;
   if (zipped) {
     uLongf length = compressBound(of.bytes.size());
     std::vector<char> packed(length);
-    compress(reinterpret_cast<Bytef*>(packed.data()), &length, reinterpret_cast<const Bytef*>(of.bytes.data()), of.bytes.size());
+    compress(reinterpret_cast<Bytef*>(packed.data()), &length,
+             reinterpret_cast<const Bytef*>(of.bytes.data()), of.bytes.size());
     packed.resize(length);
     Memory sized;
     sized.put<std::uint64_t>(0, length);
@@ -101,13 +106,15 @@ std::string file_of(const std::string& name, const Memory& of, bool zipped, cons
   out.bytes.push_back(0);
   out.bytes.insert(out.bytes.end(), body.begin(), body.end());
   const std::string path = (test::temporary_folder() / name).string();
-  std::ofstream(path, std::ios::binary).write(out.bytes.data(), static_cast<std::streamsize>(out.bytes.size()));
+  std::ofstream(path, std::ios::binary)
+      .write(out.bytes.data(), static_cast<std::streamsize>(out.bytes.size()));
   return path;
 }
 
 TEST(Nanovdb, GridsAreRead) {
   for (const bool zipped : {false, true}) {
-    const SparseGridPointer read = read_nanovdb(file_of("sound.nvdb", grid(), zipped), "density", {});
+    const SparseGridPointer read =
+        read_nanovdb(file_of("sound.nvdb", grid(), zipped), "density", {});
     ASSERT_TRUE(read);
     ASSERT_EQ(read->bricks.size(), 2u);
     EXPECT_EQ(read->bricks[0], (std::array<std::int32_t, 3>{-1, 0, 1}));
@@ -122,7 +129,9 @@ TEST(Nanovdb, GridsAreRead) {
 }
 
 TEST(Nanovdb, WhatIsBrokenIsSaid) {
-  const auto said = [](const std::string& file) { return complaint_of([&] { read_nanovdb(file, "density", {}); }); };
+  const auto said = [](const std::string& file) {
+    return complaint_of([&] { read_nanovdb(file, "density", {}); });
+  };
   EXPECT_THAT(said("none.nvdb"), HasSubstr("cannot be read"));
   Memory no_magic = grid();
   no_magic.put<std::uint64_t>(0, 5);
@@ -135,9 +144,12 @@ TEST(Nanovdb, WhatIsBrokenIsSaid) {
     out.put<std::uint32_t>(at, value);
     return file_of("c.nvdb", out, true);
   };
-  EXPECT_THAT(said(changed(636, 4)), HasSubstr("has a grid of 32-bit integers: 32-bit floats and quantised ones are read"));
+  EXPECT_THAT(
+      said(changed(636, 4)),
+      HasSubstr("has a grid of 32-bit integers: 32-bit floats and quantised ones are read"));
   EXPECT_THAT(said(changed(636, 999)), HasSubstr("has a grid of an unknown type"));
-  EXPECT_THAT(said(changed(632, 1)), HasSubstr("has a level set (distances from a surface) where densities are wanted"));
+  EXPECT_THAT(said(changed(632, 1)),
+              HasSubstr("has a level set (distances from a surface) where densities are wanted"));
   EXPECT_THAT(said(changed(root + 28, 0x3f800000)), HasSubstr("background is not 0"));
   for (const std::uint32_t version : {31u, 33u})
     EXPECT_THAT(said(file_of("c.nvdb", grid(), false, "density", version)),
@@ -146,7 +158,9 @@ TEST(Nanovdb, WhatIsBrokenIsSaid) {
   std::fstream(blosc, std::ios::in | std::ios::out | std::ios::binary).seekp(14).put(2);
   EXPECT_THAT(said(blosc), HasSubstr("BLOSC"));
   const std::string broken = file_of("c.nvdb", grid(), true);
-  std::fstream(broken, std::ios::in | std::ios::out | std::ios::binary).seekp(16 + 176 + 8 + 8 + 40).put(77);
+  std::fstream(broken, std::ios::in | std::ios::out | std::ios::binary)
+      .seekp(16 + 176 + 8 + 8 + 40)
+      .put(77);
   EXPECT_THAT(said(broken), HasSubstr("compression is broken"));
   Memory twice = grid();
   for (std::size_t i = 1024; i < 4096; ++i) {
@@ -155,12 +169,15 @@ TEST(Nanovdb, WhatIsBrokenIsSaid) {
   }
   EXPECT_THAT(said(file_of("c.nvdb", twice, false)), HasSubstr("has nodes that are used twice"));
   // Shorter by anything, or with an offset to anywhere, it says so and does not read on.
-  for (const std::size_t length : {std::size_t{100}, std::size_t{700}, root + 70, upper + 100, lower + 5, leaf + 50, end - 1}) {
+  for (const std::size_t length : {std::size_t{100}, std::size_t{700}, root + 70, upper + 100,
+                                   lower + 5, leaf + 50, end - 1}) {
     Memory cut = grid();
     cut.bytes.resize(length);
-    EXPECT_THAT(said(file_of("d.nvdb", cut, false)), HasSubstr("ends in the middle of a grid")) << length;
+    EXPECT_THAT(said(file_of("d.nvdb", cut, false)), HasSubstr("ends in the middle of a grid"))
+        << length;
   }
-  for (const std::int64_t offset : {std::int64_t{-1} << 60, std::int64_t{1} << 62, std::int64_t{-100000000}}) {
+  for (const std::int64_t offset :
+       {std::int64_t{-1} << 60, std::int64_t{1} << 62, std::int64_t{-100000000}}) {
     Memory astray = grid();
     astray.put<std::int64_t>(root + 72, offset);
     EXPECT_THAT(said(file_of("e.nvdb", astray, false)), HasSubstr("ends in the middle of a grid"));
@@ -185,7 +202,8 @@ TEST(Nanovdb, RawGridsAreRead) {
   EXPECT_EQ(read_nanovdb(path, "temperature", {})->values[0], 0);
   EXPECT_FALSE(read_nanovdb(path, "flames", {}));
   write(1);
-  EXPECT_THAT(complaint_of([&] { read_nanovdb(path, "density", {}); }), HasSubstr("ends in the middle of a grid"));
+  EXPECT_THAT(complaint_of([&] { read_nanovdb(path, "density", {}); }),
+              HasSubstr("ends in the middle of a grid"));
 }
 
 // Codes times a step and the least value; those of few bits from the low ones of a byte up.
@@ -195,7 +213,8 @@ TEST(Nanovdb, QuantisedGridsAreRead) {
     Memory m = grid();
     m.put<std::uint32_t>(636, std::min(type, 16u));
     const std::array<std::uint8_t, 3> flags{0, 1, 4};
-    if (type >= 16) m.put<std::uint8_t>(leaf + 15, static_cast<std::uint8_t>(flags[type - 16] << 5));
+    if (type >= 16)
+      m.put<std::uint8_t>(leaf + 15, static_cast<std::uint8_t>(flags[type - 16] << 5));
     m.put<float>(leaf + 80, 0.25f);
     m.put<float>(leaf + 84, 0.5f);
     std::fill(m.bytes.begin() + static_cast<std::ptrdiff_t>(leaf + 96), m.bytes.end(), '\0');
@@ -203,14 +222,16 @@ TEST(Nanovdb, QuantisedGridsAreRead) {
     for (unsigned i = 0; i < 512; ++i)
       for (unsigned b = 0; b < bits; ++b)
         if ((code(i) >> b & 1) != 0)
-          m.bytes[leaf + 96 + (i * bits + b) / 8] =
-              static_cast<char>(m.bytes[leaf + 96 + (i * bits + b) / 8] | 1 << ((i * bits + b) % 8));
+          m.bytes[leaf + 96 + (i * bits + b) / 8] = static_cast<char>(
+              m.bytes[leaf + 96 + (i * bits + b) / 8] | 1 << ((i * bits + b) % 8));
     m.bytes.resize(leaf + 96 + 64 * bits);
     const SparseGridPointer read = read_nanovdb(file_of("quantised.nvdb", m, true), "density", {});
     for (unsigned x = 0; x < 8; ++x)
       for (unsigned y = 0; y < 8; ++y)
         for (unsigned z = 0; z < 8; ++z)
-          ASSERT_EQ(read->values[(z * 8 + y) * 8 + x], 0.25f + 0.5f * static_cast<float>(code(x * 64 + y * 8 + z))) << type;
+          ASSERT_EQ(read->values[(z * 8 + y) * 8 + x],
+                    0.25f + 0.5f * static_cast<float>(code(x * 64 + y * 8 + z)))
+              << type;
   }
 }
 
@@ -224,11 +245,15 @@ TEST(Nanovdb, AFileByAnotherWriter) {
   int inside = 0;
   for (std::size_t i = 0; i < read->bricks.size(); ++i)
     for (int k = 0; k < 512; ++k) {
-      const int x = 8 * read->bricks[i][0] + k % 8, y = 8 * read->bricks[i][1] + k / 8 % 8, z = 8 * read->bricks[i][2] + k / 64;
+      const int x = 8 * read->bricks[i][0] + k % 8, y = 8 * read->bricks[i][1] + k / 8 % 8,
+                z = 8 * read->bricks[i][2] + k / 64;
       const bool in = x >= 0 && y >= 0 && z >= 0 && x < 20 && y < 17 && z < 10;
-      const double round = 1 - ((x - 9.5) * (x - 9.5) / 100 + (y - 8.0) * (y - 8.0) / 70 + (z - 4.5) * (z - 4.5) / 25);
-      const double expected = in ? std::max(0.0, round) * (1 + 0.25 * std::sin(x + 2 * y + 3 * z)) : 0;
-      ASSERT_NEAR(read->values[512 * i + static_cast<std::size_t>(k)], expected, 1e-6) << x << " " << y << " " << z;
+      const double round = 1 - ((x - 9.5) * (x - 9.5) / 100 + (y - 8.0) * (y - 8.0) / 70 +
+                                (z - 4.5) * (z - 4.5) / 25);
+      const double expected =
+          in ? std::max(0.0, round) * (1 + 0.25 * std::sin(x + 2 * y + 3 * z)) : 0;
+      ASSERT_NEAR(read->values[512 * i + static_cast<std::size_t>(k)], expected, 1e-6)
+          << x << " " << y << " " << z;
       inside += in;
     }
   EXPECT_EQ(inside, 20 * 17 * 10);
@@ -236,18 +261,20 @@ TEST(Nanovdb, AFileByAnotherWriter) {
 
 TEST(Nanovdb, IsAMediumOfAScene) {
   const std::string file = file_of("medium.nvdb", grid(), true);
-  const Scene scene =
-      world_of("Translate 1 2 3 MakeNamedMedium \"v\" \"string type\" \"nanovdb\" \"string filename\" \"" + file +
-               "\" \"float LeScale\" 3 \"float temperaturecutoff\" 5\nMediumInterface \"v\" \"\" Shape \"sphere\"");
+  const Scene scene = world_of(
+      "Translate 1 2 3 MakeNamedMedium \"v\" \"string type\" \"nanovdb\" \"string filename\" \"" +
+      file +
+      "\" \"float LeScale\" 3 \"float temperaturecutoff\" 5\nMediumInterface \"v\" \"\" Shape "
+      "\"sphere\"");
   const auto& medium = std::get<NanovdbMedium>(scene.media.at(0).model);
   EXPECT_EQ(medium.radiance_scale, 3);
   EXPECT_EQ(medium.temperature_offset, 5);
   EXPECT_EQ(medium.world_from_medium[3], glm::dvec4(1, 2, 3, 1));
   EXPECT_FALSE(medium.temperature);
-  EXPECT_THAT(
-      complaints("WorldBegin\nMakeNamedMedium \"v\" \"string type\" \"nanovdb\" \"string filename\" \"x.nvdb\"\nShape \"sphere\"")
-          .at(0),
-      HasSubstr("scene.pbrt:2:45: x.nvdb: cannot be read"));
+  EXPECT_THAT(complaints("WorldBegin\nMakeNamedMedium \"v\" \"string type\" \"nanovdb\" \"string "
+                         "filename\" \"x.nvdb\"\nShape \"sphere\"")
+                  .at(0),
+              HasSubstr("scene.pbrt:2:45: x.nvdb: cannot be read"));
 }
 
 }  // namespace

@@ -19,23 +19,32 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Coordinates here are of order 10 and go through a dozen double operations: 1e-12 is a thousand times the rounding.
+// Coordinates here are of order 10 and go through a dozen double operations: 1e-12 is a thousand
+// times the rounding.
 constexpr double rounding = 1e-12;
 
 void expect_near(const glm::dvec3& a, const glm::dvec3& b) {
-  EXPECT_LE(glm::length(a - b), rounding) << a.x << " " << a.y << " " << a.z << " for " << b.x << " " << b.y << " " << b.z;
+  EXPECT_LE(glm::length(a - b), rounding)
+      << a.x << " " << a.y << " " << a.z << " for " << b.x << " " << b.y << " " << b.z;
 }
-glm::dvec3 image_of(const glm::dmat4& m, const glm::dvec3& p) { return glm::dvec3(m * glm::dvec4(p, 1)); }
-glm::dvec3 direction_of(const glm::dmat4& m, const glm::dvec3& v) { return glm::dvec3(m * glm::dvec4(v, 0)); }
-const Material& material_of(const Scene& scene, const Shape& shape) { return scene.materials.at(shape.material); }
+glm::dvec3 image_of(const glm::dmat4& m, const glm::dvec3& p) {
+  return glm::dvec3(m * glm::dvec4(p, 1));
+}
+glm::dvec3 direction_of(const glm::dmat4& m, const glm::dvec3& v) {
+  return glm::dvec3(m * glm::dvec4(v, 0));
+}
+const Material& material_of(const Scene& scene, const Shape& shape) {
+  return scene.materials.at(shape.material);
+}
 template <class T>
 const T& model_of(const Scene& scene, std::size_t shape = 0) {
   return std::get<T>(material_of(scene, scene.shapes.at(shape)).model);
 }
 
 TEST(Camera, LookAtSeesItsTargetAhead) {
-  const Scene scene =
-      scene_of("LookAt 1 2 3  1 2 10  0 1 0\nCamera \"perspective\" \"float fov\" 90\nWorldBegin\nShape \"sphere\"");
+  const Scene scene = scene_of(
+      "LookAt 1 2 3  1 2 10  0 1 0\nCamera \"perspective\" \"float fov\" 90\nWorldBegin\nShape "
+      "\"sphere\"");
   const glm::dmat4& m = scene.camera.world_from_camera;
   expect_near(image_of(m, {0, 0, 0}), {1, 2, 3});
   expect_near(direction_of(m, {0, 0, 1}), {0, 0, 1});
@@ -46,24 +55,30 @@ TEST(Camera, LookAtSeesItsTargetAhead) {
 
 TEST(Camera, MirroredLookAt) {
   // Along -x with z up, pbrt's right is up x forward = -y; the leading scale mirrors it to +y.
-  const std::string rest = "LookAt 5 0 0  0 0 0  0 0 1\nCamera \"perspective\"\nWorldBegin\nShape \"sphere\"";
+  const std::string rest =
+      "LookAt 5 0 0  0 0 0  0 0 1\nCamera \"perspective\"\nWorldBegin\nShape \"sphere\"";
   expect_near(direction_of(scene_of(rest).camera.world_from_camera, {1, 0, 0}), {0, -1, 0});
-  expect_near(direction_of(scene_of("Scale -1 1 1\n" + rest).camera.world_from_camera, {1, 0, 0}), {0, 1, 0});
+  expect_near(direction_of(scene_of("Scale -1 1 1\n" + rest).camera.world_from_camera, {1, 0, 0}),
+              {0, 1, 0});
 }
 
 TEST(Camera, TransformIsColumnMajorAndMapsWorldToCamera) {
-  const Scene scene =
-      scene_of("Transform [ 1 0 0 0  0 1 0 0  0 0 -1 0  0 -1 6.8 1 ]\nCamera \"perspective\"\nWorldBegin\nShape \"sphere\"");
+  const Scene scene = scene_of(
+      "Transform [ 1 0 0 0  0 1 0 0  0 0 -1 0  0 -1 6.8 1 ]\nCamera "
+      "\"perspective\"\nWorldBegin\nShape \"sphere\"");
   expect_near(image_of(scene.camera.world_from_camera, {0, 0, 0}), {0, 1, 6.8});
   expect_near(direction_of(scene.camera.world_from_camera, {0, 0, 1}), {0, 0, -1});
 }
 
 TEST(Camera, AllParameters) {
   const Scene scene = scene_of(
-      "Camera \"perspective\" \"float frameaspectratio\" [1.5] \"float screenwindow\" [-1 1 -.5 .5] \"float lensradius\" .1\n"
+      "Camera \"perspective\" \"float frameaspectratio\" [1.5] \"float screenwindow\" [-1 1 -.5 "
+      ".5] \"float lensradius\" .1\n"
       " \"float focaldistance\" [7] \"float shutteropen\" .125 \"float shutterclose\" .375\n"
-      "Film \"rgb\" \"integer xresolution\" 64 \"integer yresolution\" [32] \"string filename\" \"a.exr\" \"float diagonal\" 35\n"
-      " \"bool savefp16\" true \"float iso\" 200 \"string sensor\" \"cie1931\" \"float maxcomponentvalue\" 9\n"
+      "Film \"rgb\" \"integer xresolution\" 64 \"integer yresolution\" [32] \"string filename\" "
+      "\"a.exr\" \"float diagonal\" 35\n"
+      " \"bool savefp16\" true \"float iso\" 200 \"string sensor\" \"cie1931\" \"float "
+      "maxcomponentvalue\" 9\n"
       " \"float cropwindow\" [0 .5 .25 1]\nWorldBegin\nShape \"sphere\"");
   EXPECT_EQ(scene.camera.frame_aspect_ratio, 1.5);
   EXPECT_EQ(scene.camera.screen_window, (std::array<double, 4>{-1, 1, -.5, .5}));
@@ -92,20 +107,26 @@ TEST(Options, FiltersSamplersIntegratorsSeeds) {
     EXPECT_EQ(scene.sampler.samples_per_pixel, 5) << name;
     EXPECT_EQ(scene.sampler.seed, 3u);
   }
+  EXPECT_EQ(scene_of("Sampler \"stratified\" \"integer xsamples\" 3 \"integer ysamples\" 7 "
+                     "\"integer seed\" 9\nOption \"integer seed\" [4]\n"
+                     "WorldBegin\nShape \"sphere\"")
+                .sampler.samples_per_pixel,
+            21);
   EXPECT_EQ(
       scene_of(
-          "Sampler \"stratified\" \"integer xsamples\" 3 \"integer ysamples\" 7 \"integer seed\" 9\nOption \"integer seed\" [4]\n"
-          "WorldBegin\nShape \"sphere\"")
-          .sampler.samples_per_pixel,
-      21);
-  EXPECT_EQ(scene_of("Sampler \"sobol\" \"integer seed\" 9\nOption \"seed\" 4\nWorldBegin\nShape \"sphere\"").sampler.seed, 9u);
+          "Sampler \"sobol\" \"integer seed\" 9\nOption \"seed\" 4\nWorldBegin\nShape \"sphere\"")
+          .sampler.seed,
+      9u);
   for (const char* name : {"path", "volpath", "simplepath", "simplevolpath", "bdpt", "mlt"})
-    EXPECT_EQ(scene_of("Integrator \"" + std::string(name) + "\" \"integer maxdepth\" 8\nWorldBegin\nShape \"sphere\"")
+    EXPECT_EQ(scene_of("Integrator \"" + std::string(name) +
+                       "\" \"integer maxdepth\" 8\nWorldBegin\nShape \"sphere\"")
                   .integrator.max_depth,
               8);
-  EXPECT_EQ(scene_of("Accelerator \"kdtree\" \"integer maxprims\" 2\nTransformTimes 0 1\nActiveTransform All\nOption "
+  EXPECT_EQ(scene_of("Accelerator \"kdtree\" \"integer maxprims\" 2\nTransformTimes 0 "
+                     "1\nActiveTransform All\nOption "
                      "\"disablewavelengthjitter\" false\n"
-                     "Option \"rendercoordsys\" \"world\"\nMediumInterface \"\" \"\"\nWorldBegin\nShape \"sphere\"")
+                     "Option \"rendercoordsys\" \"world\"\nMediumInterface \"\" "
+                     "\"\"\nWorldBegin\nShape \"sphere\"")
                 .integrator.max_depth,
             5);
 }
@@ -113,7 +134,8 @@ TEST(Options, FiltersSamplersIntegratorsSeeds) {
 TEST(Transforms, ComposeInWrittenOrder) {
   const Scene scene = world_of(
       "AttributeBegin Translate 1 2 3 Scale 2 2 2 Rotate 90 0 0 1 Shape \"sphere\" AttributeEnd\n"
-      "TransformBegin ConcatTransform [0 1 0 0 -1 0 0 0 0 0 1 0 5 0 0 1] CoordinateSystem \"turned\" Shape \"sphere\" "
+      "TransformBegin ConcatTransform [0 1 0 0 -1 0 0 0 0 0 1 0 5 0 0 1] CoordinateSystem "
+      "\"turned\" Shape \"sphere\" "
       "TransformEnd\n"
       "CoordSysTransform \"turned\" Translate 1 0 0 Shape \"sphere\" Identity Shape \"sphere\"");
   expect_near(image_of(scene.shapes[0].world_from_object, {1, 0, 0}), {1, 4, 3});
@@ -125,16 +147,19 @@ TEST(Transforms, ComposeInWrittenOrder) {
 TEST(Transforms, CameraSpace) {
   const Scene scene = scene_of(
       "LookAt 4 0 0  0 0 0  0 0 1\nCamera \"perspective\"\nWorldBegin\n"
-      "CoordSysTransform \"camera\" Translate 0 0 1 Shape \"sphere\" CoordSysTransform \"world\" Shape \"sphere\"");
+      "CoordSysTransform \"camera\" Translate 0 0 1 Shape \"sphere\" CoordSysTransform \"world\" "
+      "Shape \"sphere\"");
   expect_near(image_of(scene.shapes[0].world_from_object, {0, 0, 0}), {3, 0, 0});
   expect_near(image_of(scene.shapes[1].world_from_object, {0, 0, 0}), {0, 0, 0});
 }
 
 TEST(Objects, InstanceComposesUseWithDefinition) {
   const Scene scene = world_of(
-      "Translate 0 0 1\nObjectBegin \"ball\"\n  Scale 2 2 2 AreaLightSource \"diffuse\" Shape \"sphere\" \"string name\" "
+      "Translate 0 0 1\nObjectBegin \"ball\"\n  Scale 2 2 2 AreaLightSource \"diffuse\" Shape "
+      "\"sphere\" \"string name\" "
       "\"lamp\"\nObjectEnd\n"
-      "Translate 10 0 0\nObjectInstance \"ball\"\nObjectInstance \"later\"\nObjectBegin \"later\" Shape \"disk\" ObjectEnd");
+      "Translate 10 0 0\nObjectInstance \"ball\"\nObjectInstance \"later\"\nObjectBegin \"later\" "
+      "Shape \"disk\" ObjectEnd");
   ASSERT_EQ(scene.objects.size(), 2u);
   ASSERT_EQ(scene.instances.size(), 2u);
   EXPECT_EQ(scene.shapes.size(), 0u);
@@ -145,52 +170,71 @@ TEST(Objects, InstanceComposesUseWithDefinition) {
   expect_near(bounds.min, {8, -2, 0});
   // The disk was defined at (10, 0, 1) and is used there again.
   expect_near(bounds.max, {21, 2, 4});
-  EXPECT_EQ(count_primitives(scene), (std::map<std::string, std::uint64_t>{{"sphere", 1}, {"disk", 1}}));
+  EXPECT_EQ(count_primitives(scene),
+            (std::map<std::string, std::uint64_t>{{"sphere", 1}, {"disk", 1}}));
 }
 
 TEST(Parameters, SpectraInAllForms) {
   const auto reflectance = [](const std::string& before, const std::string& parameter) {
-    const Scene scene = world_of(before + "\nMaterial \"diffuse\" " + parameter + "\nShape \"sphere\"");
+    const Scene scene =
+        world_of(before + "\nMaterial \"diffuse\" " + parameter + "\nShape \"sphere\"");
     return model_of<DiffuseMaterial>(scene).reflectance;
   };
   EXPECT_EQ(std::get<ConstantSpectrum>(reflectance("", "")).value, 0.5);
-  EXPECT_EQ(std::get<RgbSpectrum>(reflectance("", "\"rgb reflectance\" [.1 .2 .3]")).rgb, glm::dvec3(.1, .2, .3));
+  EXPECT_EQ(std::get<RgbSpectrum>(reflectance("", "\"rgb reflectance\" [.1 .2 .3]")).rgb,
+            glm::dvec3(.1, .2, .3));
   const std::pair<const char*, ColorSpace> spaces[] = {{"srgb", ColorSpace::srgb},
                                                        {"dci-p3", ColorSpace::dci_p3},
                                                        {"rec2020", ColorSpace::rec2020},
                                                        {"aces2065-1", ColorSpace::aces2065_1}};
   for (const auto& [name, space] : spaces)
-    EXPECT_EQ(std::get<RgbSpectrum>(reflectance("ColorSpace \"" + std::string(name) + "\"", "\"rgb reflectance\" [1 0 0]")).space,
+    EXPECT_EQ(std::get<RgbSpectrum>(reflectance("ColorSpace \"" + std::string(name) + "\"",
+                                                "\"rgb reflectance\" [1 0 0]"))
+                  .space,
               space);
-  EXPECT_EQ(std::get<BlackbodySpectrum>(reflectance("", "\"blackbody reflectance\" 3000")).kelvin, 3000);
-  const auto inline_pairs = std::get<SampledSpectrum>(reflectance("", "\"spectrum reflectance\" [400 .1 500 .2 600 .3]"));
+  EXPECT_EQ(std::get<BlackbodySpectrum>(reflectance("", "\"blackbody reflectance\" 3000")).kelvin,
+            3000);
+  const auto inline_pairs =
+      std::get<SampledSpectrum>(reflectance("", "\"spectrum reflectance\" [400 .1 500 .2 600 .3]"));
   EXPECT_THAT(inline_pairs.wavelengths, testing::ElementsAre(400, 500, 600));
   EXPECT_THAT(inline_pairs.values, testing::ElementsAre(.1, .2, .3));
   const fs::path file = temporary_folder() / "grey.spd";
   write_file(file, "# grey\n400 0.25\n700 +.25 # end\n");
-  EXPECT_THAT(std::get<SampledSpectrum>(reflectance("", "\"spectrum reflectance\" \"" + file.string() + "\"")).values,
+  EXPECT_THAT(std::get<SampledSpectrum>(
+                  reflectance("", "\"spectrum reflectance\" \"" + file.string() + "\""))
+                  .values,
               testing::ElementsAre(.25, .25));
 }
 
 TEST(Parameters, OldAndNewFormsAreTheSame) {
-  for (const char* form :
-       {"\"bool twosided\" true", "\"bool twosided\" [true]", "\"bool twosided\" \"true\"", "\"bool twosided\" [\"true\"]",
-        "\"bool   twosided \" [ true ] # a comment", "\"bool\ttwosided\" true"})
-    EXPECT_TRUE(world_of("AreaLightSource \"diffuse\" " + std::string(form) + "\nShape \"sphere\"").shapes[0].emission->two_sided)
+  for (const char* form : {"\"bool twosided\" true", "\"bool twosided\" [true]",
+                           "\"bool twosided\" \"true\"", "\"bool twosided\" [\"true\"]",
+                           "\"bool   twosided \" [ true ] # a comment", "\"bool\ttwosided\" true"})
+    EXPECT_TRUE(world_of("AreaLightSource \"diffuse\" " + std::string(form) + "\nShape \"sphere\"")
+                    .shapes[0]
+                    .emission->two_sided)
         << form;
-  for (const char* form : {"\"point3 p0\" [1 2 3]", "\"point p0\" [1 2 3]", "\"point p0\" [+1 2. 3e0]"}) {
-    const Scene scene = world_of("Shape \"capsule\" \"point3 p1\" [0 0 0] \"float radius\" 1 " + std::string(form));
+  for (const char* form :
+       {"\"point3 p0\" [1 2 3]", "\"point p0\" [1 2 3]", "\"point p0\" [+1 2. 3e0]"}) {
+    const Scene scene =
+        world_of("Shape \"capsule\" \"point3 p1\" [0 0 0] \"float radius\" 1 " + std::string(form));
     EXPECT_EQ(std::get<CapsulesShape>(scene.shapes[0].geometry).p0[0], glm::vec3(1, 2, 3)) << form;
   }
-  EXPECT_EQ(world_of("Shape \"sphere\" \"string name\" [\"a \\\"b\\\\\"]").shapes[0].name, "a \"b\\");
+  EXPECT_EQ(world_of("Shape \"sphere\" \"string name\" [\"a \\\"b\\\\\"]").shapes[0].name,
+            "a \"b\\");
 }
 
 TEST(Parameters, AttributesGiveDefaults) {
   const Scene scene = world_of(
-      "AttributeBegin Attribute \"shape\" \"float radius\" 3 Shape \"sphere\" Shape \"sphere\" \"float radius\" 2 AttributeEnd\n"
-      "Shape \"sphere\" Attribute \"material\" \"float roughness\" .25 Attribute \"light\" \"float scale\" 5\n"
-      "Material \"dielectric\" Shape \"sphere\" LightSource \"point\" LightSource \"point\" \"float scale\" 2");
-  const auto radius = [&](std::size_t i) { return std::get<SphereShape>(scene.shapes[i].geometry).radius; };
+      "AttributeBegin Attribute \"shape\" \"float radius\" 3 Shape \"sphere\" Shape \"sphere\" "
+      "\"float radius\" 2 AttributeEnd\n"
+      "Shape \"sphere\" Attribute \"material\" \"float roughness\" .25 Attribute \"light\" \"float "
+      "scale\" 5\n"
+      "Material \"dielectric\" Shape \"sphere\" LightSource \"point\" LightSource \"point\" "
+      "\"float scale\" 2");
+  const auto radius = [&](std::size_t i) {
+    return std::get<SphereShape>(scene.shapes[i].geometry).radius;
+  };
   EXPECT_EQ(radius(0), 3);
   EXPECT_EQ(radius(1), 2);
   EXPECT_EQ(radius(2), 1);
@@ -201,11 +245,15 @@ TEST(Parameters, AttributesGiveDefaults) {
 
 TEST(Materials, ConductorsAndDielectrics) {
   const Scene scene = world_of(
-      "Material \"conductor\" \"rgb eta\" [.2 .9 1.1] \"rgb k\" [3.9 2.4 2.1] \"float uroughness\" .04 \"float vroughness\" .09\n"
-      "Shape \"sphere\"\nMaterial \"conductor\" \"rgb reflectance\" [.5 0 1] \"float roughness\" .3 \"bool remaproughness\" "
+      "Material \"conductor\" \"rgb eta\" [.2 .9 1.1] \"rgb k\" [3.9 2.4 2.1] \"float uroughness\" "
+      ".04 \"float vroughness\" .09\n"
+      "Shape \"sphere\"\nMaterial \"conductor\" \"rgb reflectance\" [.5 0 1] \"float roughness\" "
+      ".3 \"bool remaproughness\" "
       "false\n"
-      "Shape \"sphere\"\nMaterial \"dielectric\" \"float eta\" 1.33 Shape \"sphere\"\nMaterial \"dielectric\" Shape \"sphere\"\n"
-      "Material \"dielectric\" \"spectrum eta\" \"glass-BK7\" Shape \"sphere\" Material \"conductor\" \"spectrum eta\" [300 2 "
+      "Shape \"sphere\"\nMaterial \"dielectric\" \"float eta\" 1.33 Shape \"sphere\"\nMaterial "
+      "\"dielectric\" Shape \"sphere\"\n"
+      "Material \"dielectric\" \"spectrum eta\" \"glass-BK7\" Shape \"sphere\" Material "
+      "\"conductor\" \"spectrum eta\" [300 2 "
       "900 2] Shape \"sphere\"");
   EXPECT_EQ(model_of<ConductorMaterial>(scene).alpha_u, 0.2);
   EXPECT_EQ(model_of<ConductorMaterial>(scene).alpha_v, 0.3);
@@ -217,7 +265,8 @@ TEST(Materials, ConductorsAndDielectrics) {
   EXPECT_FALSE(model_of<ConductorMaterial>(scene).reflectance.has_value());
   EXPECT_EQ(std::get<ConstantSpectrum>(model_of<DielectricMaterial>(scene, 2).eta).value, 1.33);
   EXPECT_EQ(std::get<ConstantSpectrum>(model_of<DielectricMaterial>(scene, 3).eta).value, 1.5);
-  EXPECT_FALSE(std::holds_alternative<ConstantSpectrum>(model_of<DielectricMaterial>(scene, 4).eta));
+  EXPECT_FALSE(
+      std::holds_alternative<ConstantSpectrum>(model_of<DielectricMaterial>(scene, 4).eta));
   EXPECT_EQ(std::get<SampledSpectrum>(model_of<ConductorMaterial>(scene, 5).eta).values.size(), 2u);
 }
 
@@ -232,32 +281,43 @@ TEST(Materials, NamesMayComeLaterAndShapesMayNameTheirs) {
 
 TEST(Textures, ConstantsScalesAndMixes) {
   const Scene scene = world_of(
-      "Texture \"half\" \"float\" \"constant\" \"float value\" .5\nTexture \"red\" \"spectrum\" \"constant\" \"rgb value\" [1 .5 "
+      "Texture \"half\" \"float\" \"constant\" \"float value\" .5\nTexture \"red\" \"spectrum\" "
+      "\"constant\" \"rgb value\" [1 .5 "
       "0]\n"
       "Texture \"dark\" \"spectrum\" \"scale\" \"texture tex\" \"red\" \"texture scale\" \"half\"\n"
-      "Texture \"blend\" \"spectrum\" \"mix\" \"texture tex1\" \"red\" \"rgb tex2\" [0 0 1] \"float amount\" .25\n"
-      "Material \"diffuse\" \"texture reflectance\" \"dark\" Shape \"sphere\" Material \"diffuse\" \"texture reflectance\" "
+      "Texture \"blend\" \"spectrum\" \"mix\" \"texture tex1\" \"red\" \"rgb tex2\" [0 0 1] "
+      "\"float amount\" .25\n"
+      "Material \"diffuse\" \"texture reflectance\" \"dark\" Shape \"sphere\" Material \"diffuse\" "
+      "\"texture reflectance\" "
       "\"blend\" Shape \"sphere\"\n"
-      "Material \"dielectric\" \"texture roughness\" \"half\" \"bool remaproughness\" false Shape \"sphere\"");
-  EXPECT_EQ(std::get<RgbSpectrum>(model_of<DiffuseMaterial>(scene, 0).reflectance).rgb, glm::dvec3(.5, .25, 0));
-  EXPECT_EQ(std::get<RgbSpectrum>(model_of<DiffuseMaterial>(scene, 1).reflectance).rgb, glm::dvec3(.75, .375, .25));
+      "Material \"dielectric\" \"texture roughness\" \"half\" \"bool remaproughness\" false Shape "
+      "\"sphere\"");
+  EXPECT_EQ(std::get<RgbSpectrum>(model_of<DiffuseMaterial>(scene, 0).reflectance).rgb,
+            glm::dvec3(.5, .25, 0));
+  EXPECT_EQ(std::get<RgbSpectrum>(model_of<DiffuseMaterial>(scene, 1).reflectance).rgb,
+            glm::dvec3(.75, .375, .25));
   EXPECT_EQ(model_of<DielectricMaterial>(scene, 2).alpha_u, .5);
 }
 
 TEST(Textures, ThatVaryAreOfTheScene) {
   const Scene scene = world_of(
-      "Texture \"checks\" \"spectrum\" \"checkerboard\" \"float uscale\" 8 \"float vscale\" 4 \"float udelta\" .5 \"float "
+      "Texture \"checks\" \"spectrum\" \"checkerboard\" \"float uscale\" 8 \"float vscale\" 4 "
+      "\"float udelta\" .5 \"float "
       "vdelta\" .25\n"
       "\"rgb tex1\" [1 0 0] \"string mapping\" \"uv\" \"integer dimension\" 2\n"
       "Texture \"rough\" \"float\" \"checkerboard\" \"float tex1\" .3 \"float tex2\" .1\n"
       "Texture \"half\" \"float\" \"constant\" \"float value\" .5\n"
-      "Texture \"dim\" \"spectrum\" \"scale\" \"texture tex\" \"checks\" \"texture scale\" \"half\"\n"
-      "Texture \"blend\" \"spectrum\" \"mix\" \"texture tex1\" \"dim\" \"rgb tex2\" [0 0 1] \"texture amount\" \"rough\"\n"
+      "Texture \"dim\" \"spectrum\" \"scale\" \"texture tex\" \"checks\" \"texture scale\" "
+      "\"half\"\n"
+      "Texture \"blend\" \"spectrum\" \"mix\" \"texture tex1\" \"dim\" \"rgb tex2\" [0 0 1] "
+      "\"texture amount\" \"rough\"\n"
       "Texture \"glow\" \"spectrum\" \"constant\" \"blackbody value\" 3000\n"
       "Texture \"glows\" \"spectrum\" \"scale\" \"texture tex\" \"glow\" \"float scale\" .25\n"
       "Material \"diffuse\" \"texture reflectance\" \"blend\" Shape \"sphere\"\n"
-      "Material \"conductor\" \"texture k\" \"glows\" \"float roughness\" .25 \"texture vroughness\" \"rough\" Shape \"sphere\"\n"
-      "Material \"dielectric\" \"texture roughness\" \"rough\" \"float uroughness\" .5 \"bool remaproughness\" false Shape "
+      "Material \"conductor\" \"texture k\" \"glows\" \"float roughness\" .25 \"texture "
+      "vroughness\" \"rough\" Shape \"sphere\"\n"
+      "Material \"dielectric\" \"texture roughness\" \"rough\" \"float uroughness\" .5 \"bool "
+      "remaproughness\" false Shape "
       "\"sphere\"");
   ASSERT_EQ(scene.textures.size(), 6u);
   const auto& checks = std::get<CheckerboardTexture>(scene.textures[0].model);
@@ -268,7 +328,8 @@ TEST(Textures, ThatVaryAreOfTheScene) {
   EXPECT_EQ(checks.mapping.udelta, .5);
   EXPECT_EQ(checks.mapping.vdelta, .25);
   EXPECT_EQ(std::get<RgbSpectrum>(checks.tex1.value).rgb, glm::dvec3(1, 0, 0));
-  EXPECT_EQ(std::get<ConstantSpectrum>(checks.tex2.value).value, 0);  // pbrt-v4: 1 and 0 where nothing is given
+  EXPECT_EQ(std::get<ConstantSpectrum>(checks.tex2.value).value,
+            0);  // pbrt-v4: 1 and 0 where nothing is given
   const auto& rough = std::get<CheckerboardTexture>(scene.textures[1].model);
   EXPECT_TRUE(scene.textures[1].is_float);
   EXPECT_EQ(std::get<ConstantSpectrum>(rough.tex1.value).value, .3);
@@ -281,11 +342,13 @@ TEST(Textures, ThatVaryAreOfTheScene) {
   EXPECT_EQ(blend.tex2.texture, std::nullopt);
   EXPECT_EQ(blend.amount.texture, 1u);
   // What cannot be one constant is a texture too.
-  EXPECT_TRUE(std::holds_alternative<BlackbodySpectrum>(std::get<ScaleTexture>(scene.textures[4].model).tex.value));
+  EXPECT_TRUE(std::holds_alternative<BlackbodySpectrum>(
+      std::get<ScaleTexture>(scene.textures[4].model).tex.value));
   EXPECT_EQ(std::get<RootTexture>(scene.textures[5].model).tex.texture, 1u);
   const auto fields = [&](std::size_t shape) {
     std::vector<std::pair<std::string, std::uint32_t>> all;
-    for (const TexturedField& one : material_of(scene, scene.shapes[shape]).textures) all.emplace_back(one.field, one.texture);
+    for (const TexturedField& one : material_of(scene, scene.shapes[shape]).textures)
+      all.emplace_back(one.field, one.texture);
     return all;
   };
   using testing::ElementsAre, testing::Pair;
@@ -298,9 +361,11 @@ TEST(Textures, ThatVaryAreOfTheScene) {
 
 TEST(Lights, PlacesAndDirectionsAreInWorldSpace) {
   const Scene scene = world_of(
-      "Shape \"sphere\" Translate 1 0 0 Rotate 90 0 1 0\nLightSource \"point\" \"point3 from\" [0 0 2] \"float power\" 60\n"
+      "Shape \"sphere\" Translate 1 0 0 Rotate 90 0 1 0\nLightSource \"point\" \"point3 from\" [0 "
+      "0 2] \"float power\" 60\n"
       "LightSource \"spot\" \"float coneangle\" 60 \"float conedeltaangle\" 20\n"
-      "LightSource \"distant\" \"point3 from\" [0 0 0] \"point3 to\" [0 0 -1] \"float illuminance\" 9 \"blackbody L\" 5000\n"
+      "LightSource \"distant\" \"point3 from\" [0 0 0] \"point3 to\" [0 0 -1] \"float "
+      "illuminance\" 9 \"blackbody L\" 5000\n"
       "ColorSpace \"rec2020\" LightSource \"infinite\" \"float scale\" .5");
   const auto& point = std::get<PointLight>(scene.lights[0].model);
   expect_near(point.position, {3, 0, 0});  // a quarter turn about y maps z to x
@@ -319,15 +384,19 @@ TEST(Lights, PlacesAndDirectionsAreInWorldSpace) {
 // pbrt-v4's samplers that are randomised in ways of choice.
 TEST(Options, RandomizationIsOfSomeSamplers) {
   const auto said = [](const std::string& name) {
-    return complaints("Sampler \"" + name + "\" \"string randomization\" \"fastowen\"\nWorldBegin\nShape \"sphere\"");
+    return complaints("Sampler \"" + name +
+                      "\" \"string randomization\" \"fastowen\"\nWorldBegin\nShape \"sphere\"");
   };
-  for (const char* name : {"halton", "paddedsobol", "sobol", "zsobol"}) EXPECT_TRUE(said(name).empty()) << name;
-  for (const char* name : {"independent", "pmj02bn", "stratified"}) EXPECT_FALSE(said(name).empty()) << name;
+  for (const char* name : {"halton", "paddedsobol", "sobol", "zsobol"})
+    EXPECT_TRUE(said(name).empty()) << name;
+  for (const char* name : {"independent", "pmj02bn", "stratified"})
+    EXPECT_FALSE(said(name).empty()) << name;
 }
 
 TEST(Lights, BlackBodiesAreWarm) {
   const auto said = [](const std::string& kelvin) {
-    return complaints("WorldBegin\nShape \"sphere\"\nLightSource \"infinite\" \"blackbody L\" " + kelvin);
+    return complaints("WorldBegin\nShape \"sphere\"\nLightSource \"infinite\" \"blackbody L\" " +
+                      kelvin);
   };
   EXPECT_TRUE(said("1").empty());
   for (const char* kelvin : {"0", "-1"}) EXPECT_FALSE(said(kelvin).empty()) << kelvin;
@@ -335,12 +404,14 @@ TEST(Lights, BlackBodiesAreWarm) {
 
 TEST(Lights, ConesGoUpToHalfATurn) {
   const auto spot = [](const std::string& cone, const std::string& delta) {
-    return complaints("WorldBegin\nShape \"sphere\"\nLightSource \"spot\" \"float coneangle\" " + cone +
-                      " \"float conedeltaangle\" " + delta);
+    return complaints("WorldBegin\nShape \"sphere\"\nLightSource \"spot\" \"float coneangle\" " +
+                      cone + " \"float conedeltaangle\" " + delta);
   };
-  for (const auto& [cone, delta] : {std::pair("180", "0"), std::pair("180", "180"), std::pair("1", "1")})
+  for (const auto& [cone, delta] :
+       {std::pair("180", "0"), std::pair("180", "180"), std::pair("1", "1")})
     EXPECT_TRUE(spot(cone, delta).empty()) << cone << ' ' << delta;
-  for (const auto& [cone, delta] : {std::pair("180.5", "0"), std::pair("0", "0"), std::pair("10", "10.5"), std::pair("10", "-1")})
+  for (const auto& [cone, delta] : {std::pair("180.5", "0"), std::pair("0", "0"),
+                                    std::pair("10", "10.5"), std::pair("10", "-1")})
     EXPECT_FALSE(spot(cone, delta).empty()) << cone << ' ' << delta;
 }
 
@@ -348,8 +419,8 @@ TEST(Lights, ImagesOfBothLayouts) {
   const fs::path folder = temporary_folder();
   for (const char* name : {"square.exr", "wide.exr"}) {
     write_file(folder / name, "stub");
-    const Scene scene = world_of("Scale -2 2 2 LightSource \"infinite\" \"string filename\" \"" + (folder / name).string() +
-                                 "\"\nShape \"sphere\"");
+    const Scene scene = world_of("Scale -2 2 2 LightSource \"infinite\" \"string filename\" \"" +
+                                 (folder / name).string() + "\"\nShape \"sphere\"");
     const auto& sky = std::get<InfiniteLight>(scene.lights[0].model);
     EXPECT_EQ(sky.image->equal_area, std::string(name) == "square.exr");
     EXPECT_EQ(sky.world_from_light[0], glm::dvec3(-1, 0, 0));
@@ -358,15 +429,20 @@ TEST(Lights, ImagesOfBothLayouts) {
 
 TEST(Shapes, BoundsAreOfTheTransformedShape) {
   const Scene scene = world_of(
-      "AttributeBegin Rotate 45 0 0 1 Scale 3 1 1 Shape \"sphere\" Shape \"disk\" \"float height\" 2 \"float radius\" [2] "
+      "AttributeBegin Rotate 45 0 0 1 Scale 3 1 1 Shape \"sphere\" Shape \"disk\" \"float height\" "
+      "2 \"float radius\" [2] "
       "AttributeEnd\n"
-      "AttributeBegin Scale 1 1 2 Shape \"capsule\" \"point3 p0\" [0 0 0] \"point3 p1\" [0 0 5] \"float radius\" [1 .5] "
+      "AttributeBegin Scale 1 1 2 Shape \"capsule\" \"point3 p0\" [0 0 0] \"point3 p1\" [0 0 5] "
+      "\"float radius\" [1 .5] "
       "AttributeEnd\n"
-      "ReverseOrientation Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0 9 9 9] \"integer indices\" [0 1 2] \"vector S\" "
+      "ReverseOrientation Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0 9 9 9] \"integer "
+      "indices\" [0 1 2] \"vector S\" "
       "[1 0 0]\n"
-      " \"normal3 N\" [0 0 1 0 0 1 0 0 1 0 0 1] \"point2 st\" [0 0 1 0 0 1 1 1]\nShape \"trianglemesh\" \"point P\" [0 0 0 1 0 0 "
+      " \"normal3 N\" [0 0 1 0 0 1 0 0 1 0 0 1] \"point2 st\" [0 0 1 0 0 1 1 1]\nShape "
+      "\"trianglemesh\" \"point P\" [0 0 0 1 0 0 "
       "0 1 0]");
-  const double side = std::sqrt((9 + 1) / 2.0);  // rows of the turned scale: (3, -1) / sqrt 2 and (3, 1) / sqrt 2
+  const double side =
+      std::sqrt((9 + 1) / 2.0);  // rows of the turned scale: (3, -1) / sqrt 2 and (3, 1) / sqrt 2
   expect_near(bounds_of(scene.shapes[0]).max, {side, side, 1});
   expect_near(bounds_of(scene.shapes[1]).max, {2 * side, 2 * side, 2});
   expect_near(bounds_of(scene.shapes[1]).min, {-2 * side, -2 * side, 2});
@@ -382,12 +458,15 @@ TEST(Shapes, BoundsAreOfTheTransformedShape) {
 TEST(Files, IncludeSharesStateAndImportHasItsOwn) {
   const fs::path folder = temporary_folder();
   fs::create_directories(folder / "parts");
-  const std::string part = "Translate 1 0 0\nMakeNamedMaterial \"blue\" \"string type\" \"diffuse\"\nInclude \"ball.pbrt\"";
+  const std::string part =
+      "Translate 1 0 0\nMakeNamedMaterial \"blue\" \"string type\" \"diffuse\"\nInclude "
+      "\"ball.pbrt\"";
   write_file(folder / "parts" / "part.pbrt", part);
   write_file(folder / "parts" / "ball.pbrt", "Shape \"sphere\"");
   for (const char* directive : {"Include", "Import"}) {
     write_file(folder / "main.pbrt",
-               "WorldBegin\n" + std::string(directive) + " \"parts/part.pbrt\"\nNamedMaterial \"blue\" Shape \"sphere\"");
+               "WorldBegin\n" + std::string(directive) +
+                   " \"parts/part.pbrt\"\nNamedMaterial \"blue\" Shape \"sphere\"");
     const Scene scene = import_scene(folder / "main.pbrt", StubImages());
     expect_near(image_of(scene.shapes.at(0).world_from_object, {0, 0, 0}), {1, 0, 0});
     expect_near(image_of(scene.shapes.at(1).world_from_object, {0, 0, 0}),
@@ -407,7 +486,8 @@ TEST(Files, GzipAndUpperCaseExtensions) {
 
 TEST(Presentation, FillsInWhatTheFileDoesNotSay) {
   EXPECT_FALSE(scene_of("WorldBegin\nShape \"sphere\"").lights.empty());
-  const Scene lit = scene_of("WorldBegin\nTranslate 50 0 0 Shape \"sphere\" LightSource \"infinite\"");
+  const Scene lit =
+      scene_of("WorldBegin\nTranslate 50 0 0 Shape \"sphere\" LightSource \"infinite\"");
   EXPECT_EQ(lit.lights.size(), 1u);
   const glm::dmat4 camera_from_world = glm::inverse(lit.camera.world_from_camera);
   EXPECT_GT(image_of(camera_from_world, {50, 0, 0}).z, 1.0);
@@ -426,14 +506,18 @@ TEST(SharedScenes, LoadWithTheirStatements) {
   EXPECT_EQ(veach.shapes.size(), 9u);
   EXPECT_EQ(count_of(veach, "sphere"), 3u);
   EXPECT_EQ(std::count_if(veach.shapes.begin(), veach.shapes.end(),
-                          [](const Shape& shape) { return std::holds_alternative<TriangleMeshShape>(shape.geometry); }),
+                          [](const Shape& shape) {
+                            return std::holds_alternative<TriangleMeshShape>(shape.geometry);
+                          }),
             6);
   const Scene box = import_scene(scenes / "cornell-box" / "scene-v4.pbrt", StubImages());
   EXPECT_EQ(box.integrator.max_depth, 4);
   EXPECT_EQ(box.shapes.size(), 8u);
   const Scene coffee = import_scene(scenes / "coffee" / "scene-v4.pbrt", StubImages());
   EXPECT_EQ(std::ranges::count_if(coffee.materials,
-                                  [](const Material& one) { return std::holds_alternative<CoatedDiffuseMaterial>(one.model); }),
+                                  [](const Material& one) {
+                                    return std::holds_alternative<CoatedDiffuseMaterial>(one.model);
+                                  }),
             3);
 }
 
@@ -443,11 +527,13 @@ TEST(SharedScenes, MitsubaReferencesLoad) {
     EnvironmentImage read_rgb(const fs::path&) const override { return {2, 1, {1, 1, 1, 1, 1, 1}}; }
   };
   const fs::path folder = data_folder() / "reference" / "mitsuba";
-  for (const char* name : {"cornell", "cornell-grey", "mis-grey", "glossy-grey", "environment", "capsules-grey"}) {
+  for (const char* name :
+       {"cornell", "cornell-grey", "mis-grey", "glossy-grey", "environment", "capsules-grey"}) {
     const Scene scene = import_scene(folder / (std::string(name) + ".pbrt"), AnyImage());
     EXPECT_EQ(scene.film.width, 128) << name;
     EXPECT_EQ(scene.filter.kind, PixelFilter::Kind::box);
-    const std::map<std::string, std::size_t> capsules = {{"capsules-grey", 198}, {"environment", 2}};
+    const std::map<std::string, std::size_t> capsules = {{"capsules-grey", 198},
+                                                         {"environment", 2}};
     EXPECT_EQ(count_of(scene, "capsule"), capsules.contains(name) ? capsules.at(name) : 0) << name;
   }
 }

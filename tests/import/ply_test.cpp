@@ -21,7 +21,9 @@ namespace fs = std::filesystem;
 /// Appends values to a PLY body in one of the three encodings.
 class Writer {
  public:
-  explicit Writer(std::string encoding) : encoding_(std::move(encoding)) { head_ = "ply\nformat " + encoding_ + " 1.0\n"; }
+  explicit Writer(std::string encoding) : encoding_(std::move(encoding)) {
+    head_ = "ply\nformat " + encoding_ + " 1.0\n";
+  }
   Writer& header(const std::string& lines) {
     head_ += lines;
     return *this;
@@ -58,11 +60,20 @@ TEST_P(PlyEncodings, PolygonsExtrasNormalsAndUvs) {
   Writer ply(GetParam());
   ply.header("comment a square and a triangle\nelement vertex 5\n")
       .header("property double x\nproperty double y\nproperty double z\nproperty uchar red\n")
-      .header("property float nx\nproperty float ny\nproperty float nz\nproperty float confidence\n")
-      .header("property float s\nproperty float t\nelement face 2\nproperty list uint ushort vertex_index\n");
+      .header(
+          "property float nx\nproperty float ny\nproperty float nz\nproperty float confidence\n")
+      .header(
+          "property float s\nproperty float t\nelement face 2\nproperty list uint ushort "
+          "vertex_index\n");
   for (int i = 0; i < 5; ++i) {
     ply.value(0.1 * i).value(1.0 + i).value(-0.5 * i).value(static_cast<std::uint8_t>(200));
-    ply.value(0.f).value(0.f).value(1.f).value(0.25f).value(static_cast<float>(i) / 8).value(0.5f).line();
+    ply.value(0.f)
+        .value(0.f)
+        .value(1.f)
+        .value(0.25f)
+        .value(static_cast<float>(i) / 8)
+        .value(0.5f)
+        .line();
   }
   ply.value(std::uint32_t{4});
   for (int k : {0, 1, 2, 3}) ply.value(static_cast<std::uint16_t>(k));
@@ -73,7 +84,8 @@ TEST_P(PlyEncodings, PolygonsExtrasNormalsAndUvs) {
   for (int i = 0; i < 5; ++i) {
     const auto at = static_cast<std::size_t>(i);
     EXPECT_EQ(mesh.positions[at],
-              glm::vec3(static_cast<float>(0.1 * i), static_cast<float>(1.0 + i), static_cast<float>(-0.5 * i)));
+              glm::vec3(static_cast<float>(0.1 * i), static_cast<float>(1.0 + i),
+                        static_cast<float>(-0.5 * i)));
     EXPECT_EQ(mesh.normals[at], glm::vec3(0, 0, 1));
     EXPECT_EQ(mesh.uvs[at], glm::vec2(static_cast<float>(i) / 8, 0.5f));
   }
@@ -84,32 +96,45 @@ TEST_P(PlyEncodings, PolygonsExtrasNormalsAndUvs) {
 TEST_P(PlyEncodings, OtherElementsAndFacesFirst) {
   Writer ply(GetParam());
   ply.header("element edge 2\nproperty int a\nproperty list uchar float b\nelement face 1\n")
-      .header("property uchar flags\nproperty list uchar int vertex_indices\nproperty list uchar float texcoord\n")
+      .header(
+          "property uchar flags\nproperty list uchar int vertex_indices\nproperty list uchar float "
+          "texcoord\n")
       .header(std::string("element vertex 3\n") + xyz);
-  ply.value(7).value(std::uint8_t{0}).line().value(8).value(std::uint8_t{2}).value(1.f).value(2.f).line();
+  ply.value(7)
+      .value(std::uint8_t{0})
+      .line()
+      .value(8)
+      .value(std::uint8_t{2})
+      .value(1.f)
+      .value(2.f)
+      .line();
   ply.value(std::uint8_t{1}).value(std::uint8_t{3}).value(2).value(1).value(0);
   ply.value(std::uint8_t{2}).value(0.f).value(0.f).line();
   for (float v : {0.f, 0.f, 0.f, 1.f, 0.f, 0.f, 0.f, 1.f, 9.876543e-5f}) ply.value(v);
   const TriangleMeshShape mesh = parse_ply("test.ply", ply.line().bytes());
   using T = std::array<std::uint32_t, 3>;
   EXPECT_THAT(mesh.triangles, testing::ElementsAre(T{2, 1, 0}));
-  EXPECT_THAT(mesh.positions, testing::ElementsAre(glm::vec3(0, 0, 0), glm::vec3(1, 0, 0), glm::vec3(0, 1, 9.876543e-5f)));
+  EXPECT_THAT(mesh.positions, testing::ElementsAre(glm::vec3(0, 0, 0), glm::vec3(1, 0, 0),
+                                                   glm::vec3(0, 1, 9.876543e-5f)));
 }
 
 TEST_P(PlyEncodings, BodyStartsWithTheByteOfANewline) {
   const float x = std::bit_cast<float>(0x0a00000a);  // in either byte order
   Writer ply(GetParam());
-  ply.header(std::string("element vertex 3\n") + xyz + "element face 1\nproperty list uchar int vertex_indices\n");
+  ply.header(std::string("element vertex 3\n") + xyz +
+             "element face 1\nproperty list uchar int vertex_indices\n");
   for (float v : {x, 1.f, 2.f, 3.f, 4.f, 5.f, 6.f, 7.f, 9.f}) ply.value(v);
   ply.line().value(std::uint8_t{3}).value(0).value(1).value(2);
   const TriangleMeshShape mesh = parse_ply("test.ply", ply.bytes());
-  EXPECT_THAT(mesh.positions, testing::ElementsAre(glm::vec3(x, 1, 2), glm::vec3(3, 4, 5), glm::vec3(6, 7, 9)));
+  EXPECT_THAT(mesh.positions,
+              testing::ElementsAre(glm::vec3(x, 1, 2), glm::vec3(3, 4, 5), glm::vec3(6, 7, 9)));
   EXPECT_EQ(mesh.triangles.size(), 1u);
 }
 
 TEST_P(PlyEncodings, TruncationAtEveryByte) {
   Writer ply(GetParam());
-  ply.header(std::string("element vertex 3\n") + xyz + "element face 2\nproperty list uchar int vertex_indices\n");
+  ply.header(std::string("element vertex 3\n") + xyz +
+             "element face 2\nproperty list uchar int vertex_indices\n");
   for (float v : {0.f, 0.f, 0.f, 1.f, 0.f, 0.f, 0.f, 1.f, 0.f}) ply.value(v);
   for (int face = 0; face < 2; ++face) ply.line().value(std::uint8_t{3}).value(0).value(1).value(2);
   const std::string whole = ply.bytes();
@@ -117,15 +142,19 @@ TEST_P(PlyEncodings, TruncationAtEveryByte) {
   // The last byte of the ascii form is a blank, and the one before it a whole digit.
   const std::size_t last = whole.size() - (std::string(GetParam()) == "ascii" ? 2 : 1);
   for (std::size_t size = 0; size <= last; ++size)
-    EXPECT_THROW(parse_ply("test.ply", whole.substr(0, size)), InputError) << size << " bytes of " << whole.size();
+    EXPECT_THROW(parse_ply("test.ply", whole.substr(0, size)), InputError)
+        << size << " bytes of " << whole.size();
 }
 
-INSTANTIATE_TEST_SUITE_P(Import, PlyEncodings, testing::Values("ascii", "binary_little_endian", "binary_big_endian"));
+INSTANTIATE_TEST_SUITE_P(Import, PlyEncodings,
+                         testing::Values("ascii", "binary_little_endian", "binary_big_endian"));
 
 TEST(Ply, CarriageReturnsAndGzip) {
   const std::string text =
-      "ply\r\nformat ascii 1.0\r\nelement vertex 3\r\nproperty float x\r\nproperty float y\r\nproperty float z\r\n"
-      "element face 1\r\nproperty list uchar int vertex_indices\r\nend_header\r\n0 0 0\r\n1 0 0\r\n0 1 0\r\n3 0 1 2\r\n";
+      "ply\r\nformat ascii 1.0\r\nelement vertex 3\r\nproperty float x\r\nproperty float "
+      "y\r\nproperty float z\r\n"
+      "element face 1\r\nproperty list uchar int vertex_indices\r\nend_header\r\n0 0 0\r\n1 0 "
+      "0\r\n0 1 0\r\n3 0 1 2\r\n";
   const fs::path path = temporary_folder() / "mesh.ply.gz";
   const gzFile file = gzopen(path.c_str(), "wb");
   gzwrite(file, text.data(), static_cast<unsigned>(text.size()));
@@ -137,12 +166,15 @@ TEST(Ply, BrokenFiles) {
   const std::string vertex = std::string("element vertex 3\n") + xyz;
   const std::string face = "element face 1\nproperty list uchar int vertex_indices\n";
   const std::string ascii = "ply\nformat ascii 1.0\n", points = "0 0 0\n1 0 0\n0 1 0\n";
-  const auto complaint = [](const std::string& bytes) { return complaint_of([&] { parse_ply("m.ply", bytes); }); };
+  const auto complaint = [](const std::string& bytes) {
+    return complaint_of([&] { parse_ply("m.ply", bytes); });
+  };
   EXPECT_EQ(complaint("solid"), "m.ply:1: this is no PLY file (it does not start with \"ply\")");
   std::string many = ascii;
   for (int i = 0; i < 2000; ++i) many += "element e" + std::to_string(i) + " 0\n";
   EXPECT_EQ(complaint(many), "m.ply:1027: more than 1024 elements");
-  EXPECT_EQ(complaint(ascii + "element vertex 3\n"), "m.ply:4: the PLY header does not end (no end_header)");
+  EXPECT_EQ(complaint(ascii + "element vertex 3\n"),
+            "m.ply:4: the PLY header does not end (no end_header)");
   EXPECT_EQ(complaint(ascii + vertex + face + "end_header\n" + points + "3 0 1 3\n"),
             "m.ply:13: a PLY face has the vertex index 3, but there are 3 vertices");
   EXPECT_EQ(complaint(ascii + vertex + face + "end_header\n" + points + "3 0 1 -1\n"),
@@ -152,21 +184,25 @@ TEST(Ply, BrokenFiles) {
   EXPECT_EQ(complaint(ascii + vertex + face + "end_header\n0 0 0\n1 0 zero\n0 1 0\n3 0 1 2\n"),
             "m.ply:11: \"zero\" is no number");
   EXPECT_EQ(complaint(ascii + "element vertex 4000000000\n" + xyz + face + "end_header\n" + points),
-            "m.ply: the PLY file is truncated: its header promises 4000000000 of \"vertex\", more than fit into its 181 bytes");
+            "m.ply: the PLY file is truncated: its header promises 4000000000 of \"vertex\", more "
+            "than fit into its 181 bytes");
   // 12 bytes each.
   const auto binary = [&](int count) {
-    return complaint("ply\nformat binary_little_endian 1.0\nelement vertex " + std::to_string(count) + "\n" + xyz + face +
-                     "end_header\n" + std::string(24, '\0'));
+    return complaint("ply\nformat binary_little_endian 1.0\nelement vertex " +
+                     std::to_string(count) + "\n" + xyz + face + "end_header\n" +
+                     std::string(24, '\0'));
   };
   EXPECT_THAT(binary(2), testing::Not(testing::HasSubstr("of \"vertex\"")));
   EXPECT_THAT(binary(3), testing::HasSubstr("its header promises 3 of \"vertex\""));
   EXPECT_EQ(complaint(ascii + vertex + "end_header\n" + points), "m.ply: the PLY file has no face");
-  EXPECT_EQ(complaint("ply\nformat ascii 2.0\n"), "m.ply:2: the PLY format line must be \"format\", an encoding and \"1.0\"");
+  EXPECT_EQ(complaint("ply\nformat ascii 2.0\n"),
+            "m.ply:2: the PLY format line must be \"format\", an encoding and \"1.0\"");
 }
 
 TEST(Ply, NormalsThatAreNoneAreLeftOut) {
   const std::string head = "ply\nformat ascii 1.0\nelement vertex 3\n" + std::string(xyz) +
-                           "property float nx\nproperty float ny\nproperty float nz\nproperty float u\nproperty float v\n"
+                           "property float nx\nproperty float ny\nproperty float nz\nproperty "
+                           "float u\nproperty float v\n"
                            "element face 1\nproperty list uchar int vertex_indices\nend_header\n";
   const std::string rest = " .5 .5\n1 0 0 0 0 1 1 0\n0 1 0 0 0 1 0 1\n3 0 1 2\n";
   for (const char* bad : {"nan nan nan", "0 -nan 1", "inf 0 0", "1e300 0 0"}) {
@@ -189,13 +225,13 @@ TEST(Ply, NormalsThatAreNoneAreLeftOut) {
 
 TEST(Ply, WarningOfNormalsNamesTheFile) {
   testing::internal::CaptureStderr();
-  parse_ply(
-      "m.ply",
-      "ply\nformat ascii 1.0\nelement vertex 3\n" + std::string(xyz) +
-          "property float nx\nproperty float ny\nproperty float nz\nelement face 1\nproperty list uchar int vertex_indices\n"
-          "end_header\n0 0 0 nan nan nan\n1 0 0 0 0 1\n0 1 0 0 0 1\n3 0 1 2\n");
-  EXPECT_THAT(testing::internal::GetCapturedStderr(),
-              testing::HasSubstr("m.ply: 1 of 3 normals are not finite: geometric normals are used"));
+  parse_ply("m.ply", "ply\nformat ascii 1.0\nelement vertex 3\n" + std::string(xyz) +
+                         "property float nx\nproperty float ny\nproperty float nz\nelement face "
+                         "1\nproperty list uchar int vertex_indices\n"
+                         "end_header\n0 0 0 nan nan nan\n1 0 0 0 0 1\n0 1 0 0 0 1\n3 0 1 2\n");
+  EXPECT_THAT(
+      testing::internal::GetCapturedStderr(),
+      testing::HasSubstr("m.ply: 1 of 3 normals are not finite: geometric normals are used"));
 }
 
 TEST(Ply, SharedMeshesLoad) {

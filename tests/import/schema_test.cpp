@@ -29,19 +29,23 @@ const std::string no_file;
 
 class NoImages : public ImageReader {
  public:
-  EnvironmentImage read_rgb(const std::filesystem::path& path) const override { throw InputError({path.string()}, "not read"); }
+  EnvironmentImage read_rgb(const std::filesystem::path& path) const override {
+    throw InputError({path.string()}, "not read");
+  }
 };
 
 /// What the reader of a statement asks of `given`; `diagnostics` gets what it says.
-std::vector<std::string> asked_of(const std::string& directive, const std::string& type, std::vector<pbrt::Parameter> given,
-                                  Diagnostics& diagnostics) {
-  pbrt::Parameters parameters(std::move(given), {}, directive, {}, no_file, ColorSpace::srgb, diagnostics);
+std::vector<std::string> asked_of(const std::string& directive, const std::string& type,
+                                  std::vector<pbrt::Parameter> given, Diagnostics& diagnostics) {
+  pbrt::Parameters parameters(std::move(given), {}, directive, {}, no_file, ColorSpace::srgb,
+                              diagnostics);
   const NoImages images;
   Scene scene;
   scene.materials.emplace_back();
   pbrt::LightFiles files(images);
   const pbrt::TextureTable textures;
-  const pbrt::TextureImages no_image = [](pbrt::Parameters& of, const char* name, const ImageEncoding&, std::string&) {
+  const pbrt::TextureImages no_image = [](pbrt::Parameters& of, const char* name,
+                                          const ImageEncoding&, std::string&) {
     (void)of.has(name);
     return nullptr;
   };
@@ -76,7 +80,8 @@ std::vector<std::string> asked_of(const std::string& directive, const std::strin
 }
 
 /// Calls visit(directive, type) for every type of every family that is no file of another format.
-void each_type(const std::function<void(const std::string& directive, const std::string& type)>& visit) {
+void each_type(
+    const std::function<void(const std::string& directive, const std::string& type)>& visit) {
   for (const std::string& family : schema::families()) {
     const std::string directive = schema::directive_of(family);
     std::vector<std::string> types = file_statement_types(directive);
@@ -92,8 +97,8 @@ void each_type(const std::function<void(const std::string& directive, const std:
 /// Names that pbrt-v4 has replaced.
 bool is_older(const std::string& name) { return name == "LeScale" || name == "temperaturecutoff"; }
 
-pbrt::Parameter given_of(const std::string& name, const std::string& type, std::vector<double> numbers,
-                         std::vector<std::string> strings = {}) {
+pbrt::Parameter given_of(const std::string& name, const std::string& type,
+                         std::vector<double> numbers, std::vector<std::string> strings = {}) {
   pbrt::Parameter one;
   one.name = name;
   one.type = type;
@@ -103,18 +108,22 @@ pbrt::Parameter given_of(const std::string& name, const std::string& type, std::
 }
 
 /// What readers ask more after.
-std::vector<std::vector<pbrt::Parameter>> openings(const std::string& directive, const std::string& type) {
+std::vector<std::vector<pbrt::Parameter>> openings(const std::string& directive,
+                                                   const std::string& type) {
   if (type == "capsule" || type == "capsules")
-    return {{given_of("p0", "point3", {0, 0, 0}), given_of("p1", "point3", {0, 0, 1}), given_of("radius", "float", {1})}};
+    return {{given_of("p0", "point3", {0, 0, 0}), given_of("p1", "point3", {0, 0, 1}),
+             given_of("radius", "float", {1})}};
   if (directive == "Film")
-    return {{given_of("background", "string", {}, {"color"})}, {given_of("background", "string", {}, {"image"})}};
+    return {{given_of("background", "string", {}, {"color"})},
+            {given_of("background", "string", {}, {"image"})}};
   return {};
 }
 
 TEST(Schema, NamesAreThoseThatReadersAskFor) {
   each_type([](const std::string& directive, const std::string& type) {
     std::set<std::string> asked, known;
-    // With nothing given, with each alone, and with all: a reader asks for more where something is there.
+    // With nothing given, with each alone, and with all: a reader asks for more where something is
+    // there.
     for (std::size_t round = 0; round < 3; ++round) {
       std::vector<std::vector<pbrt::Parameter>> all = openings(directive, type);
       all.emplace(all.begin());
@@ -132,7 +141,8 @@ TEST(Schema, NamesAreThoseThatReadersAskFor) {
       for (std::vector<pbrt::Parameter>& given : all) {
         Diagnostics ignored;
         try {
-          for (const std::string& name : asked_of(directive, type, std::move(given), ignored)) asked.insert(name);
+          for (const std::string& name : asked_of(directive, type, std::move(given), ignored))
+            asked.insert(name);
         } catch (const InputError&) {  // of values that are missing
         }
       }
@@ -146,13 +156,16 @@ TEST(Schema, NamesAreThoseThatReadersAskFor) {
     // What depends on the kind of a mapping is asked for by that kind alone.
     if (directive == "Texture" && asked.contains("mapping")) asked.insert({"v1", "v2"});
     // Their readers say that they are not there yet.
-    if (type == "plymesh") std::erase_if(asked, [](const std::string& name) { return name.starts_with("displacement"); });
+    if (type == "plymesh")
+      std::erase_if(asked,
+                    [](const std::string& name) { return name.starts_with("displacement"); });
     EXPECT_EQ(asked, known);
   });
 }
 
 /// One number of a statement.
-std::string said_of(const std::string& directive, const std::string& type, const schema::Parameter& parameter, double value) {
+std::string said_of(const std::string& directive, const std::string& type,
+                    const schema::Parameter& parameter, double value) {
   pbrt::Parameter given;
   given.name = parameter.name;
   given.type = parameter.types[0];
@@ -176,10 +189,14 @@ TEST(Schema, RangesAreThoseThatReadersHold) {
       SCOPED_TRACE(one.name);
       // Open above, or held to each other.
       if (one.name == "fov" && directive == "Camera") continue;
-      if (one.name == "halffov" || one.name == "coneangle" || one.name == "conedeltaangle") continue;
+      if (one.name == "halffov" || one.name == "coneangle" || one.name == "conedeltaangle")
+        continue;
       const auto said = [&](double value) { return said_of(directive, type, one, value); };
       // Lists of numbers say first that there are too few.
-      if (!said(one.above_low ? std::max(one.low, 0.0) + 1 : std::isfinite(one.low) ? one.low : 1).empty()) {
+      if (!said(one.above_low            ? std::max(one.low, 0.0) + 1
+                : std::isfinite(one.low) ? one.low
+                                         : 1)
+               .empty()) {
         EXPECT_EQ(directive, directive == "Shape"             ? "Shape"
                              : directive == "MakeNamedMedium" ? "MakeNamedMedium"
                              : directive == "Film"            ? "Film"
@@ -224,7 +241,8 @@ TEST(Schema, TypesAreThoseThatReadersTake) {
         for (const std::string& message : error.messages()) all += message + "\n";
       }
       // The reader of a texture's image has its type from who reads the file.
-      const bool takes = std::ranges::find(one.types, "point2") != one.types.end() || !one.has_effect || type == "imagemap";
+      const bool takes = std::ranges::find(one.types, "point2") != one.types.end() ||
+                         !one.has_effect || type == "imagemap";
       if (!takes) {
         EXPECT_THAT(all, HasSubstr('"' + one.name + '"'));
       }
@@ -245,14 +263,16 @@ TEST(Schema, ModelsSayWhatTheyAreMadeOf) {
   EXPECT_EQ(find("Material", "hair", "alpha").unit, "degrees");
   EXPECT_EQ(find("Material", "hair", "eumelanin").fallback, "1.3");
   EXPECT_EQ(find("Material", "subsurface", "eta").fallback, "1.33");
-  EXPECT_THAT(find("Texture", "imagemap", "wrap").choices, ElementsAre("repeat", "black", "clamp", "octahedralsphere"));
+  EXPECT_THAT(find("Texture", "imagemap", "wrap").choices,
+              ElementsAre("repeat", "black", "clamp", "octahedralsphere"));
   EXPECT_EQ(find("LightSource", "spot", "coneangle").high, 180);
   EXPECT_EQ(find("PixelFilter", "mitchell", "xradius").fallback, "2");
   EXPECT_EQ(find("Sampler", "stratified", "xsamples").fallback, "4");
   EXPECT_TRUE(find("Integrator", "ambientocclusion", "maxdistance").above_low);
   EXPECT_EQ(find("Integrator", "ambientocclusion", "maxdistance").fallback, "");
   EXPECT_FALSE(find("Integrator", "bdpt", "visualizeweights").has_effect);
-  EXPECT_THAT(find("Camera", "spherical", "mapping").choices, ElementsAre("equalarea", "equirectangular"));
+  EXPECT_THAT(find("Camera", "spherical", "mapping").choices,
+              ElementsAre("equalarea", "equirectangular"));
   EXPECT_EQ(find("MakeNamedMedium", "uniformgrid", "temperature").unit, "kelvin");
   EXPECT_THAT(schema::parameters_of("Material", "chrome").size(), 2u);  // what all have
 }

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Images of textures, their parameters, normal maps, displacement and alpha, as the importer of pbrt's text reads them.
+// Images of textures, their parameters, normal maps, displacement and alpha, as the importer of
+// pbrt's text reads them.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -18,10 +19,12 @@ using testing::HasSubstr;
 class TextureImages : public testing::Test {
  protected:
   void SetUp() override {
-    for (const char* name : {"a.png", "b.png", "grey.png", "broken.png"}) write_file(folder_ / name, "an image");
+    for (const char* name : {"a.png", "b.png", "grey.png", "broken.png"})
+      write_file(folder_ / name, "an image");
   }
   Scene read(const std::string& world) {
-    return pbrt::import_text((folder_ / "scene.pbrt").string(), "Camera \"perspective\"\nWorldBegin\n" + world, images_);
+    return pbrt::import_text((folder_ / "scene.pbrt").string(),
+                             "Camera \"perspective\"\nWorldBegin\n" + world, images_);
   }
   std::vector<std::string> complaints_about(const std::string& world) {
     return complaints_when([&] { return read(world); });
@@ -37,10 +40,12 @@ const ImagemapTexture& imagemap(const Scene& scene, std::size_t i) {
 TEST_F(TextureImages, AreReadOnceForEachEncoding) {
   std::string text;
   for (int i = 0; i < 20; ++i)
-    text += "Texture \"t" + std::to_string(i) + "\" \"spectrum\" \"imagemap\" \"string filename\" \"" + (i % 2 ? "./" : "") +
+    text += "Texture \"t" + std::to_string(i) +
+            "\" \"spectrum\" \"imagemap\" \"string filename\" \"" + (i % 2 ? "./" : "") +
             "a.png\"\n";
   text +=
-      "Texture \"l\" \"float\" \"imagemap\" \"string filename\" \"a.png\" \"string encoding\" \"linear\"\n"
+      "Texture \"l\" \"float\" \"imagemap\" \"string filename\" \"a.png\" \"string encoding\" "
+      "\"linear\"\n"
       "Texture \"b\" \"float\" \"imagemap\" \"string filename\" \"b.png\"\n"
       "Material \"diffuse\" \"texture reflectance\" \"t3\"\nShape \"sphere\"";
   const Scene scene = read(text);
@@ -52,11 +57,14 @@ TEST_F(TextureImages, AreReadOnceForEachEncoding) {
 
 TEST_F(TextureImages, HaveTheirParameters) {
   const Scene scene = read(
-      "Translate 1 2 3\nTexture \"a\" \"spectrum\" \"imagemap\" \"string filename\" \"a.png\" \"string wrap\" "
+      "Translate 1 2 3\nTexture \"a\" \"spectrum\" \"imagemap\" \"string filename\" \"a.png\" "
+      "\"string wrap\" "
       "\"octahedralsphere\"\n"
-      "\"string filter\" \"EWA\" \"float maxanisotropy\" 4 \"float scale\" .5 \"bool invert\" true \"string encoding\" \"gamma "
+      "\"string filter\" \"EWA\" \"float maxanisotropy\" 4 \"float scale\" .5 \"bool invert\" true "
+      "\"string encoding\" \"gamma "
       "2.5\"\n"
-      "\"string mapping\" \"planar\" \"vector3 v1\" [0 1 2] \"vector3 v2\" [3 4 5] \"float udelta\" .25 \"float vdelta\" .75\n"
+      "\"string mapping\" \"planar\" \"vector3 v1\" [0 1 2] \"vector3 v2\" [3 4 5] \"float "
+      "udelta\" .25 \"float vdelta\" .75\n"
       "Texture \"b\" \"float\" \"imagemap\" \"string filename\" \"a.png\"\nShape \"sphere\"");
   const ImagemapTexture& a = imagemap(scene, 0);
   EXPECT_STREQ(texture_wrap_names[static_cast<std::size_t>(a.wrap)], "octahedralsphere");
@@ -87,58 +95,79 @@ TEST_F(TextureImages, ThatAreWrongHaveTheirPlace) {
     return complaints_about("Texture \"t\" \"spectrum\" \"imagemap\" " + parameters + use).front();
   };
   EXPECT_THAT(of(""), HasSubstr("scene.pbrt:3:1: Texture \"t\": \"string filename\" is missing"));
-  EXPECT_THAT(of("\"string filename\" \"none.png\""),
-              AllOf(HasSubstr("scene.pbrt:4:20: Material \"diffuse\": \"reflectance\" uses Texture \"imagemap\" ("),
-                    HasSubstr("scene.pbrt:3:1), whose image cannot be had: no such file"), HasSubstr("none.png\"")));
+  EXPECT_THAT(
+      of("\"string filename\" \"none.png\""),
+      AllOf(
+          HasSubstr(
+              "scene.pbrt:4:20: Material \"diffuse\": \"reflectance\" uses Texture \"imagemap\" ("),
+          HasSubstr("scene.pbrt:3:1), whose image cannot be had: no such file"),
+          HasSubstr("none.png\"")));
   EXPECT_THAT(of("\"string filename\" \"broken.png\""), HasSubstr("whose image cannot be had: "));
   EXPECT_THAT(of("\"string filename\" \"a.png\" \"string encoding\" \"gamma 0\""),
               HasSubstr("scene.pbrt:3:61: Texture \"t\": \"encoding\" is \"gamma 0\", not"));
   EXPECT_THAT(of("\"string filename\" \"a.png\" \"string wrap\" \"clam\""),
-              HasSubstr("scene.pbrt:3:61: Texture \"t\": \"wrap\" is \"clam\"; the nearest known name is \"clamp\""));
-  EXPECT_THAT(of("\"string filename\" \"a.png\" \"float uscael\" 1"), HasSubstr("unknown parameter \"uscael\""));
+              HasSubstr("scene.pbrt:3:61: Texture \"t\": \"wrap\" is \"clam\"; the nearest known "
+                        "name is \"clamp\""));
+  EXPECT_THAT(of("\"string filename\" \"a.png\" \"float uscael\" 1"),
+              HasSubstr("unknown parameter \"uscael\""));
   // Where nothing uses it, it does not block a scene.
-  EXPECT_THAT(complaints_about("Texture \"t\" \"spectrum\" \"imagemap\" \"string filename\" \"none.png\"\nShape \"sphere\""),
+  EXPECT_THAT(complaints_about("Texture \"t\" \"spectrum\" \"imagemap\" \"string filename\" "
+                               "\"none.png\"\nShape \"sphere\""),
               ElementsAre());
 }
 
 TEST_F(TextureImages, OfNormalsAreLinearAndInColor) {
-  const Scene scene = read("Material \"conductor\" \"string normalmap\" \"a.png\"\nShape \"sphere\"");
+  const Scene scene =
+      read("Material \"conductor\" \"string normalmap\" \"a.png\"\nShape \"sphere\"");
   ASSERT_TRUE(scene.materials[0].normalmap);
-  EXPECT_EQ(std::get<NormalmapTexture>(scene.textures[*scene.materials[0].normalmap].model).image->floats[32], 0.5f);
-  EXPECT_THAT(complaints_about("Material \"diffuse\" \"string normalmap\" \"grey.png\"\nShape \"sphere\"").front(),
-              HasSubstr("scene.pbrt:3:20: Material \"diffuse\": \"normalmap\" is an image in grey, which has no normals"));
+  EXPECT_EQ(std::get<NormalmapTexture>(scene.textures[*scene.materials[0].normalmap].model)
+                .image->floats[32],
+            0.5f);
   EXPECT_THAT(
-      complaints_about("Material \"diffuse\" \"string normalmap\" \"a.png\" \"float displacement\" 1\nShape \"sphere\"").front(),
-      HasSubstr("\"normalmap\" cannot be combined with \"displacement\""));
+      complaints_about("Material \"diffuse\" \"string normalmap\" \"grey.png\"\nShape \"sphere\"")
+          .front(),
+      HasSubstr("scene.pbrt:3:20: Material \"diffuse\": \"normalmap\" is an image in grey, which "
+                "has no normals"));
+  EXPECT_THAT(complaints_about("Material \"diffuse\" \"string normalmap\" \"a.png\" \"float "
+                               "displacement\" 1\nShape \"sphere\"")
+                  .front(),
+              HasSubstr("\"normalmap\" cannot be combined with \"displacement\""));
 }
 
 TEST(Displacement, IsATextureOrBendsNothing) {
   const Scene scene = world_of(
       "Texture \"f\" \"float\" \"fbm\"\nTexture \"c\" \"spectrum\" \"checkerboard\"\n"
-      "Material \"diffuse\" \"texture displacement\" \"f\"\nShape \"sphere\"\nMaterial \"diffuse\" \"float displacement\" "
+      "Material \"diffuse\" \"texture displacement\" \"f\"\nShape \"sphere\"\nMaterial \"diffuse\" "
+      "\"float displacement\" "
       "3\nShape \"sphere\"");
   EXPECT_EQ(scene.materials[0].displacement, 0u);
   EXPECT_FALSE(scene.materials[1].displacement);
-  EXPECT_THAT(
-      complaints("WorldBegin\nTexture \"c\" \"spectrum\" \"checkerboard\"\nMaterial \"diffuse\" \"texture displacement\" \"c\"\n"
-                 "Shape \"sphere\"")
-          .front(),
-      HasSubstr("\"displacement\" needs a float texture"));
+  EXPECT_THAT(complaints("WorldBegin\nTexture \"c\" \"spectrum\" \"checkerboard\"\nMaterial "
+                         "\"diffuse\" \"texture displacement\" \"c\"\n"
+                         "Shape \"sphere\"")
+                  .front(),
+              HasSubstr("\"displacement\" needs a float texture"));
 }
 
 TEST(Alpha, IsANumberOrATexture) {
   const Scene scene = world_of(
-      "Texture \"f\" \"float\" \"checkerboard\"\nShape \"sphere\" \"float alpha\" .5\nShape \"sphere\" \"texture alpha\" \"f\"\n"
+      "Texture \"f\" \"float\" \"checkerboard\"\nShape \"sphere\" \"float alpha\" .5\nShape "
+      "\"sphere\" \"texture alpha\" \"f\"\n"
       "Shape \"sphere\" \"float alpha\" 1\nShape \"sphere\" \"float alpha\" 0");
   EXPECT_EQ(std::get<ConstantSpectrum>(scene.shapes[0].alpha->value).value, 0.5);
   EXPECT_EQ(scene.shapes[1].alpha->texture, 0u);
   EXPECT_FALSE(scene.shapes[2].alpha);
   EXPECT_TRUE(scene.shapes[3].alpha);
-  EXPECT_THAT(complaints("WorldBegin\nAreaLightSource \"diffuse\"\nShape \"sphere\" \"float alpha\" .5"), ElementsAre());
-  EXPECT_THAT(complaints("WorldBegin\nObjectBegin \"o\" Shape \"sphere\" \"float alpha\" .5 ObjectEnd\nObjectBegin \"p\" Shape "
-                         "\"sphere\" ObjectEnd\n"
-                         "Shape \"csg\" \"string operation\" \"union\" \"string operands\" [\"o\" \"p\"]"),
-              ElementsAre("scene.pbrt:2:17: an operand of a csg has no \"alpha\" of its own: give it to the csg"));
+  EXPECT_THAT(
+      complaints("WorldBegin\nAreaLightSource \"diffuse\"\nShape \"sphere\" \"float alpha\" .5"),
+      ElementsAre());
+  EXPECT_THAT(
+      complaints("WorldBegin\nObjectBegin \"o\" Shape \"sphere\" \"float alpha\" .5 "
+                 "ObjectEnd\nObjectBegin \"p\" Shape "
+                 "\"sphere\" ObjectEnd\n"
+                 "Shape \"csg\" \"string operation\" \"union\" \"string operands\" [\"o\" \"p\"]"),
+      ElementsAre(
+          "scene.pbrt:2:17: an operand of a csg has no \"alpha\" of its own: give it to the csg"));
 }
 
 }  // namespace

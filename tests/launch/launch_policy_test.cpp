@@ -11,19 +11,25 @@ namespace {
 
 TEST(Batches, FitInAllAndInOneBuffer) {
   EXPECT_EQ(fitting_batch(1 << 20, 300, 52, 1ull << 40, 1ull << 40), std::size_t{1} << 20);
-  EXPECT_EQ(fitting_batch(1 << 20, 300, 52, 300ull << 20, 52ull << 20), std::size_t{1} << 20);       // just
-  EXPECT_EQ(fitting_batch(1 << 20, 300, 52, (300ull << 20) - 1, 1ull << 40), std::size_t{1} << 19);  // not in all
-  EXPECT_EQ(fitting_batch(1 << 20, 300, 52, 1ull << 40, (52ull << 20) - 1), std::size_t{1} << 19);   // not in one buffer
+  EXPECT_EQ(fitting_batch(1 << 20, 300, 52, 300ull << 20, 52ull << 20),
+            std::size_t{1} << 20);  // just
+  EXPECT_EQ(fitting_batch(1 << 20, 300, 52, (300ull << 20) - 1, 1ull << 40),
+            std::size_t{1} << 19);  // not in all
+  EXPECT_EQ(fitting_batch(1 << 20, 300, 52, 1ull << 40, (52ull << 20) - 1),
+            std::size_t{1} << 19);  // not in one buffer
   EXPECT_EQ(fitting_batch(1 << 20, 300, 52, 300ull << 14, 1ull << 40), std::size_t{1} << 14);
   EXPECT_EQ(fitting_batch(1 << 20, 300, 52, 0, 0), least_batch_paths);
   EXPECT_EQ(fitting_batch(100, 300, 52, 0, 0), 100u);
 }
 
 TEST(Chunks, GrowWhileLaunchesAreShortAndShrinkWhenTheyAreLong) {
-  EXPECT_EQ(next_chunk(1 << 16, 1 << 20, 0.1), std::size_t{1} << 17);    // a sixteenth of a tenth of a second
-  EXPECT_EQ(next_chunk(1 << 16, 1 << 20, 1.6), std::size_t{1} << 16);    // twice as many would take 0.2 s
-  EXPECT_EQ(next_chunk(1 << 16, 1 << 20, 16), std::size_t{1} << 15);     // 1 s
-  EXPECT_EQ(next_chunk(1 << 16, 1 << 14, 0.001), std::size_t{1} << 16);  // says nothing of whole chunks
+  EXPECT_EQ(next_chunk(1 << 16, 1 << 20, 0.1),
+            std::size_t{1} << 17);  // a sixteenth of a tenth of a second
+  EXPECT_EQ(next_chunk(1 << 16, 1 << 20, 1.6),
+            std::size_t{1} << 16);  // twice as many would take 0.2 s
+  EXPECT_EQ(next_chunk(1 << 16, 1 << 20, 16), std::size_t{1} << 15);  // 1 s
+  EXPECT_EQ(next_chunk(1 << 16, 1 << 14, 0.001),
+            std::size_t{1} << 16);  // says nothing of whole chunks
   EXPECT_EQ(next_chunk(1 << 16, 1 << 14, 0.6), std::size_t{1} << 15);
   EXPECT_EQ(next_chunk(1 << 10, 1 << 20, 1e6), std::size_t{1} << 10);
   EXPECT_EQ(next_chunk(1 << 30, 1u << 31, 0), std::size_t{1} << 30);

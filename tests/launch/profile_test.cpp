@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// The way of GPUs, on any device: large batches, counters that stay on the device, sums of sort bins in parallel, a work-item a
-// layer, launches in chunks. On PoCL its pictures are those of the way of processors, to the bit.
+// The way of GPUs, on any device: large batches, counters that stay on the device, sums of sort
+// bins in parallel, a work-item a layer, launches in chunks. On PoCL its pictures are those of the
+// way of processors, to the bit.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -81,7 +82,8 @@ TEST(Profile, OfGpusMakesThePicturesOfProcessors) {
   expect_same(made(scene, device_of("gpu", Encoding::wide), 9), expected, "wide");
 }
 
-// A batch of 2^20 paths, and so 2^18 sort bins in three levels of sums; launches begin with 2^16 work-items.
+// A batch of 2^20 paths, and so 2^18 sort bins in three levels of sums; launches begin with 2^16
+// work-items.
 TEST(Profile, OfGpusSortsAndLaunchesInChunks) {
   Scene scene = scene_named("scenes/capsules.pbrt", 256, 256, 2);
   add_cloud(scene);
@@ -112,7 +114,8 @@ TEST(Profile, PrefixSumsAreThoseOfALoop) {
       const std::vector<SortLevel> levels = sort_levels(bins, fan);
       for (std::size_t i = 0; i + 1 < levels.size(); ++i)
         kernels.run(Stage::sort_sums, bindings, levels[i].count, levels[i].first);
-      for (std::size_t i = levels.size(); i-- > 0;) kernels.run(Stage::sort_prefix, bindings, levels[i].count, levels[i].first);
+      for (std::size_t i = levels.size(); i-- > 0;)
+        kernels.run(Stage::sort_prefix, bindings, levels[i].count, levels[i].first);
       std::vector<uint> expected(bins);
       std::exclusive_scan(counts.begin(), counts.end(), expected.begin(), 0u);
       std::vector<uint> found = buffers.sort.sort_bins.read();
@@ -134,7 +137,8 @@ TEST(Profile, ChunksAreParts) {
   buffers.sort.sort_keys.clear();
   Bindings bindings;
   buffers.bind(bindings);
-  for (const std::size_t chunk : {std::size_t{0}, std::size_t{64}, std::size_t{1024}, std::size_t{8192}})
+  for (const std::size_t chunk :
+       {std::size_t{0}, std::size_t{64}, std::size_t{1024}, std::size_t{8192}})
     for (const uint counted : {~0u, 0u, 1u, 1023u, 4999u, 6000u}) {
       buffers.queues.queue.write(std::vector<uint>(paths, 7777u));
       buffers.sort.sort_bins.clear();
@@ -142,7 +146,8 @@ TEST(Profile, ChunksAreParts) {
       counters[counter_next] = counted;
       buffers.counters.counters.write(counters);
       kernels.set_chunk(chunk);
-      kernels.run(Stage::sort_scatter, bindings, paths, 0, counted == ~0u ? CAPLET_NONE : uint{counter_next});
+      kernels.run(Stage::sort_scatter, bindings, paths, 0,
+                  counted == ~0u ? CAPLET_NONE : uint{counter_next});
       const std::size_t count = std::min<std::size_t>(counted, paths);
       EXPECT_EQ(buffers.sort.sort_bins.read()[0], count) << chunk << " " << counted;
       std::vector<uint> found = buffers.queues.queue.read();

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Colour, albedo and variance of rendered pictures in every colour space of a film, and samples that leave the range of a float.
+// Colour, albedo and variance of rendered pictures in every colour space of a film, and samples
+// that leave the range of a float.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -21,7 +22,8 @@ using glm::dvec3;
 using Matrix = std::array<double, 9>;
 
 dvec3 times(const Matrix& m, const dvec3& v) {
-  return {m[0] * v.x + m[1] * v.y + m[2] * v.z, m[3] * v.x + m[4] * v.y + m[5] * v.z, m[6] * v.x + m[7] * v.y + m[8] * v.z};
+  return {m[0] * v.x + m[1] * v.y + m[2] * v.z, m[3] * v.x + m[4] * v.y + m[5] * v.z,
+          m[6] * v.x + m[7] * v.y + m[8] * v.z};
 }
 
 struct Space {
@@ -30,19 +32,26 @@ struct Space {
   Matrix from_srgb;  // linear
 };
 
-// Published: Display P3 and ITU-R BT.2020 (BT.2087) from BT.709; ACES 2065-1 from XYZ (SMPTE ST 2065-1) times XYZ from BT.709
-// (IEC 61966-2-1), for pbrt does not adapt whites.
+// Published: Display P3 and ITU-R BT.2020 (BT.2087) from BT.709; ACES 2065-1 from XYZ (SMPTE ST
+// 2065-1) times XYZ from BT.709 (IEC 61966-2-1), for pbrt does not adapt whites.
 const Space spaces[] = {
     {"srgb", ColorSpace::srgb, {1, 0, 0, 0, 1, 0, 0, 0, 1}},
     {"dci-p3", ColorSpace::dci_p3, {0.8225, 0.1774, 0, 0.0332, 0.9669, 0, 0.0171, 0.0724, 0.9108}},
-    {"rec2020", ColorSpace::rec2020, {0.6274, 0.3293, 0.0433, 0.0691, 0.9195, 0.0114, 0.0164, 0.0880, 0.8956}},
-    {"aces2065-1", ColorSpace::aces2065_1, {0.4329, 0.3754, 0.1894, 0.0894, 0.8165, 0.1034, 0.0192, 0.1181, 0.9419}},
+    {"rec2020",
+     ColorSpace::rec2020,
+     {0.6274, 0.3293, 0.0433, 0.0691, 0.9195, 0.0114, 0.0164, 0.0880, 0.8956}},
+    {"aces2065-1",
+     ColorSpace::aces2065_1,
+     {0.4329, 0.3754, 0.1894, 0.0894, 0.8165, 0.1034, 0.0192, 0.1181, 0.9419}},
 };
 
 std::string film_of(const std::string& space, int side) {
-  return "ColorSpace \"" + space + "\"\nIntegrator \"path\" \"integer maxdepth\" 0\nPixelFilter \"box\"\n" +
-         "LookAt 0 0 0  0 0 1  0 1 0\nCamera \"perspective\"\nFilm \"rgb\" \"integer xresolution\" " + std::to_string(side) +
-         " \"integer yresolution\" " + std::to_string(side) + "\nWorldBegin\n";
+  return "ColorSpace \"" + space +
+         "\"\nIntegrator \"path\" \"integer maxdepth\" 0\nPixelFilter \"box\"\n" +
+         "LookAt 0 0 0  0 0 1  0 1 0\nCamera \"perspective\"\nFilm \"rgb\" \"integer "
+         "xresolution\" " +
+         std::to_string(side) + " \"integer yresolution\" " + std::to_string(side) +
+         "\nWorldBegin\n";
 }
 
 std::string numbers(const dvec3& v) {
@@ -51,38 +60,44 @@ std::string numbers(const dvec3& v) {
 
 /// A plane that fills the view, with this radiance in a space of its own.
 std::string glowing_plane(const std::string& space, const dvec3& radiance) {
-  return "ColorSpace \"" + space + "\"\nAreaLightSource \"diffuse\" \"bool twosided\" true \"rgb L\" " + numbers(radiance) +
+  return "ColorSpace \"" + space +
+         "\"\nAreaLightSource \"diffuse\" \"bool twosided\" true \"rgb L\" " + numbers(radiance) +
          "Translate 0 0 2\nShape \"disk\" \"float radius\" 1000\n";
 }
 
 std::string reflecting_plane(const std::string& space, const dvec3& reflectance) {
-  return "ColorSpace \"" + space + "\"\nMaterial \"diffuse\" \"rgb reflectance\" " + numbers(reflectance) +
-         "Translate 0 0 2\nShape \"disk\" \"float radius\" 1000\n";
+  return "ColorSpace \"" + space + "\"\nMaterial \"diffuse\" \"rgb reflectance\" " +
+         numbers(reflectance) + "Translate 0 0 2\nShape \"disk\" \"float radius\" 1000\n";
 }
 
 dvec3 mean_rgb(const LayeredImage& image, const std::string& prefix) {
-  return {mean(channel(image, prefix + "R")), mean(channel(image, prefix + "G")), mean(channel(image, prefix + "B"))};
+  return {mean(channel(image, prefix + "R")), mean(channel(image, prefix + "G")),
+          mean(channel(image, prefix + "B"))};
 }
 
-// 4 x 4 pixels of 4,096 stratified wavelengths each: the noise is below 1e-4, the uplift's error 2e-5 of the greatest component,
-// and the matrices are rounded to four digits. Spectra of colours in one space are not exactly the colour under another's white:
-// 2e-3.
+// 4 x 4 pixels of 4,096 stratified wavelengths each: the noise is below 1e-4, the uplift's error
+// 2e-5 of the greatest component, and the matrices are rounded to four digits. Spectra of colours
+// in one space are not exactly the colour under another's white: 2e-3.
 constexpr int many = 4096;
 constexpr double close_enough = 2e-3;
 
 TEST(ColorOfFilm, EmittedColorsAreThoseOfTheFile) {
   const dvec3 color(0.9, 0.4, 0.15);
   for (const Space& film : spaces) {
-    const dvec3 own = mean_rgb(render_text(film_of(film.name, 4) + glowing_plane(film.name, color), many).image, "");
+    const dvec3 own = mean_rgb(
+        render_text(film_of(film.name, 4) + glowing_plane(film.name, color), many).image, "");
     EXPECT_LT(glm::length(own - color), close_enough) << film.name;
-    const Rendered rendered = render_text(film_of(film.name, 4) + glowing_plane("srgb", color), many);
+    const Rendered rendered =
+        render_text(film_of(film.name, 4) + glowing_plane("srgb", color), many);
     EXPECT_EQ(rendered.image.space, film.space);
-    EXPECT_LT(glm::length(mean_rgb(rendered.image, "") - times(film.from_srgb, color)), close_enough) << film.name;
+    EXPECT_LT(glm::length(mean_rgb(rendered.image, "") - times(film.from_srgb, color)),
+              close_enough)
+        << film.name;
   }
 }
 
-// A white surface is 1 1 1 in every space and under every light: also under an image whose texels are in another space, with
-// another white, and of another brightness.
+// A white surface is 1 1 1 in every space and under every light: also under an image whose texels
+// are in another space, with another white, and of another brightness.
 TEST(ColorOfFilm, AlbedoIsScaleFreeInTheFilmsSpace) {
   const dvec3 white(1, 1, 1), color(0.7, 0.35, 0.1);
   for (const Space& film : spaces)
@@ -98,25 +113,29 @@ TEST(ColorOfFilm, AlbedoIsScaleFreeInTheFilmsSpace) {
         scene.lights.push_back(sky);
       };
       const auto albedo_of = [&](const std::string& plane) {
-        return mean_rgb(render_text(film_of(film.name, 4) + plane, many, image_light).image, "albedo.");
+        return mean_rgb(render_text(film_of(film.name, 4) + plane, many, image_light).image,
+                        "albedo.");
       };
-      EXPECT_LT(glm::length(albedo_of(reflecting_plane(film.name, white)) - white), close_enough) << film.name << light.name;
+      EXPECT_LT(glm::length(albedo_of(reflecting_plane(film.name, white)) - white), close_enough)
+          << film.name << light.name;
       if (&light != &spaces[3]) continue;
-      EXPECT_LT(glm::length(albedo_of(reflecting_plane(film.name, color)) - color), close_enough) << film.name;
+      EXPECT_LT(glm::length(albedo_of(reflecting_plane(film.name, color)) - color), close_enough)
+          << film.name;
     }
 }
 
-// One sample a pixel is independent from pixel to pixel: the pixels' spread is the variance V of a sample. Of n samples in a
-// pixel, stratified so that their mean is nearly exact, the layer is (E[x^2] - mean^2) / (n - 1): V / (n - 1); if they were
-// independent, V / n.
+// One sample a pixel is independent from pixel to pixel: the pixels' spread is the variance V of a
+// sample. Of n samples in a pixel, stratified so that their mean is nearly exact, the layer is
+// (E[x^2] - mean^2) / (n - 1): V / (n - 1); if they were independent, V / n.
 TEST(ColorOfFilm, VarianceIsThatOfTheFilmsColors) {
   constexpr int n = 64, side = 128;
   const dvec3 color(0.9, 0.4, 0.15);
   for (const Space& film : spaces) {
     const std::string text = film_of(film.name, side) + glowing_plane(film.name, color);
-    const LayeredImage single = render_text(text, 1).image, many_samples = render_text(text, n, [](Scene&scene) {
-                                                                             scene.film.crop = std::array<int, 4>{0, 32, 0, 32};
-                                                                           }).image;
+    const LayeredImage single = render_text(text, 1).image,
+                       many_samples = render_text(text, n, [](Scene&scene) {
+                                        scene.film.crop = std::array<int, 4>{0, 32, 0, 32};
+                                      }).image;
     for (const char* name : {"R", "G", "B"}) {
       const std::vector<float>& values = channel(single, name).floats;
       const double center = mean(channel(single, name)), pixels = side * side;
@@ -139,10 +158,12 @@ TEST(ColorOfFilm, VarianceIsThatOfTheFilmsColors) {
 std::pair<std::string, LayeredImage> rendered_aloud(const std::string& radiance, double iso) {
   testing::internal::CaptureStdout();
   testing::internal::CaptureStderr();
-  LayeredImage image = render_text(film_of("srgb", 2) + "AreaLightSource \"diffuse\" \"bool twosided\" true \"rgb L\" [" +
-                                       radiance + "]\nTranslate 0 0 2\nShape \"disk\" \"float radius\" 1000\n",
-                                   64, [&](Scene& scene) { scene.film.iso = iso; })
-                           .image;
+  LayeredImage image =
+      render_text(film_of("srgb", 2) +
+                      "AreaLightSource \"diffuse\" \"bool twosided\" true \"rgb L\" [" + radiance +
+                      "]\nTranslate 0 0 2\nShape \"disk\" \"float radius\" 1000\n",
+                  64, [&](Scene& scene) { scene.film.iso = iso; })
+          .image;
   const std::string said = testing::internal::GetCapturedStderr();
   return {said + testing::internal::GetCapturedStdout(), std::move(image)};
 }
@@ -153,14 +174,16 @@ TEST(ColorOfFilm, WhatIsBeyondAFloatIsSaidAndBlack) {
   EXPECT_NE(too_bright.find("256 samples were not finite"), std::string::npos) << too_bright;
   // The film's exposure takes what is a float beyond it.
   const auto [exposed, also_black] = rendered_aloud("1e30 1e30 1e30", 1e12);
-  EXPECT_NE(exposed.find("4 of 4 pixels are beyond the range of a float"), std::string::npos) << exposed;
+  EXPECT_NE(exposed.find("4 of 4 pixels are beyond the range of a float"), std::string::npos)
+      << exposed;
   for (const LayeredImage* image : {&black, &also_black})
     for (const Channel& channel : image->channels)
       for (const float v : channel.floats) EXPECT_TRUE(std::isfinite(v)) << channel.name;
   EXPECT_EQ(at(also_black, "R", 0), 0);
   // Only the squares are too great: the colour stands, its variance is unknown.
   const auto [unsure, bright] = rendered_aloud("1e30 1e30 1e30", 100);
-  EXPECT_NE(unsure.find("4 of 4 pixels are beyond the range of a float"), std::string::npos) << unsure;
+  EXPECT_NE(unsure.find("4 of 4 pixels are beyond the range of a float"), std::string::npos)
+      << unsure;
   EXPECT_NEAR(at(bright, "G", 0), 1e30, 5e28);
   EXPECT_EQ(at(bright, "variance.G", 0), double{std::numeric_limits<float>::max()});
   const auto [nothing, plain] = rendered_aloud("1 1 1", 100);
@@ -172,9 +195,12 @@ TEST(ColorOfFilm, WhatIsBeyondAFloatIsSaidAndBlack) {
 TEST(ColorOfFilm, LimitedSamplesKeepTheirHue) {
   const auto rendered = [](const std::string& film) {
     return render_text(
-               "Integrator \"path\" \"integer maxdepth\" 0\nCamera \"perspective\"\nFilm \"rgb\" \"integer xresolution\" 4 "
+               "Integrator \"path\" \"integer maxdepth\" 0\nCamera \"perspective\"\nFilm \"rgb\" "
+               "\"integer xresolution\" 4 "
                "\"integer yresolution\" 4 " +
-                   film + "\nWorldBegin\nLightSource \"infinite\" \"rgb L\" [40 10 20]\nTranslate 0 0 -5 Shape \"sphere\"\n",
+                   film +
+                   "\nWorldBegin\nLightSource \"infinite\" \"rgb L\" [40 10 20]\nTranslate 0 0 -5 "
+                   "Shape \"sphere\"\n",
                1)
         .image;
   };
@@ -189,10 +215,11 @@ TEST(ColorOfFilm, LimitedSamplesKeepTheirHue) {
 TEST(Limit, IsOfEachSampleAsItIsExposed) {
   const auto rendered = [](double radiance, const std::string& film, int samples) {
     return render_text(
-               "Integrator \"path\" \"integer maxdepth\" 0\nPixelFilter \"box\"\nCamera \"perspective\"\nFilm \"rgb\" "
+               "Integrator \"path\" \"integer maxdepth\" 0\nPixelFilter \"box\"\nCamera "
+               "\"perspective\"\nFilm \"rgb\" "
                "\"integer xresolution\" 8 \"integer yresolution\" 8 " +
-                   film + "\nWorldBegin\nLightSource \"infinite\" \"rgb L\" " + numbers(dvec3(radiance)) +
-                   "Translate 0 0 -5 Shape \"sphere\"\n",
+                   film + "\nWorldBegin\nLightSource \"infinite\" \"rgb L\" " +
+                   numbers(dvec3(radiance)) + "Translate 0 0 -5 Shape \"sphere\"\n",
                samples)
         .image;
   };
@@ -201,20 +228,23 @@ TEST(Limit, IsOfEachSampleAsItIsExposed) {
     return std::max({xyz.x, xyz.y, xyz.z});
   };
   // One bright sample a pixel: its greatest component is the limit, whatever its wavelengths.
-  for (const char* film : {"\"float maxcomponentvalue\" 2", "\"float maxcomponentvalue\" 2 \"float iso\" 400"}) {
+  for (const char* film :
+       {"\"float maxcomponentvalue\" 2", "\"float maxcomponentvalue\" 2 \"float iso\" 400"}) {
     const LayeredImage image = rendered(1e4, film, 1);
     for (std::size_t i = 0; i < 64; ++i) EXPECT_NEAR(peak_of(image, i), 2, 1e-5) << film << i;
   }
-  // A pixel of which a part is bright has that part of the limit: it is not of means. A light of one spectrum has the same
-  // component greatest in every sample.
-  const LayeredImage part =
-      render_text(
-          "Integrator \"path\" \"integer maxdepth\" 0\nPixelFilter \"box\"\nCamera \"perspective\"\nFilm \"rgb\" "
-          "\"integer xresolution\" 8 \"integer yresolution\" 8 \"float maxcomponentvalue\" 2\nWorldBegin\n"
-          "AreaLightSource \"diffuse\" \"bool twosided\" true \"rgb L\" [1e4 1e4 1e4]\nTranslate 0 0 2\nShape "
-          "\"disk\" \"float radius\" 1.3\n",
-          64)
-          .image;
+  // A pixel of which a part is bright has that part of the limit: it is not of means. A light of
+  // one spectrum has the same component greatest in every sample.
+  const LayeredImage part = render_text(
+                                "Integrator \"path\" \"integer maxdepth\" 0\nPixelFilter "
+                                "\"box\"\nCamera \"perspective\"\nFilm \"rgb\" "
+                                "\"integer xresolution\" 8 \"integer yresolution\" 8 \"float "
+                                "maxcomponentvalue\" 2\nWorldBegin\n"
+                                "AreaLightSource \"diffuse\" \"bool twosided\" true \"rgb L\" [1e4 "
+                                "1e4 1e4]\nTranslate 0 0 2\nShape "
+                                "\"disk\" \"float radius\" 1.3\n",
+                                64)
+                                .image;
   int partly = 0;
   for (std::size_t i = 0; i < 64; ++i) {
     const double share = at(part, "A", i);
@@ -223,8 +253,10 @@ TEST(Limit, IsOfEachSampleAsItIsExposed) {
   }
   EXPECT_GE(partly, 8);
   // Dim samples are not changed.
-  const LayeredImage dim = rendered(0.1, "\"float maxcomponentvalue\" 50", 4), free = rendered(0.1, "", 4);
-  for (const char* name : {"R", "G", "B"}) EXPECT_EQ(channel(dim, name).floats, channel(free, name).floats) << name;
+  const LayeredImage dim = rendered(0.1, "\"float maxcomponentvalue\" 50", 4),
+                     free = rendered(0.1, "", 4);
+  for (const char* name : {"R", "G", "B"})
+    EXPECT_EQ(channel(dim, name).floats, channel(free, name).floats) << name;
 }
 
 }  // namespace

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// First-hit layers of rendered pictures, pixel by pixel, against the reference along the same camera rays.
+// First-hit layers of rendered pictures, pixel by pixel, against the reference along the same
+// camera rays.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -32,15 +33,18 @@ bool same_place(const std::optional<SceneHit>& a, const std::optional<SceneHit>&
 }
 
 /// Whether rays a little beside this one hit the same: no edge is near, where rounding may decide.
-bool is_clear(const reference::SceneReference& reference, const reference::Ray& ray, const std::optional<SceneHit>& hit) {
+bool is_clear(const reference::SceneReference& reference, const reference::Ray& ray,
+              const std::optional<SceneHit>& hit) {
   for (const dvec3 step : {dvec3(1, 0, 0), dvec3(0, 1, 0), dvec3(0, 0, 1)})
     for (const double sign : {-1e-4, 1e-4})
-      if (!same_place(reference.closest({ray.origin, ray.direction + sign * step}), hit)) return false;
+      if (!same_place(reference.closest({ray.origin, ray.direction + sign * step}), hit))
+        return false;
   return true;
 }
 
 const Shape& shape_of(const Scene& scene, const SceneHit& hit) {
-  return hit.instance == reference::no_instance ? scene.shapes[hit.shape] : scene.objects[hit.object].shapes[hit.shape];
+  return hit.instance == reference::no_instance ? scene.shapes[hit.shape]
+                                                : scene.objects[hit.object].shapes[hit.shape];
 }
 
 bool has_smooth_normals(const Shape& shape) {
@@ -53,27 +57,32 @@ struct Case {
   const char* file;
   int samples, width, height;
   std::size_t primitives = 1;  // different numbers in the picture, at least
-  friend std::ostream& operator<<(std::ostream& out, const Case& c) { return out << c.file << " at " << c.samples; }
+  friend std::ostream& operator<<(std::ostream& out, const Case& c) {
+    return out << c.file << " at " << c.samples;
+  }
 };
 
 class LayersOfScene : public testing::TestWithParam<Case> {};
 INSTANTIATE_TEST_SUITE_P(Files, LayersOfScene,
-                         testing::Values(Case{"scenes/gallery.pbrt", 1, 96, 54, 4}, Case{"scenes/gallery.pbrt", 1024, 24, 14, 2},
-                                         Case{"scenes/instances.pbrt", 1, 96, 54}, Case{"scenes/instances.pbrt", 1024, 24, 14},
+                         testing::Values(Case{"scenes/gallery.pbrt", 1, 96, 54, 4},
+                                         Case{"scenes/gallery.pbrt", 1024, 24, 14, 2},
+                                         Case{"scenes/instances.pbrt", 1, 96, 54},
+                                         Case{"scenes/instances.pbrt", 1024, 24, 14},
                                          Case{"tests/query/solids.pbrt", 1, 96, 54},
                                          Case{"tests/render/everything.pbrt", 1, 96, 72}));
 
 TEST_P(LayersOfScene, AreTheReferences) {
   const int width = GetParam().width, height = GetParam().height;
   Scene scene;
-  const Rendered rendered = render_file(source_folder() / GetParam().file, GetParam().samples, [&](Scene& s) {
-    s.film.width = width;
-    s.film.height = height;
-    s.filter = point_filter();
-    s.camera.lens_radius = 0;
-    s.integrator.max_depth = 0;
-    scene = s;
-  });
+  const Rendered rendered =
+      render_file(source_folder() / GetParam().file, GetParam().samples, [&](Scene& s) {
+        s.film.width = width;
+        s.film.height = height;
+        s.filter = point_filter();
+        s.camera.lens_radius = 0;
+        s.integrator.max_depth = 0;
+        scene = s;
+      });
   const LayeredImage& image = rendered.image;
   const reference::SceneReference reference(scene);
   int compared = 0, edges = 0, normals = 0;
@@ -89,7 +98,8 @@ TEST_P(LayersOfScene, AreTheReferences) {
         continue;
       }
       ++compared;
-      const std::uint32_t object = channel(image, "object.id").uints[i], primitive = channel(image, "primitive.id").uints[i];
+      const std::uint32_t object = channel(image, "object.id").uints[i],
+                          primitive = channel(image, "primitive.id").uints[i];
       EXPECT_EQ(at(image, "A", i), hit ? 1 : 0);
       if (!hit) {
         EXPECT_EQ(object, CAPLET_NONE);
@@ -110,14 +120,16 @@ TEST_P(LayersOfScene, AreTheReferences) {
       EXPECT_LE(glm::length(n), 1);
       EXPECT_GT(glm::length(n), 1 - 1e-6);
       EXPECT_LE(glm::dot(n, ray.direction), 1e-6);
-      // The kernels' bounds are below 1e-6 of the scale (docs/numerics.md): ten times that, where they are seen at an angle.
+      // The kernels' bounds are below 1e-6 of the scale (docs/numerics.md): ten times that, where
+      // they are seen at an angle.
       const double cosine = std::abs(glm::dot(normal, ray.direction));
       const double bound = 1e-5 * (glm::length(ray.origin) + hit->t) / std::max(cosine, 0.05);
       EXPECT_NEAR(at(image, "Z", i), hit->t, bound);
       EXPECT_LE(glm::length(point - expected), bound);
       if (has_smooth_normals(shape_of(scene, *hit))) continue;
       ++normals;
-      // The reference's normals are differences over 1e-6 of a primitive's size, of values in double.
+      // The reference's normals are differences over 1e-6 of a primitive's size, of values in
+      // double.
       EXPECT_LT(glm::length(n - normal), 2e-3);
     }
   EXPECT_LT(edges, 0.2 * width * height);

@@ -15,23 +15,29 @@
 
 namespace caplet::test {
 
-inline Rendered render_text(const std::string& text, int samples_per_pixel, const std::function<void(Scene&)>& change = {}) {
+inline Rendered render_text(const std::string& text, int samples_per_pixel,
+                            const std::function<void(Scene&)>& change = {}) {
   const auto file = temporary_folder() / "scene.pbrt";
   std::ofstream(file) << text;
   return render_file(file, samples_per_pixel, change);
 }
 
-/// No wider than the rounding of raster coordinates: all camera rays of a pixel go through its middle.
-inline PixelFilter point_filter() { return {.kind = PixelFilter::Kind::box, .radius_x = 1e-7, .radius_y = 1e-7}; }
+/// No wider than the rounding of raster coordinates: all camera rays of a pixel go through its
+/// middle.
+inline PixelFilter point_filter() {
+  return {.kind = PixelFilter::Kind::box, .radius_x = 1e-7, .radius_y = 1e-7};
+}
 
 inline double at(const LayeredImage& image, const std::string& name, std::size_t pixel) {
   return double{channel(image, name).floats.at(pixel)};
 }
 
 /// Three channels of a layer: ("N", "XYZ").
-inline glm::dvec3 at3(const LayeredImage& image, const std::string& layer, const std::string& axes, std::size_t pixel) {
+inline glm::dvec3 at3(const LayeredImage& image, const std::string& layer, const std::string& axes,
+                      std::size_t pixel) {
   const std::string prefix = layer.empty() ? "" : layer + ".";
-  return {at(image, prefix + axes[0], pixel), at(image, prefix + axes[1], pixel), at(image, prefix + axes[2], pixel)};
+  return {at(image, prefix + axes[0], pixel), at(image, prefix + axes[1], pixel),
+          at(image, prefix + axes[2], pixel)};
 }
 
 inline double mean(const Channel& channel) {

@@ -44,9 +44,10 @@ TEST(Layout, ReportsAShiftedField) {
   std::vector<RecordLayout> shifted = host_layout();
   for (RecordLayout& layout : shifted)
     if (layout.name == "HitRecord") layout.fields.at(1).offset += 4;
-  EXPECT_THAT(compare_layout(test::test_device(), shifted),
-              ElementsAre("HitRecord.slot: offset is 4 on the device, 8 on the host",
-                          "HitRecord.slot: offset it is loaded from is 4 on the device, 8 on the host"));
+  EXPECT_THAT(
+      compare_layout(test::test_device(), shifted),
+      ElementsAre("HitRecord.slot: offset is 4 on the device, 8 on the host",
+                  "HitRecord.slot: offset it is loaded from is 4 on the device, 8 on the host"));
 }
 
 TEST(Layout, ReportsFieldsThatChangedPlaces) {
@@ -60,7 +61,8 @@ TEST(Layout, ReportsFieldsThatChangedPlaces) {
 TEST(Layout, ReportsADifferentSize) {
   std::vector<RecordLayout> larger = host_layout();
   larger.back().bytes += 16;
-  EXPECT_THAT(compare_layout(test::test_device(), larger), ElementsAre("PickRecord: size is 64 on the device, 80 on the host"));
+  EXPECT_THAT(compare_layout(test::test_device(), larger),
+              ElementsAre("PickRecord: size is 64 on the device, 80 on the host"));
 }
 
 TEST(Layout, ReportsAListOfAnotherLength) {

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Scenes that are built through the public headers are those that files of the same statements hold.
+// Scenes that are built through the public headers are those that files of the same statements
+// hold.
 #include <caplet/import.h>
 #include <caplet/pick.h>
 #include <caplet/render.h>
@@ -34,7 +35,8 @@ caplet::Device test_device() {
 
 class LibraryBuild : public testing::Test {
  protected:
-  LibraryBuild() : folder_(fs::temp_directory_path() / ("caplet-build-" + std::to_string(::getpid()))) {
+  LibraryBuild()
+      : folder_(fs::temp_directory_path() / ("caplet-build-" + std::to_string(::getpid()))) {
     fs::create_directories(folder_);
   }
   ~LibraryBuild() override { fs::remove_all(folder_); }
@@ -44,10 +46,12 @@ class LibraryBuild : public testing::Test {
       scene->set_size(24, 16);
       scene->set_samples_per_pixel(2);
     }
-    const caplet::Film one = caplet::render(a, test_device()), other = caplet::render(b, test_device());
+    const caplet::Film one = caplet::render(a, test_device()),
+                       other = caplet::render(b, test_device());
     if (one.channels() != other.channels()) return false;
     for (const std::string& channel : one.channels()) {
-      if (channel.ends_with(".id") ? one.ids(channel) != other.ids(channel) : one.values(channel) != other.values(channel))
+      if (channel.ends_with(".id") ? one.ids(channel) != other.ids(channel)
+                                   : one.values(channel) != other.values(channel))
         return false;
     }
     return true;
@@ -107,25 +111,33 @@ ObjectInstance "leaf"
   scene.set_camera("perspective", {{"fov", 30.0}}, caplet::identity);
   scene.look_at({3, 2, 6}, {0, 0.5, 0}, {0, 1, 0});
   using Point = std::array<double, 3>;
-  scene.add_light("spot", {{"from", Point{1, 5, 2}}, {"to", Point{0, 0, 0}}, {"I", Point{90, 80, 70}}});
+  scene.add_light("spot",
+                  {{"from", Point{1, 5, 2}}, {"to", Point{0, 0, 0}}, {"I", Point{90, 80, 70}}});
   scene.add_light("infinite", {{"L", caplet::Blackbody{5000}}});
-  const caplet::TextureNumber squares = scene.add_texture({"checkerboard", true, {{"uscale", 4.0}}});
-  const std::uint32_t hair = scene.add_material("", caplet::NamedMaterial{"hair", {{"reflectance", caplet::Rgb{0.5, 0.3, 0.1}}}});
-  const std::uint32_t glass = scene.add_material("", caplet::NamedMaterial{"dielectric", {{"eta", 1.4}}});
+  const caplet::TextureNumber squares =
+      scene.add_texture({"checkerboard", true, {{"uscale", 4.0}}});
+  const std::uint32_t hair = scene.add_material(
+      "", caplet::NamedMaterial{"hair", {{"reflectance", caplet::Rgb{0.5, 0.3, 0.1}}}});
+  const std::uint32_t glass =
+      scene.add_material("", caplet::NamedMaterial{"dielectric", {{"eta", 1.4}}});
   const std::uint32_t grey = scene.add_material("", caplet::Diffuse{});
   caplet::CapsuleArrays two;
   two.p0 = {{0, 0, 0}, {1, 0, 0}};
   two.p1 = {{0, 1, 0}, {1, 1, 0}};
   two.radius0 = {0.5F, 0.25F};
   EXPECT_EQ(scene.add_capsules(two, {.materials = {hair}}), 0U);
-  const std::uint32_t fog = scene.add_medium("fog", "homogeneous", {{"sigma_a", 0.5}, {"sigma_s", 2.0}});
+  const std::uint32_t fog =
+      scene.add_medium("fog", "homogeneous", {{"sigma_a", 0.5}, {"sigma_s", 2.0}});
   caplet::ShapeOptions in_fog{.materials = {glass}, .inside = fog};
   in_fog.transform[3] = 2;
-  scene.add_shape(
-      "cylinder",
-      {{"p0", Point{0, 0, 0}}, {"p1", Point{0, 1, 0}}, {"radius", 0.5}, {"caps", std::vector<std::string>{"round", "flat"}}},
-      in_fog);
-  scene.add_shape("disk", {{"alpha", squares}}, {.materials = {grey}, .emission = caplet::Parameters{{"L", Point{2, 1, 1}}}});
+  scene.add_shape("cylinder",
+                  {{"p0", Point{0, 0, 0}},
+                   {"p1", Point{0, 1, 0}},
+                   {"radius", 0.5},
+                   {"caps", std::vector<std::string>{"round", "flat"}}},
+                  in_fog);
+  scene.add_shape("disk", {{"alpha", squares}},
+                  {.materials = {grey}, .emission = caplet::Parameters{{"L", Point{2, 1, 1}}}});
   caplet::MeshArrays mesh;
   mesh.positions = {{0, 0, 1}, {1, 0, 1}, {0, 1, 1}};
   mesh.triangles = {{0, 1, 2}};
@@ -139,25 +151,33 @@ ObjectInstance "leaf"
 }
 
 TEST_F(LibraryBuild, TypesAndParametersAreThoseOfTheLists) {
-  EXPECT_THAT(caplet::statement_types(Statement::light), IsSupersetOf({"point", "spot", "ies", "infinite"}));
+  EXPECT_THAT(caplet::statement_types(Statement::light),
+              IsSupersetOf({"point", "spot", "ies", "infinite"}));
   EXPECT_THAT(caplet::statement_types(Statement::medium), IsSupersetOf({"homogeneous", "nanovdb"}));
   EXPECT_THAT(caplet::statement_types(Statement::shape), IsSupersetOf({"box", "csg", "sphere"}));
   const auto names = [](Statement statement, const std::string& type) {
     std::vector<std::string> out;
-    for (const caplet::KnownParameter& one : caplet::statement_parameters(statement, type)) out.push_back(one.name);
+    for (const caplet::KnownParameter& one : caplet::statement_parameters(statement, type))
+      out.push_back(one.name);
     return out;
   };
   EXPECT_THAT(names(Statement::light, "spot"),
-              testing::UnorderedElementsAre("scale", "power", "I", "from", "to", "coneangle", "conedeltaangle"));
+              testing::UnorderedElementsAre("scale", "power", "I", "from", "to", "coneangle",
+                                            "conedeltaangle"));
   // Those of both kinds of cylinder, which no statement has at once.
-  EXPECT_THAT(names(Statement::shape, "cylinder"), IsSupersetOf({"p0", "p1", "caps", "zmin", "phimax"}));
+  EXPECT_THAT(names(Statement::shape, "cylinder"),
+              IsSupersetOf({"p0", "p1", "caps", "zmin", "phimax"}));
   for (const auto& one : caplet::statement_parameters(Statement::light, "spot")) {
     if (one.name == "I") continue;
-    EXPECT_EQ(one.types, std::vector<std::string>{one.name == "from" || one.name == "to" ? "point3" : "float"}) << one.name;
+    EXPECT_EQ(one.types,
+              std::vector<std::string>{one.name == "from" || one.name == "to" ? "point3" : "float"})
+        << one.name;
   }
-  for (const Statement statement : {Statement::shape, Statement::light, Statement::emission, Statement::medium, Statement::camera,
-                                    Statement::film, Statement::filter, Statement::sampler, Statement::integrator})
-    for (const std::string& type : caplet::statement_types(statement)) EXPECT_NO_THROW(names(statement, type)) << type;
+  for (const Statement statement : {Statement::shape, Statement::light, Statement::emission,
+                                    Statement::medium, Statement::camera, Statement::film,
+                                    Statement::filter, Statement::sampler, Statement::integrator})
+    for (const std::string& type : caplet::statement_types(statement))
+      EXPECT_NO_THROW(names(statement, type)) << type;
   EXPECT_THROW(names(Statement::light, "sun"), caplet::InputError);
 }
 
@@ -173,26 +193,45 @@ TEST_F(LibraryBuild, WhatIsWrongIsToldAndChangesNothing) {
   EXPECT_THAT(capsules([](auto& one) { one.radius1 = {1, 2}; }), HasSubstr("radius1 has 2"));
   EXPECT_THAT(capsules([&](auto& one) { one.p1[0][2] = nan; }), HasSubstr("finite"));
   EXPECT_THAT(capsules([](auto& one) { one.materials = {9}; }), HasSubstr("no material 9"));
-  EXPECT_THAT(said([&] { scene.add_shape("sphre", {}); }), AllOf(HasSubstr("sphre"), HasSubstr("'sphere'")));
-  EXPECT_THAT(said([&] { scene.add_shape("sphere", {{"raduis", 1.0}}); }), AllOf(HasSubstr("raduis"), HasSubstr("radius")));
+  EXPECT_THAT(said([&] { scene.add_shape("sphre", {}); }),
+              AllOf(HasSubstr("sphre"), HasSubstr("'sphere'")));
+  EXPECT_THAT(said([&] {
+                scene.add_shape("sphere", {{"raduis", 1.0}});
+              }),
+              AllOf(HasSubstr("raduis"), HasSubstr("radius")));
   EXPECT_THAT(said([&] {
                 scene.add_shape("sphere", {{"radius", std::string("one")}});
               }),
               HasSubstr("must be of type float, not \"one\""));
-  EXPECT_THAT(said([&] { scene.add_shape("sphere", {{"radius", std::vector<double>{}}}); }), HasSubstr("has no value"));
-  EXPECT_THAT(said([&] { scene.add_shape("sphere", {{"radius", double{nan}}}); }), HasSubstr("not finite"));
-  EXPECT_THAT(said([&] { scene.add_shape("sphere", {}, {.inside = 4U}); }), HasSubstr("no medium 4"));
+  EXPECT_THAT(said([&] {
+                scene.add_shape("sphere", {{"radius", std::vector<double>{}}});
+              }),
+              HasSubstr("has no value"));
+  EXPECT_THAT(said([&] {
+                scene.add_shape("sphere", {{"radius", double{nan}}});
+              }),
+              HasSubstr("not finite"));
+  EXPECT_THAT(said([&] { scene.add_shape("sphere", {}, {.inside = 4U}); }),
+              HasSubstr("no medium 4"));
   caplet::ShapeOptions flat;
   flat.transform[0] = 0;
   EXPECT_THAT(said([&] { scene.add_shape("sphere", {}, flat); }), HasSubstr("singular"));
-  EXPECT_THAT(said([&] { scene.add_light("spot", {{"from", std::vector<double>{1, 2}}}); }), HasSubstr("point3, not 2 numbers"));
+  EXPECT_THAT(said([&] {
+                scene.add_light("spot", {{"from", std::vector<double>{1, 2}}});
+              }),
+              HasSubstr("point3, not 2 numbers"));
   EXPECT_THAT(said([&] {
                 scene.add_light("infinite", {{"L", std::vector<double>{1, 2, 3, 4, 5}}});
               }),
               HasSubstr("takes 1 value, not 5"));
-  EXPECT_THAT(said([&] { scene.add_medium("m", "homogeneous", {{"g", 2.0}}); }), HasSubstr("\"g\""));
-  EXPECT_THAT(said([&] { scene.add_instances("leaf", std::vector{caplet::identity}); }), HasSubstr("no object 'leaf'"));
-  EXPECT_THAT(said([&] { scene.set_option(Statement::light, "spot", {}); }), HasSubstr("an option is"));
+  EXPECT_THAT(said([&] {
+                scene.add_medium("m", "homogeneous", {{"g", 2.0}});
+              }),
+              HasSubstr("\"g\""));
+  EXPECT_THAT(said([&] { scene.add_instances("leaf", std::vector{caplet::identity}); }),
+              HasSubstr("no object 'leaf'"));
+  EXPECT_THAT(said([&] { scene.set_option(Statement::light, "spot", {}); }),
+              HasSubstr("an option is"));
   EXPECT_THAT(said([&] {
                 scene.add_shapes("box", 2, {}, {{"p0", std::vector<double>{1, 2, 3}}}, {});
               }),
@@ -208,10 +247,12 @@ TEST_F(LibraryBuild, ShapesInBulkHaveTheirOwnValues) {
   const std::uint32_t red = scene.add_material("red", caplet::Diffuse{caplet::Rgb{1, 0, 0}});
   caplet::Transform up = caplet::identity;
   up[11] = 5;
-  const std::uint32_t first = scene.add_shapes("sphere", 2, {{"zmax", 9.0}}, {{"radius", std::vector<double>{1, 2}}},
-                                               std::vector{caplet::identity, up}, std::vector<std::uint32_t>{0, red});
+  const std::uint32_t first =
+      scene.add_shapes("sphere", 2, {{"zmax", 9.0}}, {{"radius", std::vector<double>{1, 2}}},
+                       std::vector{caplet::identity, up}, std::vector<std::uint32_t>{0, red});
   EXPECT_EQ(first, 1U);
-  EXPECT_EQ(scene.primitives(), (std::map<std::string, std::uint64_t>{{"capsule", 3}, {"sphere", 2}}));
+  EXPECT_EQ(scene.primitives(),
+            (std::map<std::string, std::uint64_t>{{"capsule", 3}, {"sphere", 2}}));
   scene.present();
   caplet::Picker picker(scene, test_device());
   const auto hit = picker.nearest(caplet::Ray{{0, 0, 20}, {0, 0, -1}, 0, 100});
@@ -223,15 +264,17 @@ TEST_F(LibraryBuild, ShapesInBulkHaveTheirOwnValues) {
 
 TEST_F(LibraryBuild, CrossingsInNumbersAreTheHits) {
   caplet::Scene scene = three_balls();
-  scene.add_shape("box", {{"p0", std::array<double, 3>{-1, -1, -1}}, {"p1", std::array<double, 3>{1, 1, 1}}},
-                  {.object = "crate"});
+  scene.add_shape(
+      "box", {{"p0", std::array<double, 3>{-1, -1, -1}}, {"p1", std::array<double, 3>{1, 1, 1}}},
+      {.object = "crate"});
   caplet::Transform away = caplet::identity;
   away[3] = 20;
   scene.add_instances("crate", std::vector{caplet::identity, away});
   scene.present();
   caplet::Picker picker(scene, test_device());
   std::vector<caplet::Ray> rays;
-  for (int i = 0; i < 300; ++i) rays.push_back({{static_cast<float>(i) * 0.1F - 2, 0.05F, 9}, {0, 0, -1}, 0, 100});
+  for (int i = 0; i < 300; ++i)
+    rays.push_back({{static_cast<float>(i) * 0.1F - 2, 0.05F, 9}, {0, 0, -1}, 0, 100});
   std::vector<caplet::Crossing> numbers(rays.size());
   picker.nearest(rays, numbers);
   const auto hits = picker.nearest(rays);
@@ -284,7 +327,8 @@ TEST_F(LibraryBuild, CapsulesAreTakenAndGivenInBulk) {
   const auto hit = session.nearest(caplet::Ray{{0, 9, 0}, {0, -1, 0}, 0, 100});
   ASSERT_TRUE(hit);
   EXPECT_FLOAT_EQ(hit->t, 7);
-  // With u at their ends: a quarter up the tube from y = 0 to 1. Scenes that come to have chains get kernels that know of them.
+  // With u at their ends: a quarter up the tube from y = 0 to 1. Scenes that come to have chains
+  // get kernels that know of them.
   balls.u = {{0, 2}};
   EXPECT_THROW(scene.set_capsules(0, balls), caplet::InputError);
   balls.u.push_back({2, 3});
@@ -295,7 +339,8 @@ TEST_F(LibraryBuild, CapsulesAreTakenAndGivenInBulk) {
   ASSERT_TRUE(side);
   EXPECT_FLOAT_EQ(side->uv[0], 0.5F);
   caplet::Scene box;
-  box.add_shape("box", {{"p0", std::array<double, 3>{0, 0, 0}}, {"p1", std::array<double, 3>{1, 1, 1}}});
+  box.add_shape("box",
+                {{"p0", std::array<double, 3>{0, 0, 0}}, {"p1", std::array<double, 3>{1, 1, 1}}});
   EXPECT_THROW(box.capsule_arrays(0), caplet::InputError);
 }
 
@@ -303,10 +348,13 @@ TEST_F(LibraryBuild, CapsulesAreTakenAndGivenInBulk) {
 TEST_F(LibraryBuild, ShapesWithTexturesAndMediaAreMoved) {
   caplet::Scene scene = three_balls();
   const caplet::TextureNumber squares = scene.add_texture({"checkerboard", true, {}});
-  const std::uint32_t paint = scene.add_material("", caplet::NamedMaterial{"principled", {{"metallic", squares}}});
+  const std::uint32_t paint =
+      scene.add_material("", caplet::NamedMaterial{"principled", {{"metallic", squares}}});
   const std::uint32_t fog = scene.add_medium("fog", "homogeneous", {});
-  const std::uint32_t ball = scene.add_shape("sphere", {{"alpha", squares}}, {.materials = {paint}, .inside = fog});
-  const std::uint32_t lamp = scene.add_shape("disk", {}, {.materials = {paint}, .emission = caplet::Parameters{}});
+  const std::uint32_t ball =
+      scene.add_shape("sphere", {{"alpha", squares}}, {.materials = {paint}, .inside = fog});
+  const std::uint32_t lamp =
+      scene.add_shape("disk", {}, {.materials = {paint}, .emission = caplet::Parameters{}});
   caplet::Transform up = caplet::identity;
   up[11] = 3;
   EXPECT_NO_THROW(scene.set_transform(ball, up));

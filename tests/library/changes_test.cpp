@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Changes of scenes through the public headers, by what pictures and hits must be of them in closed form or of the same scene
-// made anew.
+// Changes of scenes through the public headers, by what pictures and hits must be of them in closed
+// form or of the same scene made anew.
 #include <caplet/import.h>
 #include <caplet/pick.h>
 #include <caplet/render.h>
@@ -31,12 +31,14 @@ caplet::Device test_device() {
 
 class LibraryChanges : public testing::Test {
  protected:
-  LibraryChanges() : folder_(fs::temp_directory_path() / ("caplet-changes-" + std::to_string(::getpid()))) {
+  LibraryChanges()
+      : folder_(fs::temp_directory_path() / ("caplet-changes-" + std::to_string(::getpid()))) {
     fs::create_directories(folder_);
   }
   ~LibraryChanges() override { fs::remove_all(folder_); }
 
-  /// A white square in the plane z = 0 from -1 to 1 that fills the picture, and a lamp beside it, out of the picture.
+  /// A white square in the plane z = 0 from -1 to 1 that fills the picture, and a lamp beside it,
+  /// out of the picture.
   static caplet::Scene square() {
     caplet::Scene scene;
     scene.add_material("white", caplet::Diffuse{caplet::Rgb{1, 1, 1}});
@@ -46,9 +48,9 @@ class LibraryChanges : public testing::Test {
     mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
     mesh.uvs = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
     scene.add_mesh(mesh, {.name = "square", .materials = {0}});
-    scene.add_light(
-        "distant",
-        {{"from", std::array<double, 3>{0, 0, 1}}, {"to", std::array<double, 3>{0, 0, 0}}, {"L", caplet::Rgb{1, 1, 1}}});
+    scene.add_light("distant", {{"from", std::array<double, 3>{0, 0, 1}},
+                                {"to", std::array<double, 3>{0, 0, 0}},
+                                {"L", caplet::Rgb{1, 1, 1}}});
     scene.look_at({0, 0, 5}, {0, 0, 0}, {0, 1, 0});
     scene.set_fov(10);
     scene.set_size(8, 8);
@@ -61,10 +63,13 @@ class LibraryChanges : public testing::Test {
     for (const float value : film.values("G")) sum += double{value};
     return sum / 64;
   }
-  static double green(const caplet::Scene& scene) { return green(caplet::render(scene, test_device())); }
+  static double green(const caplet::Scene& scene) {
+    return green(caplet::render(scene, test_device()));
+  }
   static bool same(const caplet::Film& a, const caplet::Film& b) {
     return std::ranges::all_of(a.channels(), [&](const std::string& channel) {
-      return channel.ends_with(".id") ? a.ids(channel) == b.ids(channel) : a.values(channel) == b.values(channel);
+      return channel.ends_with(".id") ? a.ids(channel) == b.ids(channel)
+                                      : a.values(channel) == b.values(channel);
     });
   }
 
@@ -73,8 +78,9 @@ class LibraryChanges : public testing::Test {
 
 // --- Many rays ---
 
-// Rays along -z from z = 5, spread over the disk of radius 1.2 around a ball of radius 1 by the golden angle: where they hit is
-// known of each by its number. More than a call of the device takes.
+// Rays along -z from z = 5, spread over the disk of radius 1.2 around a ball of radius 1 by the
+// golden angle: where they hit is known of each by its number. More than a call of the device
+// takes.
 TEST_F(LibraryChanges, HitsOfManyRaysAreThoseOfTheirNumbers) {
   constexpr std::size_t count = 300'000;
   caplet::Scene scene;
@@ -82,8 +88,10 @@ TEST_F(LibraryChanges, HitsOfManyRaysAreThoseOfTheirNumbers) {
   std::vector<caplet::Ray> rays(count);
   std::vector<double> across(count);  // squared
   for (std::size_t i = 0; i < count; ++i) {
-    const double r = 1.2 * std::sqrt((static_cast<double>(i) + 0.5) / count), phi = 2.399963229728653 * static_cast<double>(i);
-    rays[i] = {{static_cast<float>(r * std::cos(phi)), static_cast<float>(r * std::sin(phi)), 5}, {0, 0, -1}};
+    const double r = 1.2 * std::sqrt((static_cast<double>(i) + 0.5) / count),
+                 phi = 2.399963229728653 * static_cast<double>(i);
+    rays[i] = {{static_cast<float>(r * std::cos(phi)), static_cast<float>(r * std::sin(phi)), 5},
+               {0, 0, -1}};
     across[i] = std::pow(double{rays[i].origin[0]}, 2) + std::pow(double{rays[i].origin[1]}, 2);
   }
   caplet::Picker picker(scene, test_device());
@@ -121,7 +129,8 @@ TEST_F(LibraryChanges, HitsOfManyRaysAreThoseOfTheirNumbers) {
 
 // --- Sessions ---
 
-// A plane whose normal map says (0.6, 0, 0.8) reflects 0.8 of the light that comes straight on; of (0, 0.28, 0.96) 0.96.
+// A plane whose normal map says (0.6, 0, 0.8) reflects 0.8 of the light that comes straight on; of
+// (0, 0.28, 0.96) 0.96.
 TEST_F(LibraryChanges, ANewNormalMapIsSent) {
   caplet::Scene scene = square();
   const auto map = [&](float x, float y, float z) {
@@ -129,11 +138,17 @@ TEST_F(LibraryChanges, ANewNormalMapIsSent) {
     pixels.width = pixels.height = 1;
     pixels.channels = 3;
     pixels.values = {(x + 1) / 2, (y + 1) / 2, (z + 1) / 2};
-    return scene.add_texture({"normalmap", false, {{"pixels", std::make_shared<const caplet::Pixels>(pixels)}}});
+    return scene.add_texture(
+        {"normalmap", false, {{"pixels", std::make_shared<const caplet::Pixels>(pixels)}}});
   };
   const caplet::TextureNumber first = map(0.6F, 0, 0.8F), second = map(0, 0.28F, 0.96F);
-  const caplet::TextureNumber rising = scene.add_texture(
-      {"bilerp", true, {{"v00", 0.0}, {"v01", 0.0}, {"v10", 1.5}, {"v11", 1.5}}});  // 3 in 4: the normal has 0.8 of z
+  const caplet::TextureNumber rising =
+      scene.add_texture({"bilerp",
+                         true,
+                         {{"v00", 0.0},
+                          {"v01", 0.0},
+                          {"v10", 1.5},
+                          {"v11", 1.5}}});  // 3 in 4: the normal has 0.8 of z
   const double flat = green(scene);
   caplet::Session session(scene, test_device());
   const auto seen = [&](const caplet::Parameters& more) {
@@ -159,7 +174,8 @@ TEST_F(LibraryChanges, ANewNormalMapIsSent) {
   EXPECT_NEAR(green(session.film()) / flat, 0.5 * 0.8, 1e-4);
 }
 
-// A session that has been shown another scene shows the first again with all its changes, and goes on with either's.
+// A session that has been shown another scene shows the first again with all its changes, and goes
+// on with either's.
 TEST_F(LibraryChanges, ASessionGoesBetweenScenes) {
   const caplet::Device device = test_device();
   caplet::Scene a = square(), b = square();
@@ -195,11 +211,14 @@ TEST_F(LibraryChanges, RangesHaveTheirEnds) {
   const auto texture = [&](const char* type, const char* name, double value) {
     scene.add_texture({type, true, {{name, value}}});
   };
-  for (const double dimension : {2.0, 3.0}) EXPECT_NO_THROW(texture("checkerboard", "dimension", dimension)) << dimension;
+  for (const double dimension : {2.0, 3.0})
+    EXPECT_NO_THROW(texture("checkerboard", "dimension", dimension)) << dimension;
   for (const double wrong : {1.0, 4.0, 2.5})
     EXPECT_THROW(texture("checkerboard", "dimension", wrong), caplet::InputError) << wrong;
-  for (const double octaves : {0.0, 64.0}) EXPECT_NO_THROW(texture("fbm", "octaves", octaves)) << octaves;
-  for (const double wrong : {-1.0, 65.0}) EXPECT_THROW(texture("fbm", "octaves", wrong), caplet::InputError) << wrong;
+  for (const double octaves : {0.0, 64.0})
+    EXPECT_NO_THROW(texture("fbm", "octaves", octaves)) << octaves;
+  for (const double wrong : {-1.0, 65.0})
+    EXPECT_THROW(texture("fbm", "octaves", wrong), caplet::InputError) << wrong;
   const auto material = [&](const char* name, double value) {
     scene.set_material(0, caplet::NamedMaterial{"coateddiffuse", {{name, value}}});
   };
@@ -213,7 +232,8 @@ TEST_F(LibraryChanges, RangesHaveTheirEnds) {
 TEST_F(LibraryChanges, ScalesOfLightsAreWhatIsSaid) {
   caplet::Scene scene = square();
   const double once = green(scene);
-  for (const auto& [value, scale] : {std::pair{1.0, 3.0}, {1.0, 3.0}, {2.0, 0.5}, {2.0, 0.0}, {0.5, 4.0}}) {
+  for (const auto& [value, scale] :
+       {std::pair{1.0, 3.0}, {1.0, 3.0}, {2.0, 0.5}, {2.0, 0.0}, {0.5, 4.0}}) {
     scene.set_light(0, caplet::Rgb{value, value, value}, scale);
     EXPECT_EQ(scene.light_scale(0), scale);
     EXPECT_NEAR(green(scene), value * scale * once, 1e-5 * once);
@@ -224,8 +244,9 @@ TEST_F(LibraryChanges, ScalesOfLightsAreWhatIsSaid) {
   mesh.positions = {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}};
   mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
   shining.add_material("black", caplet::Diffuse{caplet::Rgb{0, 0, 0}});
-  const std::uint32_t lamp =
-      shining.add_mesh(mesh, {.materials = {0}, .emission = caplet::Parameters{{"L", caplet::Rgb{1, 1, 1}}, {"scale", 7.0}}});
+  const std::uint32_t lamp = shining.add_mesh(
+      mesh, {.materials = {0},
+             .emission = caplet::Parameters{{"L", caplet::Rgb{1, 1, 1}}, {"scale", 7.0}}});
   shining.look_at({0, 0, 5}, {0, 0, 0}, {0, 1, 0});
   shining.set_fov(10);
   shining.set_size(8, 8);
@@ -240,14 +261,16 @@ TEST_F(LibraryChanges, ScalesOfLightsAreWhatIsSaid) {
 
 // --- Cameras ---
 
-// A camera that was set stays when the picture's size, its shapes or its film change; one that was not is framed anew.
+// A camera that was set stays when the picture's size, its shapes or its film change; one that was
+// not is framed anew.
 TEST_F(LibraryChanges, ACameraThatWasSetStays) {
   std::ofstream(folder_ / "cell.swc") << "1 2 0 0 0 0.5 -1\n2 2 4 1 0 0.5 1\n";
   const auto sees_anew = [](caplet::Scene scene) {
     const caplet::Transform before = scene.camera();
     scene.set_size(40, 200);
     if (scene.camera() != before) return true;
-    scene.set_option(caplet::Statement::film, "rgb", {{"xresolution", 300.0}, {"yresolution", 30.0}});
+    scene.set_option(caplet::Statement::film, "rgb",
+                     {{"xresolution", 300.0}, {"yresolution", 30.0}});
     return scene.camera() != before;
   };
   caplet::Scene automatic = caplet::import_scene(folder_ / "cell.swc");
@@ -274,7 +297,8 @@ TEST_F(LibraryChanges, ACameraThatWasSetStays) {
 
 // --- Shapes ---
 
-// Capsules that are put in the place of others stand where those stood and are of their materials, within objects too.
+// Capsules that are put in the place of others stand where those stood and are of their materials,
+// within objects too.
 TEST_F(LibraryChanges, NewCapsulesStandInThePlaceOfTheOld) {
   caplet::Scene scene;
   scene.add_material("a", caplet::Diffuse{});
@@ -283,13 +307,15 @@ TEST_F(LibraryChanges, NewCapsulesStandInThePlaceOfTheOld) {
   one.p0 = {{0, 0, 0}};
   one.p1 = {{1, 0, 0}};
   one.radius0 = {0.25F};
-  const caplet::Transform moved{0, -1, 0, 5, 1, 0, 0, 6, 0, 0, 1, 7};  // a quarter of a turn about z
+  const caplet::Transform moved{0, -1, 0, 5, 1, 0,
+                                0, 6,  0, 0, 1, 7};  // a quarter of a turn about z
   scene.add_capsules(one, {.name = "first"});
   scene.add_capsules(one, {.name = "second", .transform = moved, .materials = {other}});
   scene.add_capsules(one, {.name = "within", .object = "thing"});
   scene.add_capsules(one, {.name = "also", .transform = moved, .object = "thing"});
   scene.add_capsules(one, {.name = "beyond", .object = "other thing"});
-  scene.add_instances("thing", std::vector<caplet::Transform>{{1, 0, 0, 20, 0, 1, 0, 0, 0, 0, 1, 0}});
+  scene.add_instances("thing",
+                      std::vector<caplet::Transform>{{1, 0, 0, 20, 0, 1, 0, 0, 0, 0, 1, 0}});
   caplet::CapsuleArrays two;
   two.p0 = {{0, 0, 0}, {10, 0, 0}};
   two.p1 = {{2, 0, 0}, {12, 0, 0}};
@@ -307,13 +333,17 @@ TEST_F(LibraryChanges, NewCapsulesStandInThePlaceOfTheOld) {
   EXPECT_EQ(scene.place(scene.shape("second")), (std::pair<std::string, std::size_t>("", 1)));
   EXPECT_EQ(scene.place(scene.shape("within")), (std::pair<std::string, std::size_t>("thing", 0)));
   EXPECT_EQ(scene.place(scene.shape("also")), (std::pair<std::string, std::size_t>("thing", 1)));
-  EXPECT_EQ(scene.place(scene.shape("beyond")), (std::pair<std::string, std::size_t>("other thing", 0)));
+  EXPECT_EQ(scene.place(scene.shape("beyond")),
+            (std::pair<std::string, std::size_t>("other thing", 0)));
   EXPECT_EQ(scene.shape_in("other thing", 0), scene.shape("beyond"));
   EXPECT_EQ(scene.shape_in("", 1), scene.shape("second"));
   EXPECT_EQ(scene.shape_in("thing", 1), scene.shape("also"));
-  // By rays along -z at the middles of what is to be there: (1, 0, 0) of theirs is (5, 7, 7), (11, 0, 0) is (5, 17, 7).
+  // By rays along -z at the middles of what is to be there: (1, 0, 0) of theirs is (5, 7, 7), (11,
+  // 0, 0) is (5, 17, 7).
   caplet::Picker picker(scene, test_device());
-  const auto hit = [&](float x, float y) { return picker.nearest(caplet::Ray{{x, y, 50}, {0, 0, -1}}); };
+  const auto hit = [&](float x, float y) {
+    return picker.nearest(caplet::Ray{{x, y, 50}, {0, 0, -1}});
+  };
   for (const float right : {0.0F, 20.0F}) {
     const auto thick = hit(5 + right, 7), thin = hit(5 + right, 17);
     ASSERT_TRUE(thick && thin);

@@ -37,7 +37,8 @@ caplet::Device test_device() {
 
 class Library : public testing::Test {
  protected:
-  Library() : folder_(fs::temp_directory_path() / ("caplet-library-" + std::to_string(::getpid()))) {
+  Library()
+      : folder_(fs::temp_directory_path() / ("caplet-library-" + std::to_string(::getpid()))) {
     fs::create_directories(folder_);
     std::ofstream(folder_ / "ball.pbrt") << R"(LookAt 0 0 5  0 0 0  0 1 0
 Camera "perspective" "float fov" 30
@@ -68,10 +69,13 @@ TEST_F(Library, ASceneTellsWhatItHolds) {
 
 TEST_F(Library, FilesTakeTheProgramsOptions) {
   std::ofstream(folder_ / "cell.swc") << "1 2 0 0 0 0.01 -1\n2 2 4 1 0 0.01 1\n";
-  const caplet::Scene top = caplet::import_scene(folder_ / "cell.swc", {{"view", "top"}, {"least-width", "4"}});
-  EXPECT_NEAR(top.camera()[6], -1, 1e-12);  // by rows: what looks down has forward, the third column, along -y
+  const caplet::Scene top =
+      caplet::import_scene(folder_ / "cell.swc", {{"view", "top"}, {"least-width", "4"}});
+  EXPECT_NEAR(top.camera()[6], -1,
+              1e-12);  // by rows: what looks down has forward, the third column, along -y
   for (const auto& [name, value, says] :
-       {std::array{"veiw", "top", "'view'"}, std::array{"view", "inside", "--view"}, std::array{"style", "sticks", "--style"}}) {
+       {std::array{"veiw", "top", "'view'"}, std::array{"view", "inside", "--view"},
+        std::array{"style", "sticks", "--style"}}) {
     try {
       caplet::import_scene(folder_ / "cell.swc", {{name, value}});
       ADD_FAILURE() << name;
@@ -86,16 +90,19 @@ TEST_F(Library, FilesTakeTheProgramsOptions) {
   const std::vector<float> coverage = caplet::render(small, test_device()).values("A");
   double wide = 0, thin = 0;
   for (const float share : coverage) wide += double{share};
-  caplet::Scene as_it_is = caplet::import_scene(folder_ / "cell.swc", {{"view", "top"}, {"least-width", "0"}});
+  caplet::Scene as_it_is =
+      caplet::import_scene(folder_ / "cell.swc", {{"view", "top"}, {"least-width", "0"}});
   as_it_is.set_size(64, 64);
   as_it_is.set_samples_per_pixel(4);
-  for (const float share : caplet::render(as_it_is, test_device()).values("A")) thin += double{share};
+  for (const float share : caplet::render(as_it_is, test_device()).values("A"))
+    thin += double{share};
   // A line of 0.95 x 64 pixels, four wide; 0.02 of 4.02 units of it wide.
   EXPECT_NEAR(wide, 0.95 * 64 * 4, 25);
   EXPECT_LT(thin, 40);
 }
 
-// docs/formats: poses are of robots, assemblies of PDB and mmCIF, ranges of what is coloured by values, groups of robots.
+// docs/formats: poses are of robots, assemblies of PDB and mmCIF, ranges of what is coloured by
+// values, groups of robots.
 TEST_F(Library, FormatsTellTheirOptions) {
   std::map<std::string, std::set<std::string>> formats_of;
   for (const caplet::SceneFormat& format : caplet::scene_formats())
@@ -145,7 +152,8 @@ TEST_F(Library, ErrorsDoNotSpeakOfTheCommandLine) {
   }
 }
 
-// A white ball in a white sky of radiance 1: nothing but the sky's light can leave it, so a pixel is at most 1; beside it, 1.
+// A white ball in a white sky of radiance 1: nothing but the sky's light can leave it, so a pixel
+// is at most 1; beside it, 1.
 TEST_F(Library, AFilmHasThePicture) {
   caplet::Scene scene = caplet::import_scene(folder_ / "ball.pbrt");
   scene.set_crop(2, 1, 12, 7);
@@ -159,7 +167,8 @@ TEST_F(Library, AFilmHasThePicture) {
   EXPECT_EQ(film.x(), 2);
   EXPECT_EQ(film.y(), 1);
   EXPECT_EQ(film.samples_per_pixel(), 4);
-  EXPECT_THAT(film.channels(), testing::IsSupersetOf({"R", "G", "B", "A", "Z", "N.X", "albedo.R", "variance.G", "object.id"}));
+  EXPECT_THAT(film.channels(), testing::IsSupersetOf({"R", "G", "B", "A", "Z", "N.X", "albedo.R",
+                                                      "variance.G", "object.id"}));
   const std::vector<float> green = film.values("G"), cover = film.values("A");
   const std::vector<std::uint32_t> ids = film.ids("object.id");
   ASSERT_EQ(green.size(), 60u);
@@ -170,10 +179,12 @@ TEST_F(Library, AFilmHasThePicture) {
   EXPECT_EQ(ids[middle], 0u);
   EXPECT_GT(green[middle], 0.1f);
   EXPECT_LT(green[middle], 1.0f);
-  // The last pixel of the row looks 5.5 / 4 tan(15 deg) = 20 degrees aside; the ball ends at asin(1 / 5) = 11.5.
+  // The last pixel of the row looks 5.5 / 4 tan(15 deg) = 20 degrees aside; the ball ends at asin(1
+  // / 5) = 11.5.
   EXPECT_EQ(cover[39], 0);
   EXPECT_EQ(ids[39], 0xffffffffu);
-  // Four samples of four wavelengths: within six of the standard errors that the film states, and more than none.
+  // Four samples of four wavelengths: within six of the standard errors that the film states, and
+  // more than none.
   EXPECT_LT(std::abs(green[39] - 1), 6 * std::sqrt(film.values("variance.G")[39]) + 1e-6f);
   EXPECT_NEAR(green[39], 1, 0.05);
   EXPECT_THROW(film.values("object.id"), caplet::InputError);
@@ -185,17 +196,22 @@ TEST_F(Library, AFilmHasThePicture) {
 }
 
 TEST_F(Library, OverlaysAreDrawnByName) {
-  const caplet::Film film = caplet::render(caplet::import_scene(folder_ / "ball.pbrt"), test_device());
-  for (const caplet::Overlay& one : caplet::overlays()) EXPECT_FALSE(one.name.empty() || one.help.empty());
+  const caplet::Film film =
+      caplet::render(caplet::import_scene(folder_ / "ball.pbrt"), test_device());
+  for (const caplet::Overlay& one : caplet::overlays())
+    EXPECT_FALSE(one.name.empty() || one.help.empty());
   const fs::path file = folder_ / "drawn.png";
-  for (const caplet::OverlayOptions& wrong :
-       {caplet::OverlayOptions{{"outline", "wide"}}, {{"outlin", ""}}, {{"color-bar", ""}}, {{"scale-bar", "1e9"}}})
+  for (const caplet::OverlayOptions& wrong : {caplet::OverlayOptions{{"outline", "wide"}},
+                                              {{"outlin", ""}},
+                                              {{"color-bar", ""}},
+                                              {{"scale-bar", "1e9"}}})
     EXPECT_THROW(film.write_preview(file, wrong), caplet::InputError);
   EXPECT_FALSE(fs::exists(file));
 }
 
 TEST_F(Library, LookAtShowsARightHandedWorldUnmirrored) {
-  // The camera's +x is to the right of the picture: along the world's +x where the view is from +z with y up.
+  // The camera's +x is to the right of the picture: along the world's +x where the view is from +z
+  // with y up.
   caplet::Scene scene;
   scene.add_shape("sphere", {});
   scene.look_at({0, 0, 9}, {0, 0, 0}, {0, 1, 0});
@@ -286,7 +302,8 @@ TEST_F(LibraryEdits, ASceneTellsAndTakesWhatIsEdited) {
   caplet::Scene edited = scene();
   const caplet::Scene before = edited;
   EXPECT_THAT(edited.shapes(), testing::ElementsAre("bar", "lamp", "pin"));
-  const std::uint32_t bar = edited.shape("bar"), pin = edited.shape("pin"), lamp = edited.shape("lamp");
+  const std::uint32_t bar = edited.shape("bar"), pin = edited.shape("pin"),
+                      lamp = edited.shape("lamp");
   EXPECT_EQ(edited.capsules(bar), 1u);
   EXPECT_EQ(edited.capsules(lamp), 0u);
   EXPECT_EQ(edited.capsule(pin, 0).radius1, 0.1f);
@@ -312,7 +329,8 @@ TEST_F(LibraryEdits, ASceneTellsAndTakesWhatIsEdited) {
   EXPECT_THROW(edited.set_capsule(bar, 0, {{0, 0, 0}, {1, 0, 0}, -1, -1}), caplet::InputError);
   EXPECT_THROW(edited.set_transform(bar, caplet::Transform{}), caplet::InputError);
   EXPECT_THROW(edited.set_material(9, caplet::Diffuse{}), caplet::InputError);
-  EXPECT_THROW(edited.set_material(0, caplet::Diffuse{std::string("metal-Gold-eta")}), caplet::InputError);
+  EXPECT_THROW(edited.set_material(0, caplet::Diffuse{std::string("metal-Gold-eta")}),
+               caplet::InputError);
   EXPECT_THROW(edited.set_emission(bar, 1.0, 1), caplet::InputError);
   EXPECT_THROW(edited.set_light(1, 1.0, 1), caplet::InputError);
   EXPECT_THROW(edited.look_at({0, 0, 5}, {0, 0, 0}, {0, 0, 1}), caplet::InputError);
@@ -414,7 +432,8 @@ TEST_F(LibraryEdits, FilmsAreAddedSavedAndLoaded) {
 
 TEST_F(LibraryEdits, ASessionTriesItsDeviceBeforeItRenders) {
   namespace fs = std::filesystem;
-  fs::copy(fs::path(CAPLET_SCENES).parent_path() / "kernels", folder_ / "kernels", fs::copy_options::recursive);
+  fs::copy(fs::path(CAPLET_SCENES).parent_path() / "kernels", folder_ / "kernels",
+           fs::copy_options::recursive);
   const fs::path file = folder_ / "kernels" / "trace" / "hits.cl";
   std::ifstream in(file);
   std::string text{std::istreambuf_iterator<char>(in), {}};
@@ -449,25 +468,31 @@ class LibraryAppearance : public LibraryEdits {};
 TEST_F(LibraryAppearance, EveryTypeIsThere) {
   caplet::Scene edited = scene();
   EXPECT_THAT(caplet::material_types(),
-              testing::IsSupersetOf({"diffuse", "coatedconductor", "hair", "mix", "principled", "diffusetransmission"}));
+              testing::IsSupersetOf({"diffuse", "coatedconductor", "hair", "mix", "principled",
+                                     "diffusetransmission"}));
   for (const std::string& type : caplet::material_types()) {
     caplet::NamedMaterial material{type};
     if (type == "mix") material.parameters["materials"] = std::array<std::uint32_t, 2>{0, 1};
     EXPECT_NO_THROW(edited.add_material(type, material)) << type;
-    EXPECT_THAT(caplet::material_parameters(type), testing::IsSupersetOf({"displacement", "normalmap"})) << type;
+    EXPECT_THAT(caplet::material_parameters(type),
+                testing::IsSupersetOf({"displacement", "normalmap"}))
+        << type;
     EXPECT_EQ(caplet::material_parameters(type).size() == 2, type == "interface") << type;
   }
-  EXPECT_EQ(edited.materials().size(), scene().materials().size() + caplet::material_types().size());
+  EXPECT_EQ(edited.materials().size(),
+            scene().materials().size() + caplet::material_types().size());
   EXPECT_EQ(edited.materials().back(), caplet::material_types().back());
-  EXPECT_THAT(caplet::texture_types(), testing::IsSupersetOf({"checkerboard", "imagemap", "fbm", "marble", "directionmix"}));
+  EXPECT_THAT(caplet::texture_types(),
+              testing::IsSupersetOf({"checkerboard", "imagemap", "fbm", "marble", "directionmix"}));
   for (const std::string& type : caplet::texture_types()) {
     if (type == "imagemap" || type == "normalmap") continue;  // need a file
     EXPECT_NO_THROW(edited.add_texture({type, type != "marble"})) << type;
   }
   EXPECT_THAT(caplet::material_parameters("coateddiffuse"),
-              testing::UnorderedElementsAre("reflectance", "eta", "alpha_u", "alpha_v", "roughness", "uroughness", "vroughness",
-                                            "remaproughness", "thickness", "albedo", "g", "maxdepth", "nsamples", "displacement",
-                                            "normalmap"));
+              testing::UnorderedElementsAre("reflectance", "eta", "alpha_u", "alpha_v", "roughness",
+                                            "uroughness", "vroughness", "remaproughness",
+                                            "thickness", "albedo", "g", "maxdepth", "nsamples",
+                                            "displacement", "normalmap"));
   EXPECT_THAT(caplet::texture_parameters("checkerboard"),
               testing::IsSupersetOf({"tex1", "tex2", "dimension", "mapping", "uscale", "v1"}));
   EXPECT_THAT(caplet::texture_parameters("imagemap"),
@@ -485,29 +510,43 @@ TEST_F(LibraryAppearance, WhatThereIsNoneOfIsToldWithTheNearest) {
     return {};
   };
   using Named = caplet::NamedMaterial;
-  EXPECT_THAT(said(Named{"coatdiffuse"}), AllOf(HasSubstr("'coatdiffuse'"), HasSubstr("'coateddiffuse'")));
-  EXPECT_THAT(said(Named{"diffuse", {{"reflectanse", 0.5}}}), AllOf(HasSubstr("\"reflectanse\""), HasSubstr("\"reflectance\"")));
+  EXPECT_THAT(said(Named{"coatdiffuse"}),
+              AllOf(HasSubstr("'coatdiffuse'"), HasSubstr("'coateddiffuse'")));
+  EXPECT_THAT(said(Named{"diffuse", {{"reflectanse", 0.5}}}),
+              AllOf(HasSubstr("\"reflectanse\""), HasSubstr("\"reflectance\"")));
   EXPECT_THAT(said(Named{"diffuse", {{"reflectance", true}}}),
-              HasSubstr("\"reflectance\" must be of type rgb or spectrum or blackbody or float or texture, not 1 bool"));
+              HasSubstr("\"reflectance\" must be of type rgb or spectrum or blackbody or float or "
+                        "texture, not 1 bool"));
   EXPECT_THAT(said(Named{"hair", {{"beta_m", caplet::Rgb{}}}}),
               HasSubstr("\"beta_m\" must be of type float or texture, not rgb"));
-  EXPECT_THAT(said(Named{"hair", {{"beta_m", 2.0}}}), HasSubstr("\"beta_m\" must lie between 0 and 1"));
-  EXPECT_THAT(said(Named{"coateddiffuse", {{"maxdepth", 1.5}}}), HasSubstr("\"maxdepth\" must be a whole number, not 1.5"));
-  EXPECT_THAT(said(Named{"conductor", {{"eta", std::string("metal-Gold-eta")}}}), HasSubstr("metal-"));
+  EXPECT_THAT(said(Named{"hair", {{"beta_m", 2.0}}}),
+              HasSubstr("\"beta_m\" must lie between 0 and 1"));
+  EXPECT_THAT(said(Named{"coateddiffuse", {{"maxdepth", 1.5}}}),
+              HasSubstr("\"maxdepth\" must be a whole number, not 1.5"));
+  EXPECT_THAT(said(Named{"conductor", {{"eta", std::string("metal-Gold-eta")}}}),
+              HasSubstr("metal-"));
   EXPECT_THAT(said(Named{"conductor", {{"multiscatter", 1.0}}}),
               HasSubstr("\"multiscatter\" must be of type bool, not 1 number"));
-  EXPECT_THAT(said(Named{"diffuse", {{"reflectance", caplet::TextureNumber{7}}}}), HasSubstr("reflectance"));
-  EXPECT_THAT(said(Named{"diffuse", {{"displacement", caplet::TextureNumber{7}}}}), HasSubstr("displacement"));
-  EXPECT_THAT(said(Named{"mix", {{"materials", std::array<std::uint32_t, 2>{0, 1}}}}), HasSubstr("itself"));
+  EXPECT_THAT(said(Named{"diffuse", {{"reflectance", caplet::TextureNumber{7}}}}),
+              HasSubstr("reflectance"));
+  EXPECT_THAT(said(Named{"diffuse", {{"displacement", caplet::TextureNumber{7}}}}),
+              HasSubstr("displacement"));
+  EXPECT_THAT(said(Named{"mix", {{"materials", std::array<std::uint32_t, 2>{0, 1}}}}),
+              HasSubstr("itself"));
   EXPECT_THROW(edited.add_texture({"checkboard"}), caplet::InputError);
-  EXPECT_THROW(edited.add_texture({"checkerboard", false, {{"mapping", std::string("round")}}}), caplet::InputError);
+  EXPECT_THROW(edited.add_texture({"checkerboard", false, {{"mapping", std::string("round")}}}),
+               caplet::InputError);
   EXPECT_THROW(edited.add_texture({"marble", true}), caplet::InputError);
-  EXPECT_THROW(edited.add_texture({"scale", false, {{"tex", caplet::TextureNumber{0}}}}), caplet::InputError);
+  EXPECT_THROW(edited.add_texture({"scale", false, {{"tex", caplet::TextureNumber{0}}}}),
+               caplet::InputError);
   EXPECT_THROW(edited.add_texture({"imagemap"}), caplet::InputError);
-  EXPECT_THROW(edited.add_texture({"imagemap", false, {{"filename", (folder_ / "none.png").string()}}}), caplet::InputError);
+  EXPECT_THROW(
+      edited.add_texture({"imagemap", false, {{"filename", (folder_ / "none.png").string()}}}),
+      caplet::InputError);
   EXPECT_THROW(caplet::material_parameters("glass"), caplet::InputError);
   // Nothing of it has changed the picture.
-  EXPECT_TRUE(same_pictures(caplet::render(edited, test_device()), caplet::render(scene(), test_device())));
+  EXPECT_TRUE(
+      same_pictures(caplet::render(edited, test_device()), caplet::render(scene(), test_device())));
 }
 
 // What is named is what scene files name.
@@ -518,12 +557,13 @@ TEST_F(LibraryAppearance, NamedMaterialsAreThoseOfSceneFiles) {
   const std::size_t at = text.find(old);
   ASSERT_NE(at, std::string::npos);
   std::ofstream(folder_ / "named.pbrt") << text.replace(
-      at, old.size(), R"(Texture "squares" "float" "checkerboard" "float uscale" 4 "float vscale" 8 "float tex2" 0.25
+      at, old.size(),
+      R"(Texture "squares" "float" "checkerboard" "float uscale" 4 "float vscale" 8 "float tex2" 0.25
 Texture "heights" "float" "fbm" "integer octaves" 3
 MakeNamedMaterial "white" "string type" "principled" "rgb base_color" [0.8 0.3 0.1] "texture metallic" "squares" "float roughness" 0.3 "float coat" 0.5 "texture displacement" "heights")");
   caplet::Scene edited = scene();
-  const caplet::TextureNumber squares =
-      edited.add_texture({"checkerboard", true, {{"uscale", 4.0}, {"vscale", 8.0}, {"tex2", 0.25}}});
+  const caplet::TextureNumber squares = edited.add_texture(
+      {"checkerboard", true, {{"uscale", 4.0}, {"vscale", 8.0}, {"tex2", 0.25}}});
   const caplet::TextureNumber heights = edited.add_texture({"fbm", true, {{"octaves", 3.0}}});
   edited.set_material(0, caplet::NamedMaterial{"principled",
                                                {{"base_color", caplet::Rgb{0.8, 0.3, 0.1}},
@@ -531,8 +571,9 @@ MakeNamedMaterial "white" "string type" "principled" "rgb base_color" [0.8 0.3 0
                                                 {"roughness", 0.3},
                                                 {"coat", 0.5},
                                                 {"displacement", heights}}});
-  EXPECT_TRUE(same_pictures(caplet::render(edited, test_device()),
-                            caplet::render(caplet::import_scene(folder_ / "named.pbrt"), test_device())));
+  EXPECT_TRUE(
+      same_pictures(caplet::render(edited, test_device()),
+                    caplet::render(caplet::import_scene(folder_ / "named.pbrt"), test_device())));
 }
 
 TEST_F(LibraryAppearance, ASessionFollowsWhatIsAdded) {
@@ -547,14 +588,19 @@ TEST_F(LibraryAppearance, ASessionFollowsWhatIsAdded) {
     EXPECT_TRUE(same_pictures(session.film(), caplet::render(edited, device))) << what;
     EXPECT_FALSE(same_pictures(session.film(), before)) << what;
   };
-  edited.set_material(0, caplet::NamedMaterial{"coateddiffuse", {{"reflectance", caplet::Rgb{0.7, 0.1, 0.1}}, {"alpha_u", 0.1}}});
+  edited.set_material(
+      0, caplet::NamedMaterial{"coateddiffuse",
+                               {{"reflectance", caplet::Rgb{0.7, 0.1, 0.1}}, {"alpha_u", 0.1}}});
   follows("a coat");
-  const caplet::TextureNumber squares =
-      edited.add_texture({"checkerboard", false, {{"tex1", caplet::Rgb{0.1, 0.7, 0.1}}, {"uscale", 6.0}}});
+  const caplet::TextureNumber squares = edited.add_texture(
+      {"checkerboard", false, {{"tex1", caplet::Rgb{0.1, 0.7, 0.1}}, {"uscale", 6.0}}});
   edited.set_material(0, caplet::NamedMaterial{"diffuse", {{"reflectance", squares}}});
   follows("a texture");
-  const std::uint32_t gold = edited.add_material("gold", caplet::Conductor{.reflectance = caplet::Rgb{0.9, 0.6, 0.2}});
-  edited.set_material(0, caplet::NamedMaterial{"mix", {{"materials", std::array<std::uint32_t, 2>{gold, 1}}, {"amount", 0.3}}});
+  const std::uint32_t gold =
+      edited.add_material("gold", caplet::Conductor{.reflectance = caplet::Rgb{0.9, 0.6, 0.2}});
+  edited.set_material(
+      0, caplet::NamedMaterial{
+             "mix", {{"materials", std::array<std::uint32_t, 2>{gold, 1}}, {"amount", 0.3}}});
   follows("a mix");
 }
 
@@ -576,7 +622,8 @@ TEST_F(Library, VerifyCounts) {
 TEST_F(Library, MessagesGoWhereTheyAreWanted) {
   std::ofstream(folder_ / "dark.pbrt") << "Camera \"perspective\"\nWorldBegin\nShape \"sphere\"\n";
   std::vector<std::pair<caplet::LogLevel, std::string>> said;
-  caplet::set_log_sink([&](caplet::LogLevel level, std::string_view message) { said.emplace_back(level, message); });
+  caplet::set_log_sink(
+      [&](caplet::LogLevel level, std::string_view message) { said.emplace_back(level, message); });
   caplet::import_scene(folder_ / "dark.pbrt");
   ASSERT_EQ(said.size(), 1u);
   EXPECT_EQ(said[0].first, caplet::LogLevel::warning);
@@ -590,12 +637,15 @@ TEST_F(Library, MessagesGoWhereTheyAreWanted) {
 
 TEST_F(Library, AnEditedSceneIsWrittenAndReadAgain) {
   caplet::Scene scene = caplet::import_scene(folder_ / "ball.pbrt");
-  scene.set_material(0, caplet::NamedMaterial{"principled", {{"base_color", caplet::Rgb{0.8, 0.3, 0.1}}, {"metallic", 0.25}}});
+  scene.set_material(
+      0, caplet::NamedMaterial{"principled",
+                               {{"base_color", caplet::Rgb{0.8, 0.3, 0.1}}, {"metallic", 0.25}}});
   caplet::write_scene(scene, folder_ / "written.pbrt");
   const caplet::Scene read = caplet::import_scene(folder_ / "written.pbrt");
   const caplet::Device device = test_device();
   const caplet::Film a = caplet::render(scene, device), b = caplet::render(read, device);
-  for (const char* channel : {"R", "G", "B", "Z"}) EXPECT_EQ(a.values(channel), b.values(channel)) << channel;
+  for (const char* channel : {"R", "G", "B", "Z"})
+    EXPECT_EQ(a.values(channel), b.values(channel)) << channel;
   EXPECT_THROW(caplet::write_scene(scene, folder_ / "written.exr"), caplet::InputError);
 }
 

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Every sampler of area lights against its density, and both against the surface by the test's own parametrisation.
+// Every sampler of area lights against its density, and both against the surface by the test's own
+// parametrisation.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -34,7 +35,8 @@ struct AreaCase {
   friend void PrintTo(const AreaCase& c, std::ostream* out) { *out << c.name; }
 };
 
-Shape emissive(decltype(Shape::geometry) geometry, const glm::dmat4& m = glm::dmat4(1), bool two_sided = false) {
+Shape emissive(decltype(Shape::geometry) geometry, const glm::dmat4& m = glm::dmat4(1),
+               bool two_sided = false) {
   Shape shape;
   shape.geometry = std::move(geometry);
   shape.world_from_object = m;
@@ -92,12 +94,15 @@ std::vector<AreaCase> cases() {
     shape.reverse_orientation = true;
     return shape;
   };
-  const CylinderShape tube{{0, 0, -1}, {0.25, 0, 1}, 0.75}, pipe{{0, 0, -1}, {0, 0, 1}, 0.75, {Cap::flat, Cap::open}};
+  const CylinderShape tube{{0, 0, -1}, {0.25, 0, 1}, 0.75},
+      pipe{{0, 0, -1}, {0, 0, 1}, 0.75, {Cap::flat, Cap::open}};
   const BoxShape box{{-1, -0.5, -0.25}, {1, 0.75, 0.5}};
-  const ConeShape frustum{{0, 0, -1}, {0.25, 0, 1}, {0.75, 0.25}}, point_up{{0, 0, 0}, {0, 0, 1}, {0.5, 0}};
+  const ConeShape frustum{{0, 0, -1}, {0.25, 0, 1}, {0.75, 0.25}},
+      point_up{{0, 0, 0}, {0, 0, 1}, {0.5, 0}};
   // A tetrahedron with a corner cut off.
-  const PolyhedronShape crystal{{dvec3(-1, 0, 0), dvec3(0, -1, 0), dvec3(0, 0, -1), dvec3(0.5, 0.5, 0.5), dvec3(0.75, 0, 0)},
-                                {{-1, 0, 0}, {0, -1, 0}, {0, 0, -1}, {1, 1, 1}, {1, 0, 0}}};
+  const PolyhedronShape crystal{
+      {dvec3(-1, 0, 0), dvec3(0, -1, 0), dvec3(0, 0, -1), dvec3(0.5, 0.5, 0.5), dvec3(0.75, 0, 0)},
+      {{-1, 0, 0}, {0, -1, 0}, {0, 0, -1}, {1, 1, 1}, {1, 0, 0}}};
   const PartialSphereShape dome{1, -0.5, 0.75, 4};
   const OpenCylinderShape gutter{0.75, -1, 1, 5};
   const DiskShape washer{0.5, 1, 0.4, 4};
@@ -179,31 +184,44 @@ std::vector<AreaCase> cases() {
       {"partial_disk_sheared", emissive(washer, sheared()), {1, 0, 3}, 300000, true},
       {"bilinear_medium", emissive(saddle), {0.5, 0.25, 3}, 300000, true},
       {"bilinear_mirrored", emissive(saddle, mirror), {0.5, 0.25, 3}, 300000, true},
-      {"csg_lens", emissive(balls(CsgShape::Operation::set_intersection)), {1.5, 1, 1}, 300000, true},
-      {"csg_turned_inside", turned(emissive(balls(CsgShape::Operation::set_intersection))), {0.125, 0.25, 0.25}, 300000},
+      {"csg_lens",
+       emissive(balls(CsgShape::Operation::set_intersection)),
+       {1.5, 1, 1},
+       300000,
+       true},
+      {"csg_turned_inside",
+       turned(emissive(balls(CsgShape::Operation::set_intersection))),
+       {0.125, 0.25, 0.25},
+       300000},
   };
   return all;
 }
 
 /// The kind that the case's shape is lowered to.
-int kind_of(const AreaCase& c) { return static_cast<int>(lower(scene_of(c.shape)).geometries.at(0).shape); }
+int kind_of(const AreaCase& c) {
+  return static_cast<int>(lower(scene_of(c.shape)).geometries.at(0).shape);
+}
 
 class AreaLight : public testing::TestWithParam<AreaCase> {};
 
-/// Cells of directions about an axis: equal steps of the square of the polar angle up to `limit`, and of azimuth.
+/// Cells of directions about an axis: equal steps of the square of the polar angle up to `limit`,
+/// and of azimuth.
 struct Cells {
   glm::dvec3 z, x, y;
   double limit;
   static constexpr int rings = 10, sectors = 16, count = rings * sectors;
   Cells(const glm::dvec3& axis, double widest) : z(axis), limit(widest) {
-    x = glm::normalize(glm::cross(z, std::abs(z.x) < 0.5 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0)));
+    x = glm::normalize(
+        glm::cross(z, std::abs(z.x) < 0.5 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0)));
     y = glm::cross(z, x);
   }
   std::size_t at(const glm::dvec3& d) const {
-    const double polar = std::atan2(std::hypot(glm::dot(d, x), glm::dot(d, y)), glm::dot(d, z)) / limit;
+    const double polar =
+        std::atan2(std::hypot(glm::dot(d, x), glm::dot(d, y)), glm::dot(d, z)) / limit;
     const double turn = std::atan2(glm::dot(d, y), glm::dot(d, x)) / (2 * pi) + 0.5;
     const int ring = std::min(static_cast<int>(polar * polar * rings), rings - 1);
-    return static_cast<std::size_t>(ring * sectors + std::min(static_cast<int>(turn * sectors), sectors - 1));
+    return static_cast<std::size_t>(ring * sectors +
+                                    std::min(static_cast<int>(turn * sectors), sectors - 1));
   }
 };
 
@@ -233,7 +251,8 @@ TEST_P(AreaLight, SamplesFollowTheDensityAndSeeNothingInBetween) {
   const std::vector<SampledLight> samples = bench.sample(c.p, sample_count);
   const bool both = c.shape.emission->two_sided;
 
-  // The seen surface: its solid angle, the irradiance it gives, the density's integral, and the expected counts.
+  // The seen surface: its solid angle, the irradiance it gives, the density's integral, and the
+  // expected counts.
   std::vector<SurfacePoint> seen;
   for (const SurfacePoint& point : surface_points(c.shape, c.points))
     if (both || glm::dot(c.p - point.p, point.n) > 0) seen.push_back(point);
@@ -255,12 +274,16 @@ TEST_P(AreaLight, SamplesFollowTheDensityAndSeeNothingInBetween) {
     total += solid[i] * pdf[i];
   }
   axis = glm::length(axis) > 0.05 * solid_angle ? glm::normalize(axis) : glm::dvec3(0, 0, 1);
-  for (const glm::dvec3& d : directions) widest = std::max(widest, std::acos(std::clamp(glm::dot(d, axis), -1.0, 1.0)));
+  for (const glm::dvec3& d : directions)
+    widest = std::max(widest, std::acos(std::clamp(glm::dot(d, axis), -1.0, 1.0)));
   const Cells cells(axis, widest);
-  std::vector<double> expected(Cells::count + 1, 0), observed(Cells::count + 1, 0);  // the last: samples that miss
-  for (std::size_t i = 0; i < seen.size(); ++i) expected[cells.at(directions[i])] += solid[i] * pdf[i] * sample_count;
-  // A low-discrepancy mean over n points of what jumps along a curve is off by about n^(-3/4), 1e-4 here; of what grows like one
-  // over the root of the distance from that curve (the caps' density at the silhouette), ten times that.
+  std::vector<double> expected(Cells::count + 1, 0),
+      observed(Cells::count + 1, 0);  // the last: samples that miss
+  for (std::size_t i = 0; i < seen.size(); ++i)
+    expected[cells.at(directions[i])] += solid[i] * pdf[i] * sample_count;
+  // A low-discrepancy mean over n points of what jumps along a curve is off by about n^(-3/4), 1e-4
+  // here; of what grows like one over the root of the distance from that curve (the caps' density
+  // at the silhouette), ten times that.
   if (c.may_miss) {
     EXPECT_LT(total, 1 + 2e-3) << "the density's integral";
     expected.back() = std::max(0.0, 1 - total) * sample_count;
@@ -287,17 +310,21 @@ TEST_P(AreaLight, SamplesFollowTheDensityAndSeeNothingInBetween) {
     EXPECT_LE(missing, sample_count / 1000);
   EXPECT_EQ(occluded, 0u) << "shadow rays that the light itself stops";
   const ChiSquareResult chi = chi_square(observed, expected);
-  EXPECT_GT(chi.p_value, sidak(0.01, static_cast<int>(cases().size()))) << chi.statistic << " / " << chi.degrees_of_freedom;
+  EXPECT_GT(chi.p_value, sidak(0.01, static_cast<int>(cases().size())))
+      << chi.statistic << " / " << chi.degrees_of_freedom;
 
   const Moments angle = moments(samples, [](const SampledLight& s) { return 1 / s.pdf; });
   EXPECT_NEAR(angle.mean, solid_angle, 4 * angle.error + 1e-3 * solid_angle);
-  const Moments light =
-      moments(samples, [&](const SampledLight& s) { return s.radiance * std::max(0.0, glm::dot(s.wi, receiver)) / s.pdf; });
+  const Moments light = moments(samples, [&](const SampledLight& s) {
+    return s.radiance * std::max(0.0, glm::dot(s.wi, receiver)) / s.pdf;
+  });
   EXPECT_NEAR(light.mean, irradiance, 4 * light.error + 1e-3 * irradiance);
 }
 
 INSTANTIATE_TEST_SUITE_P(Cases, AreaLight, testing::ValuesIn(cases()),
-                         [](const testing::TestParamInfo<AreaCase>& row) { return row.param.name; });
+                         [](const testing::TestParamInfo<AreaCase>& row) {
+                           return row.param.name;
+                         });
 
 TEST(AreaLightCases, EveryShapeIsOnTrial) {
   std::set<int> tried;
@@ -311,7 +338,8 @@ TEST(AreaLightClosedForm, SphereIrradiance) {
   LightBench bench(flat);
   const glm::dvec3 p(0.5, 0, 0);
   const glm::dvec3 away = glm::dvec3(1, 2, 3) - p;
-  const Moments e = moments(bench.sample(p, sample_count), [](const SampledLight& s) { return s.wi.z / s.pdf; });
+  const Moments e =
+      moments(bench.sample(p, sample_count), [](const SampledLight& s) { return s.wi.z / s.pdf; });
   const double expected = pi * 0.75 * 0.75 / glm::dot(away, away) * away.z / glm::length(away);
   EXPECT_NEAR(e.mean, expected, 3 * e.error + 1e-5 * expected);
   EXPECT_LT(e.error, 0.005 * expected);
@@ -322,10 +350,12 @@ TEST(AreaLightClosedForm, SolidAngleOfANearSphere) {
   const FlatScene flat = lower(scene_of(emissive(SphereShape{1})));
   LightBench bench(flat);
   for (const double distance : {1.01, 1e4}) {
-    const Moments angle = moments(bench.sample({0, distance, 0}, 1000), [](const SampledLight& s) { return 1 / s.pdf; });
+    const Moments angle = moments(bench.sample({0, distance, 0}, 1000),
+                                  [](const SampledLight& s) { return 1 / s.pdf; });
     const double sine = 1 / distance;
     const double expected = 2 * pi * sine * sine / (1 + std::sqrt(1 - sine * sine));
-    // Rounding of the distance (1e-7) in the square root's argument 1 - sin^2, which is 0.02 at the near place.
+    // Rounding of the distance (1e-7) in the square root's argument 1 - sin^2, which is 0.02 at the
+    // near place.
     EXPECT_NEAR(angle.mean, expected, 1e-5 * expected);
   }
 }
@@ -336,14 +366,16 @@ TEST(AreaLightClosedForm, DiskIrradianceOnItsAxis) {
   disk.reverse_orientation = true;
   const FlatScene flat = lower(scene_of(disk));
   LightBench bench(flat);
-  const Moments e = moments(bench.sample({0, 0, 0}, sample_count), [](const SampledLight& s) { return s.wi.z / s.pdf; });
+  const Moments e = moments(bench.sample({0, 0, 0}, sample_count),
+                            [](const SampledLight& s) { return s.wi.z / s.pdf; });
   const double expected = pi * 2.25 / (2.25 + 4);
   EXPECT_NEAR(e.mean, expected, 3 * e.error + 1e-5 * expected);
   EXPECT_LT(e.error, 0.005 * expected);
 }
 
 TEST(AreaLightClosedForm, TriangleIrradiance) {
-  // Lambert 1760: E = L / 2 times the sum over edges of the angle subtended times the cosine of the edge plane's normal.
+  // Lambert 1760: E = L / 2 times the sum over edges of the angle subtended times the cosine of the
+  // edge plane's normal.
   const glm::dvec3 corner[3] = {{-1, -1, 2}, {0.2, 1, 2}, {1, -1, 2.5}};
   const FlatScene flat = lower(scene_of(emissive(triangle(corner[0], corner[1], corner[2]))));
   LightBench bench(flat);
@@ -352,18 +384,21 @@ TEST(AreaLightClosedForm, TriangleIrradiance) {
     const glm::dvec3 a = glm::normalize(corner[i]), b = glm::normalize(corner[(i + 1) % 3]);
     expected += 0.5 * std::acos(glm::dot(a, b)) * glm::normalize(glm::cross(a, b)).z;
   }
-  const Moments e = moments(bench.sample({0, 0, 0}, sample_count), [](const SampledLight& s) { return s.wi.z / s.pdf; });
+  const Moments e = moments(bench.sample({0, 0, 0}, sample_count),
+                            [](const SampledLight& s) { return s.wi.z / s.pdf; });
   EXPECT_NEAR(e.mean, std::abs(expected), 3 * e.error + 1e-5);
   EXPECT_LT(e.error, 0.005 * std::abs(expected));
 }
 
 TEST(AreaLightSides, OneSidedLightsAreDarkFromBehind) {
-  for (const Shape& shape : {emissive(SphereShape{2}), emissive(triangle({-1, -1, -2}, {1, -1, -2}, {0, 1, -2})),
-                             emissive(DiskShape{2, 1}), emissive(capsule({0, 0, -1}, {0, 0, 1}, 1, 0.5f))}) {
+  for (const Shape& shape :
+       {emissive(SphereShape{2}), emissive(triangle({-1, -1, -2}, {1, -1, -2}, {0, 1, -2})),
+        emissive(DiskShape{2, 1}), emissive(capsule({0, 0, -1}, {0, 0, 1}, 1, 0.5f))}) {
     const bool faces_away = !std::holds_alternative<TriangleMeshShape>(shape.geometry);
     const FlatScene flat = lower(scene_of(shape));
     LightBench bench(flat);
-    const Moments lit = moments(bench.sample({0.125, 0.25, 0.125}, 1000), [](const SampledLight&) { return 1.0; });
+    const Moments lit =
+        moments(bench.sample({0.125, 0.25, 0.125}, 1000), [](const SampledLight&) { return 1.0; });
     EXPECT_EQ(lit.mean, faces_away ? 0 : 1);
   }
 }
@@ -371,25 +406,28 @@ TEST(AreaLightSides, OneSidedLightsAreDarkFromBehind) {
 TEST(AreaLightSides, SolidsTurnedInsideOutEmitInward) {
   const glm::dmat4 stretched = glm::scale(glm::dmat4(1), {1.0, 1.0, 1.5});
   for (Shape shape : {emissive(SphereShape{2}), emissive(SphereShape{2}, stretched),
-                      emissive(capsule({0, 0, -1}, {0, 0, 1}, 2, 2)), emissive(capsule({0, 0, -1}, {0, 0, 1}, 2, 1.5f))}) {
+                      emissive(capsule({0, 0, -1}, {0, 0, 1}, 2, 2)),
+                      emissive(capsule({0, 0, -1}, {0, 0, 1}, 2, 1.5f))}) {
     shape.reverse_orientation = true;
     const FlatScene flat = lower(scene_of(shape));
     LightBench bench(flat);
     // All around p: E = pi L whatever the shape.
-    const Moments e = moments(bench.sample({0.5, 0.25, -0.5}, sample_count),
-                              [](const SampledLight& s) { return std::max(0.0, double(s.wi.z)) / s.pdf; });
+    const Moments e =
+        moments(bench.sample({0.5, 0.25, -0.5}, sample_count),
+                [](const SampledLight& s) { return std::max(0.0, double(s.wi.z)) / s.pdf; });
     EXPECT_NEAR(e.mean, pi, 3 * e.error + 1e-5 * pi);
     EXPECT_LT(e.error, 0.01 * pi);
     for (const glm::dvec3& outside : {glm::dvec3(0.25, 5, 0.5), glm::dvec3(0, 0, 40)}) {
-      const Moments lit = moments(bench.sample(outside, 1000), [](const SampledLight&) { return 1.0; });
+      const Moments lit =
+          moments(bench.sample(outside, 1000), [](const SampledLight&) { return 1.0; });
       EXPECT_EQ(lit.mean, 0);
     }
   }
 }
 
 TEST(AreaLightEdges, SamplesAreFinitePointsOnTheRimOfTheRange) {
-  // Random numbers at both ends of [0, 1) are as good as others: thousands of lights are seen at their worst by the sweep of
-  // places on and next to the surface.
+  // Random numbers at both ends of [0, 1) are as good as others: thousands of lights are seen at
+  // their worst by the sweep of places on and next to the surface.
   const Shape shape = emissive(capsule({0, 0, -1}, {0, 0, 1}, 0.5f, 0.25f), glm::dmat4(1), true);
   const FlatScene flat = lower(scene_of(shape));
   LightBench bench(flat);

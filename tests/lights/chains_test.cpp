@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Emissive solids that overlap, touch or coincide give the light of their union: neither that of hidden surfaces, nor twice that
-// of surfaces at one place. The irradiance of the union is known by quadrature over directions, in double, by distances of rays
-// from axes.
+// Emissive solids that overlap, touch or coincide give the light of their union: neither that of
+// hidden surfaces, nor twice that of surfaces at one place. The irradiance of the union is known by
+// quadrature over directions, in double, by distances of rays from axes.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -36,13 +36,17 @@ double distance_to_ray(const dvec3& o, const dvec3& d, const dvec3& p) {
   return glm::length(p - o - d * std::max(0.0, glm::dot(p - o, d)));
 }
 
-/// Whether the ray (d a unit vector) comes to a ball of the axis: the distance minus the radius is convex along the axis, and its
-/// least value is found by golden sections: 40 of them leave 4e-9 of the axis.
+/// Whether the ray (d a unit vector) comes to a ball of the axis: the distance minus the radius is
+/// convex along the axis, and its least value is found by golden sections: 40 of them leave 4e-9 of
+/// the axis.
 bool meets(const dvec3& o, const dvec3& d, const RoundSolid& solid) {
   const dvec3 middle = 0.5 * (solid.p0 + solid.p1);
-  if (distance_to_ray(o, d, middle) > 0.5 * glm::length(solid.p1 - solid.p0) + std::max(solid.r0, solid.r1)) return false;
+  if (distance_to_ray(o, d, middle) >
+      0.5 * glm::length(solid.p1 - solid.p0) + std::max(solid.r0, solid.r1))
+    return false;
   const auto gap = [&](double s) {
-    return distance_to_ray(o, d, glm::mix(solid.p0, solid.p1, s)) - (solid.r0 + s * (solid.r1 - solid.r0));
+    return distance_to_ray(o, d, glm::mix(solid.p0, solid.p1, s)) -
+           (solid.r0 + s * (solid.r1 - solid.r0));
   };
   constexpr double section = 0.6180339887498949;
   double low = 0, high = 1, a = 1 - section, b = section, at_a = gap(a), at_b = gap(b);
@@ -64,8 +68,9 @@ bool meets(const dvec3& o, const dvec3& d, const RoundSolid& solid) {
   return at_a <= 0 || at_b <= 0 || gap(low) <= 0 || gap(high) <= 0;
 }
 
-/// Irradiance of a plane with normal +z at p under solids of radiance 1: pi times the share of directions, spread by the cosine,
-/// that meet one. The points of Roberts's R2 sequence; 2^21 of them are off by about 2e-4 of a share of 0.04.
+/// Irradiance of a plane with normal +z at p under solids of radiance 1: pi times the share of
+/// directions, spread by the cosine, that meet one. The points of Roberts's R2 sequence; 2^21 of
+/// them are off by about 2e-4 of a share of 0.04.
 double irradiance(const dvec3& p, const std::vector<RoundSolid>& solids) {
   constexpr int count = 1 << 21;
   double x = 0.5, y = 0.5;
@@ -89,7 +94,8 @@ struct ChainCase {
 };
 
 /// A polyline of capsules: the radius is that of its corners.
-std::vector<RoundSolid> along(const std::function<dvec3(double)>& place, const std::function<double(double)>& radius, int count) {
+std::vector<RoundSolid> along(const std::function<dvec3(double)>& place,
+                              const std::function<double(double)>& radius, int count) {
   std::vector<RoundSolid> out;
   for (int i = 0; i < count; ++i) {
     const double a = double(i) / count, b = double(i + 1) / count;
@@ -104,10 +110,12 @@ std::vector<ChainCase> cases() {
   const auto even = [](double) { return 0.1; };
   const auto taper = [](double t) { return 0.15 - 0.1 * t; };
   for (const int count : {1, 30, 100, 1000, 10000})
-    all.push_back({"straight_" + std::to_string(count), along(straight, even, count), along(straight, even, 1),
+    all.push_back({"straight_" + std::to_string(count), along(straight, even, count),
+                   along(straight, even, 1),
                    std::size_t{1} << (count > 1000 && thorough() ? 22 : 20)});
   for (const int count : {30, 1000})
-    all.push_back({"tapered_" + std::to_string(count), along(straight, taper, count), along(straight, taper, 1)});
+    all.push_back({"tapered_" + std::to_string(count), along(straight, taper, count),
+                   along(straight, taper, 1)});
   const auto arc = [](double t) { return dvec3(std::cos(pi * t), std::sin(pi * t) - 0.5, 1); };
   all.push_back({"arc", along(arc, even, 20), {}});
   const auto zigzag = [](double t) {
@@ -119,18 +127,24 @@ std::vector<ChainCase> cases() {
   all.push_back({"zigzag_of_two_radii", along(zigzag, swelling, 6), {}});
 
   std::vector<RoundSolid> sticks = along(straight, even, 5);
-  for (int i = 0; i < 6; ++i) sticks.push_back({straight(i / 5.0), straight(i / 5.0), i % 2 == 0 ? 0.17 : 0.1, 0});
+  for (int i = 0; i < 6; ++i)
+    sticks.push_back({straight(i / 5.0), straight(i / 5.0), i % 2 == 0 ? 0.17 : 0.1, 0});
   for (RoundSolid& solid : sticks)
     if (solid.p0 == solid.p1) solid.r1 = solid.r0;
   all.push_back({"ball_and_stick", sticks, {}});
   const RoundSolid one = along(straight, even, 1).front();
   all.push_back({"twice_the_same", {one, one, {one.p1, one.p0, one.r1, one.r0}}, {one}});
-  all.push_back({"thin_into_thick", {{{-1, 0, 1}, {0, 0, 1}, 0.05, 0.05}, {{0, 0, 1}, {0.9, 0.3, 1}, 0.12, 0.12}}, {}});
+  all.push_back({"thin_into_thick",
+                 {{{-1, 0, 1}, {0, 0, 1}, 0.05, 0.05}, {{0, 0, 1}, {0.9, 0.3, 1}, 0.12, 0.12}},
+                 {}});
   // More pieces at a point than are looked at for what covers them.
   std::vector<RoundSolid> star;
   for (int i = 0; i < 48; ++i) {
     const double phi = 2 * pi * i / 48;
-    star.push_back({{0, 0, 1}, {std::cos(phi), std::sin(phi), 1 + 0.1 * (i % 3)}, 0.08 + 0.001 * (i % 5), 0.05});
+    star.push_back({{0, 0, 1},
+                    {std::cos(phi), std::sin(phi), 1 + 0.1 * (i % 3)},
+                    0.08 + 0.001 * (i % 5),
+                    0.05});
   }
   all.push_back({"star", star, {}});
   return all;
@@ -157,7 +171,8 @@ Scene scene_of(const std::vector<Shape>& shapes) {
   return scene;
 }
 
-void expect_irradiance(const Scene& scene, const std::vector<RoundSolid>& solids, std::size_t samples) {
+void expect_irradiance(const Scene& scene, const std::vector<RoundSolid>& solids,
+                       std::size_t samples) {
   LightBench bench(lower(scene));
   for (const dvec3& p : {dvec3(0.3, -0.2, 0), dvec3(1.75, 0.5, 0.125)}) {
     SCOPED_TRACE(p.x);
@@ -179,18 +194,23 @@ class EmissiveChain : public testing::TestWithParam<ChainCase> {};
 
 TEST_P(EmissiveChain, GivesTheLightOfItsUnion) {
   const ChainCase& c = GetParam();
-  expect_irradiance(scene_of({emissive(c.pieces)}), c.solids.empty() ? c.pieces : c.solids, c.samples);
+  expect_irradiance(scene_of({emissive(c.pieces)}), c.solids.empty() ? c.pieces : c.solids,
+                    c.samples);
 }
 
 INSTANTIATE_TEST_SUITE_P(Cases, EmissiveChain, testing::ValuesIn(cases()),
-                         [](const testing::TestParamInfo<ChainCase>& row) { return row.param.name; });
+                         [](const testing::TestParamInfo<ChainCase>& row) {
+                           return row.param.name;
+                         });
 
-// The same chain as two instances, turned and of another size and one of them twice, beside one in the world.
+// The same chain as two instances, turned and of another size and one of them twice, beside one in
+// the world.
 TEST(EmissiveChains, GiveTheLightOfTheirUnionInInstances) {
   const auto place = [](double t) { return dvec3(t, 0.1 * std::sin(5 * t), 0); };
   const std::vector<RoundSolid> chain = along(
       place, [](double t) { return 0.08 - 0.03 * t; }, 40);
-  Scene scene = scene_of({emissive(along([](double t) { return dvec3(-0.5 + t, -0.7, 1); }, [](double) { return 0.05; }, 10))});
+  Scene scene = scene_of({emissive(
+      along([](double t) { return dvec3(-0.5 + t, -0.7, 1); }, [](double) { return 0.05; }, 10))});
   std::vector<RoundSolid> solids = {{{-0.5, -0.7, 1}, {0.5, -0.7, 1}, 0.05, 0.05}};
   Object object;
   object.shapes = {emissive(chain)};
@@ -204,8 +224,8 @@ TEST(EmissiveChains, GiveTheLightOfTheirUnionInInstances) {
     instance.world_from_object = m;
     scene.instances.push_back(instance);
     for (const RoundSolid& piece : chain)
-      solids.push_back(
-          {dvec3(m * glm::dvec4(piece.p0, 1)), dvec3(m * glm::dvec4(piece.p1, 1)), scale * piece.r0, scale * piece.r1});
+      solids.push_back({dvec3(m * glm::dvec4(piece.p0, 1)), dvec3(m * glm::dvec4(piece.p1, 1)),
+                        scale * piece.r0, scale * piece.r1});
   }
   expect_irradiance(scene, solids, std::size_t{1} << 21);
 }
@@ -225,7 +245,8 @@ std::vector<std::pair<int, int>> open_heights(const Scene& scene) {
 TEST(CoveredEnds, ReachAsHighAsTheNextCapsuleLeavesThem) {
   for (const double angle : {0.0, 0.3, 1.0, 1.5, 2.5}) {
     const dvec3 turn(std::cos(angle), std::sin(angle), 0);
-    const auto open = open_heights(scene_of({emissive({{{-1, 0, 0}, {0, 0, 0}, 0.2, 0.2}, {{0, 0, 0}, turn, 0.2, 0.2}})}));
+    const auto open = open_heights(
+        scene_of({emissive({{{-1, 0, 0}, {0, 0, 0}, 0.2, 0.2}, {{0, 0, 0}, turn, 0.2, 0.2}})}));
     ASSERT_EQ(open.size(), 2u);
     const double height = angle < pi / 2 ? std::sin(angle) : 1;
     EXPECT_EQ(open[0].first, 255);
@@ -239,7 +260,9 @@ TEST(CoveredEnds, ReachAsHighAsTheNextCapsuleLeavesThem) {
 
 // Where several meet at a point, in whatever order, that one counts which leaves least.
 TEST(CoveredEnds, AreOfTheOneThatLeavesLeast) {
-  const auto away = [](double angle) { return RoundSolid{{0, 0, 0}, {std::cos(angle), std::sin(angle), 0}, 0.2, 0.2}; };
+  const auto away = [](double angle) {
+    return RoundSolid{{0, 0, 0}, {std::cos(angle), std::sin(angle), 0}, 0.2, 0.2};
+  };
   std::vector<double> angles = {0.4, 0.9, 1.3};
   do {
     std::vector<RoundSolid> pieces = {{{-1, 0, 0}, {0, 0, 0}, 0.2, 0.2}};
@@ -251,12 +274,14 @@ TEST(CoveredEnds, AreOfTheOneThatLeavesLeast) {
   } while (std::ranges::next_permutation(angles).found);
 }
 
-// A capsule that grows by 0.3 a length covers normals at less than acos(-0.3) from its axis: of an end whose outward axis is b
-// from there, what is left reaches up to the cosine of what that is more than b. It also covers ends that it turns back from.
+// A capsule that grows by 0.3 a length covers normals at less than acos(-0.3) from its axis: of an
+// end whose outward axis is b from there, what is left reaches up to the cosine of what that is
+// more than b. It also covers ends that it turns back from.
 TEST(CoveredEnds, ReachLessHighWhereTheNextCapsuleGrows) {
   for (const double angle : {0.5, 1.2, 1.5, 1.7, 1.8, 2.0, 2.8}) {
     const dvec3 turn(std::cos(angle), std::sin(angle), 0);
-    const auto open = open_heights(scene_of({emissive({{{-1, 0, 0}, {0, 0, 0}, 0.2, 0.2}, {{0, 0, 0}, turn, 0.2, 0.5}})}));
+    const auto open = open_heights(
+        scene_of({emissive({{{-1, 0, 0}, {0, 0, 0}, 0.2, 0.2}, {{0, 0, 0}, turn, 0.2, 0.5}})}));
     ASSERT_EQ(open.size(), 2u);
     const double height = std::cos(std::max(0.0, std::acos(-0.3) - angle));
     EXPECT_GE(open[0].second, 255 * height) << angle;
@@ -279,22 +304,29 @@ TEST(CoveredEnds, AreThoseThatAThickerOneOrASphereHolds) {
 
 // Light samples leave out what the next capsule covers, and so do their densities.
 TEST(CoveredEnds, HaveNoDensity) {
-  LightBench bench(lower(scene_of({emissive({{{-1, 0, 0}, {0, 0, 0}, 0.2, 0.2}, {{0, 0, 0}, {0, 1, 0}, 0.2, 0.2}})})));
+  LightBench bench(lower(
+      scene_of({emissive({{{-1, 0, 0}, {0, 0, 0}, 0.2, 0.2}, {{0, 0, 0}, {0, 1, 0}, 0.2, 0.2}})})));
   const auto on_the_end = [](double angle) {
     const dvec3 n(std::cos(angle), 0, std::sin(angle));
     return SurfacePoint{0.2 * n, n, 0.2 * 0.2};
   };
-  // At a right angle the second capsule holds half of the end, with every height (here x) in the other half.
+  // At a right angle the second capsule holds half of the end, with every height (here x) in the
+  // other half.
   const dvec3 p(2, 0, 2);
-  for (const double density : bench.area_pdf(0, p, {on_the_end(0.3), on_the_end(1.0)})) EXPECT_GT(density, 0);
-  LightBench straight(lower(scene_of({emissive({{{-1, 0, 0}, {0, 0, 0}, 0.2, 0.2}, {{0, 0, 0}, {1, 0, 0}, 0.2, 0.2}})})));
-  for (const double density : straight.area_pdf(0, p, {on_the_end(0.3), on_the_end(1.0)})) EXPECT_EQ(density, 0);
+  for (const double density : bench.area_pdf(0, p, {on_the_end(0.3), on_the_end(1.0)}))
+    EXPECT_GT(density, 0);
+  LightBench straight(lower(
+      scene_of({emissive({{{-1, 0, 0}, {0, 0, 0}, 0.2, 0.2}, {{0, 0, 0}, {1, 0, 0}, 0.2, 0.2}})})));
+  for (const double density : straight.area_pdf(0, p, {on_the_end(0.3), on_the_end(1.0)}))
+    EXPECT_EQ(density, 0);
 }
 
 TEST(CoveredEnds, AreSampledWhereScatteredRaysWouldNotFindThem) {
-  const std::vector<RoundSolid> chain = {{{-1, 0, 0}, {0, 0, 0}, 0.2, 0.2}, {{0, 0, 0}, {1, 0, 0}, 0.2, 0.2}};
+  const std::vector<RoundSolid> chain = {{{-1, 0, 0}, {0, 0, 0}, 0.2, 0.2},
+                                         {{0, 0, 0}, {1, 0, 0}, 0.2, 0.2}};
   const auto all_open = [](const Scene& scene) {
-    return std::ranges::all_of(open_heights(scene), [](const auto& ends) { return ends == std::pair(255, 255); });
+    return std::ranges::all_of(open_heights(scene),
+                               [](const auto& ends) { return ends == std::pair(255, 255); });
   };
   EXPECT_FALSE(all_open(scene_of({emissive(chain)})));
   Shape shape = emissive(chain);

@@ -127,13 +127,15 @@ __kernel void chances(SCENE, __global const float* at, __global float* out, uint
 
 Program& program_of(const Device& device, const RowMasks& rows, const FlatScene& scene) {
   static std::map<std::pair<RowMasks, std::string>, Program> built;
-  const std::string options =
-      fmt::format("-DCAPLET_REAL_WIDTH={}{}{}", test_width(), scene.light_nodes.empty() ? "" : " -DCAPLET_LIGHT_TREE",
-                  scene.has_chains ? " -DCAPLET_CHAINS" : "");
+  const std::string options = fmt::format("-DCAPLET_REAL_WIDTH={}{}{}", test_width(),
+                                          scene.light_nodes.empty() ? "" : " -DCAPLET_LIGHT_TREE",
+                                          scene.has_chains ? " -DCAPLET_CHAINS" : "");
   const auto found = built.find({rows, options});
   if (found != built.end()) return found->second;
   return built
-      .emplace(std::pair(rows, options), Program::from_source(device, "light_bench", flatten_kernels(kernel_text, rows), options))
+      .emplace(
+          std::pair(rows, options),
+          Program::from_source(device, "light_bench", flatten_kernels(kernel_text, rows), options))
       .first->second;
 }
 
@@ -174,12 +176,14 @@ std::vector<SampledLight> LightBench::sample(const glm::dvec3& p, std::size_t co
   std::vector<SampledLight> samples(count);
   for (std::size_t i = 0; i < count; ++i) {
     const float* v = &values[11 * i];
-    samples[i] = {{v[0], v[1], v[2]}, {v[3], v[4], v[5]}, v[6], v[7], v[8] != 0, v[9] != 0, v[10] != 0};
+    samples[i] = {{v[0], v[1], v[2]}, {v[3], v[4], v[5]}, v[6],      v[7],
+                  v[8] != 0,          v[9] != 0,          v[10] != 0};
   }
   return samples;
 }
 
-std::vector<double> LightBench::area_pdf(std::uint32_t light, const glm::dvec3& p, const std::vector<SurfacePoint>& points) {
+std::vector<double> LightBench::area_pdf(std::uint32_t light, const glm::dvec3& p,
+                                         const std::vector<SurfacePoint>& points) {
   std::vector<float> flat;
   for (const SurfacePoint& point : points)
     for (const glm::dvec3& v : {point.p, point.n})
@@ -198,7 +202,8 @@ std::vector<double> LightBench::area_pdf(std::uint32_t light, const glm::dvec3& 
   return {values.begin(), values.begin() + static_cast<std::ptrdiff_t>(points.size())};
 }
 
-std::vector<glm::dvec2> LightBench::sky(const std::vector<glm::dvec3>& directions, const glm::dvec3& p) {
+std::vector<glm::dvec2> LightBench::sky(const std::vector<glm::dvec3>& directions,
+                                        const glm::dvec3& p) {
   std::vector<float> flat;
   for (const glm::dvec3& d : directions)
     for (int k = 0; k < 3; ++k) flat.push_back(static_cast<float>(d[k]));
@@ -213,7 +218,8 @@ std::vector<glm::dvec2> LightBench::sky(const std::vector<glm::dvec3>& direction
   launch(device_, kernel, directions.size(), 1);
   const std::vector<float> values = out.read();
   std::vector<glm::dvec2> found;
-  for (std::size_t i = 0; i < directions.size(); ++i) found.emplace_back(values[2 * i], values[2 * i + 1]);
+  for (std::size_t i = 0; i < directions.size(); ++i)
+    found.emplace_back(values[2 * i], values[2 * i + 1]);
   return found;
 }
 
@@ -268,7 +274,8 @@ std::vector<Choice> LightBench::choose(const Receiver& at, const std::vector<std
   launch(device_, kernel, u.size(), 1);
   const std::vector<std::uint32_t> values = out.read();
   std::vector<Choice> choices(u.size());
-  for (std::size_t i = 0; i < u.size(); ++i) choices[i] = {values[2 * i], std::bit_cast<float>(values[2 * i + 1])};
+  for (std::size_t i = 0; i < u.size(); ++i)
+    choices[i] = {values[2 * i], std::bit_cast<float>(values[2 * i + 1])};
   return choices;
 }
 

@@ -17,7 +17,8 @@
 
 namespace caplet::test {
 
-/// What light_sample returned; `pdf` 0: nothing. `occluded`: something of the scene lies between p and the target.
+/// What light_sample returned; `pdf` 0: nothing. `occluded`: something of the scene lies between p
+/// and the target.
 struct SampledLight {
   glm::dvec3 wi{0}, target{0};
   double pdf = 0, radiance = 0;
@@ -40,14 +41,18 @@ class LightBench {
   /// Kernels: for the rows of the lists that a mask names.
   explicit LightBench(const FlatScene& scene, const RowMasks& rows = {});
 
-  /// light_sample at p with `count` independent uniform random numbers (fixed seed), at wavelengths 450 to 600 nm; the radiance
-  /// is that at the first.
+  /// light_sample at p with `count` independent uniform random numbers (fixed seed), at wavelengths
+  /// 450 to 600 nm; the radiance is that at the first.
   std::vector<SampledLight> sample(const glm::dvec3& p, std::size_t count);
   /// light_area_pdf of light `light` at p for the directions to `points`.
-  std::vector<double> area_pdf(std::uint32_t light, const glm::dvec3& p, const std::vector<SurfacePoint>& points);
-  /// Radiance of the sky as seen from p, and its sampling density times the chance of selection, for unit directions.
-  std::vector<glm::dvec2> sky(const std::vector<glm::dvec3>& directions, const glm::dvec3& p = glm::dvec3(0));
-  /// How many of all 2^32 random numbers choose each of up to 8 lights; the ninth: how often the chance was not the light's own.
+  std::vector<double> area_pdf(std::uint32_t light, const glm::dvec3& p,
+                               const std::vector<SurfacePoint>& points);
+  /// Radiance of the sky as seen from p, and its sampling density times the chance of selection,
+  /// for unit directions.
+  std::vector<glm::dvec2> sky(const std::vector<glm::dvec3>& directions,
+                              const glm::dvec3& p = glm::dvec3(0));
+  /// How many of all 2^32 random numbers choose each of up to 8 lights; the ninth: how often the
+  /// chance was not the light's own.
   std::vector<std::uint64_t> all_selections();
   /// The light that light_select chooses by each of the numbers.
   std::vector<std::uint32_t> select(const std::vector<std::uint32_t>& u);

@@ -19,8 +19,11 @@ Scene scene_with(const std::vector<Light>& lights) {
   return scene;
 }
 
-std::shared_ptr<const EnvironmentImage> picture_image(int width, int height, const std::vector<float>& rgb, bool equal_area) {
-  return std::make_shared<EnvironmentImage>(EnvironmentImage{width, height, rgb, ColorSpace::srgb, equal_area});
+std::shared_ptr<const EnvironmentImage> picture_image(int width, int height,
+                                                      const std::vector<float>& rgb,
+                                                      bool equal_area) {
+  return std::make_shared<EnvironmentImage>(
+      EnvironmentImage{width, height, rgb, ColorSpace::srgb, equal_area});
 }
 
 Light image_light(int width, int height, bool equal_area, const std::vector<float>& rgb) {
@@ -32,7 +35,8 @@ Light image_light(int width, int height, bool equal_area, const std::vector<floa
 std::vector<glm::dvec3> sphere_directions(std::size_t n) {
   std::vector<glm::dvec3> directions;
   for (std::size_t i = 0; i < n; ++i) {
-    const double z = 1 - (2 * static_cast<double>(i) + 1) / static_cast<double>(n), r = std::sqrt(1 - z * z);
+    const double z = 1 - (2 * static_cast<double>(i) + 1) / static_cast<double>(n),
+                 r = std::sqrt(1 - z * z);
     const double phi = static_cast<double>(i) * std::numbers::pi * (3 - std::sqrt(5.0));
     directions.emplace_back(r * std::cos(phi), r * std::sin(phi), z);
   }

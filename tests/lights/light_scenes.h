@@ -27,7 +27,8 @@ Light light_of(const Model& model) {
 }
 
 /// The sky of an image: `rgb` has three values a texel.
-std::shared_ptr<const EnvironmentImage> picture_image(int width, int height, const std::vector<float>& rgb,
+std::shared_ptr<const EnvironmentImage> picture_image(int width, int height,
+                                                      const std::vector<float>& rgb,
                                                       bool equal_area = false);
 Light image_light(int width, int height, bool equal_area, const std::vector<float>& rgb);
 

@@ -134,14 +134,16 @@ LightTrial constant_trial() {
   return trial;
 }
 
-// The image's upper half (v from 0 to 1/2) is the half space z > 0; radiance u of the way around, up to where it begins anew, has
-// a mean of 1/2. The linear interpolation across the horizon, half a texel of 64 to either side, takes and gives light there with
-// cosines below pi / 128: less than 1e-3 of it.
+// The image's upper half (v from 0 to 1/2) is the half space z > 0; radiance u of the way around,
+// up to where it begins anew, has a mean of 1/2. The linear interpolation across the horizon, half
+// a texel of 64 to either side, takes and gives light there with cosines below pi / 128: less than
+// 1e-3 of it.
 LightTrial image_trial() {
   constexpr int width = 128, height = 64;
   std::vector<float> rgb;
   for (int y = 0; y < height; ++y)
-    for (int x = 0; x < width; ++x) rgb.insert(rgb.end(), 3, y < height / 2 ? (static_cast<float>(x) + 0.5f) / width : 0.f);
+    for (int x = 0; x < width; ++x)
+      rgb.insert(rgb.end(), 3, y < height / 2 ? (static_cast<float>(x) + 0.5f) / width : 0.f);
   LightTrial trial{scene_with({image_light(width, height, false, rgb)}), {0, 0, 0}, {0, 0, 1}};
   trial.irradiance = 0.5 * pi;
   trial.per_white = true;
@@ -149,14 +151,17 @@ LightTrial image_trial() {
   return trial;
 }
 
-// Four times that of a rectangle of sides a and b at distance d, with a corner over the point: L / 2 (A / sqrt(1 + A^2) atan(B /
-// sqrt(1 + A^2)) + B / sqrt(1 + B^2) atan(A / sqrt(1 + B^2))), A = a / d, B = b / d.
+// Four times that of a rectangle of sides a and b at distance d, with a corner over the point: L /
+// 2 (A / sqrt(1 + A^2) atan(B / sqrt(1 + A^2)) + B / sqrt(1 + B^2) atan(A / sqrt(1 + B^2))), A = a
+// / d, B = b / d.
 LightTrial portal_trial() {
   Light light = image_light(16, 16, true, std::vector<float>(3 * 16 * 16, 2.f));
-  std::get<InfiniteLight>(light.model).portal = LightPortal{{{-1, -0.5, 2}, {-1, 0.5, 2}, {1, 0.5, 2}, {1, -0.5, 2}}};
+  std::get<InfiniteLight>(light.model).portal =
+      LightPortal{{{-1, -0.5, 2}, {-1, 0.5, 2}, {1, 0.5, 2}, {1, -0.5, 2}}};
   LightTrial trial{scene_with({light}), {0, 0, 0}, {0, 0, 1}};
   const double a = 0.5, b = 0.25, wide = std::sqrt(1 + a * a), high = std::sqrt(1 + b * b);
-  trial.irradiance = 4 * 2 * 0.5 * (a / wide * std::atan(b / wide) + b / high * std::atan(a / high));
+  trial.irradiance =
+      4 * 2 * 0.5 * (a / wide * std::atan(b / wide) + b / high * std::atan(a / high));
   trial.per_white = true;
   trial.is_infinite = true;
   return trial;

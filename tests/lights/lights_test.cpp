@@ -63,7 +63,9 @@ TEST(DeltaLights, SpotFallsOffSmoothlyBetweenItsAngles) {
   model.falloff_start_angle = 0.3;
   const FlatScene flat = lower(scene_with({light_of(model)}));
   LightBench bench(flat);
-  const auto at = [&](double angle) { return bench.sample({2 * std::sin(angle), 0, 2 * std::cos(angle)}, 1)[0]; };
+  const auto at = [&](double angle) {
+    return bench.sample({2 * std::sin(angle), 0, 2 * std::cos(angle)}, 1)[0];
+  };
   EXPECT_NEAR(at(0.2).radiance, 0.25, 1e-6);
   const double t = (std::cos(0.4) - std::cos(0.5)) / (std::cos(0.3) - std::cos(0.5));
   EXPECT_NEAR(at(0.4).radiance, 0.25 * (3 * t * t - 2 * t * t * t), 1e-5);
@@ -126,11 +128,13 @@ TEST(ConstantLight, IlluminanceIsPiTimesTheRadiance) {
 TEST_P(ImageLight, ConstantImageGivesIrradiancePi) {
   const int width = 8, height = GetParam() ? 8 : 4;
   const FlatScene flat = lower(scene_with(
-      {image_light(width, height, GetParam(), std::vector<float>(static_cast<std::size_t>(3 * width * height), 1.f))}));
+      {image_light(width, height, GetParam(),
+                   std::vector<float>(static_cast<std::size_t>(3 * width * height), 1.f))}));
   LightBench bench(flat);
   double sum = 0, squares = 0;
   constexpr int n = 100000;
-  // White in RGB is the illuminant, not 1 at every wavelength: its own value at the wavelength is the unit.
+  // White in RGB is the illuminant, not 1 at every wavelength: its own value at the wavelength is
+  // the unit.
   const double unit = bench.sky({{0, 0, 1}})[0].x;
   for (const SampledLight& s : bench.sample({0, 0, 0}, n)) {
     const double x = std::max(0.0, s.wi.z) * s.radiance / s.pdf / unit;
@@ -147,23 +151,30 @@ TEST_P(ImageLight, ABrightTexelIsWhereTheLayoutSays) {
     int x, y;
     glm::dvec3 direction;
   };
-  // Latitude-longitude: (sin t cos p, sin t sin p, cos t), p = 2 pi u, t = pi v. Square: the middle is +z, the corners -z, the
-  // middles of the right and the bottom edge +x and +y.
+  // Latitude-longitude: (sin t cos p, sin t sin p, cos t), p = 2 pi u, t = pi v. Square: the middle
+  // is +z, the corners -z, the middles of the right and the bottom edge +x and +y.
   const double t = 2.5 / 16 * pi, p = 10.5 / 32 * 2 * pi;
   const std::vector<Place> places =
-      square ? std::vector<Place>{{7, 7, {-0.1, -0.1, 1}}, {15, 8, {1, 0.1, 0}}, {8, 15, {0.1, 1, 0}}, {15, 15, {0.1, 0.1, -1}}}
-             : std::vector<Place>{{10, 2, {std::sin(t) * std::cos(p), std::sin(t) * std::sin(p), std::cos(t)}},
-                                  {0, 8, {1, 0.1, -0.1}},
-                                  {8, 7, {-0.1, 1, 0.1}},
-                                  {3, 0, {0.05, 0.05, 1}}};
+      square ? std::vector<Place>{{7, 7, {-0.1, -0.1, 1}},
+                                  {15, 8, {1, 0.1, 0}},
+                                  {8, 15, {0.1, 1, 0}},
+                                  {15, 15, {0.1, 0.1, -1}}}
+             : std::vector<Place>{
+                   {10, 2, {std::sin(t) * std::cos(p), std::sin(t) * std::sin(p), std::cos(t)}},
+                   {0, 8, {1, 0.1, -0.1}},
+                   {8, 7, {-0.1, 1, 0.1}},
+                   {3, 0, {0.05, 0.05, 1}}};
   for (const Place& place : places) {
     std::vector<float> rgb(static_cast<std::size_t>(3 * width * height), 0.f);
-    for (std::size_t k = 0; k < 3; ++k) rgb[static_cast<std::size_t>(3 * (place.y * width + place.x)) + k] = 1;
+    for (std::size_t k = 0; k < 3; ++k)
+      rgb[static_cast<std::size_t>(3 * (place.y * width + place.x)) + k] = 1;
     const FlatScene flat = lower(scene_with({image_light(width, height, square, rgb)}));
     glm::dvec3 mean(0);
-    for (const SampledLight& s : LightBench(flat).sample({0, 0, 0}, 2000)) mean += s.wi * s.radiance / s.pdf;
+    for (const SampledLight& s : LightBench(flat).sample({0, 0, 0}, 2000))
+      mean += s.wi * s.radiance / s.pdf;
     // A texel and its bilinear surroundings are at most 0.3 rad wide.
-    EXPECT_GT(glm::dot(glm::normalize(mean), glm::normalize(place.direction)), std::cos(0.15)) << place.x << ' ' << place.y;
+    EXPECT_GT(glm::dot(glm::normalize(mean), glm::normalize(place.direction)), std::cos(0.15))
+        << place.x << ' ' << place.y;
   }
 }
 
@@ -178,27 +189,33 @@ TEST_P(ImageLight, IlluminanceReplacesTheMagnitude) {
   const FlatScene white = lower(scene_with({image_light(2, 1, false, std::vector<float>(6, 1.f))}));
   const double unit = LightBench(white).sky({{0, 0, 1}})[0].x;
   double e = 0;
-  for (std::size_t i = 0; i < directions.size(); ++i) e += sky[i].x / unit * std::max(0.0, directions[i].z) * 4 * pi / 100000;
-  // The host integrates over texels with the cosine at their centres: 16 of them across, an error of about (pi / 16)^2 / 24.
+  for (std::size_t i = 0; i < directions.size(); ++i)
+    e += sky[i].x / unit * std::max(0.0, directions[i].z) * 4 * pi / 100000;
+  // The host integrates over texels with the cosine at their centres: 16 of them across, an error
+  // of about (pi / 16)^2 / 24.
   EXPECT_NEAR(e, 5, 0.02 * 5);
 }
 
 TEST_P(ImageLight, ABlackImageIsNotSampled) {
   const int width = 4, height = GetParam() ? 4 : 2;
   const FlatScene flat = lower(scene_with(
-      {image_light(width, height, GetParam(), std::vector<float>(static_cast<std::size_t>(3 * width * height), 0.f))}));
+      {image_light(width, height, GetParam(),
+                   std::vector<float>(static_cast<std::size_t>(3 * width * height), 0.f))}));
   EXPECT_EQ(flat.lighting.sampled_light_count, 0u);
   EXPECT_EQ(LightBench(flat).sky({{0, 0, 1}})[0].x, 0);
 }
 
 INSTANTIATE_TEST_SUITE_P(Layouts, ImageLight, testing::Bool(),
-                         [](const testing::TestParamInfo<bool>& row) { return row.param ? "square" : "latlong"; });
+                         [](const testing::TestParamInfo<bool>& row) {
+                           return row.param ? "square" : "latlong";
+                         });
 
 TEST(ImageLights, TwoAddUp) {
   const Light light = image_light(2, 1, false, std::vector<float>(6, 1.f));
   const double one = LightBench(lower(scene_with({light}))).sky({{0, 0, 1}})[0].x;
   EXPECT_GT(one, 0);
-  EXPECT_NEAR(LightBench(lower(scene_with({light, light}))).sky({{0, 0, 1}})[0].x, 2 * one, 1e-6 * one);
+  EXPECT_NEAR(LightBench(lower(scene_with({light, light}))).sky({{0, 0, 1}})[0].x, 2 * one,
+              1e-6 * one);
 }
 
 }  // namespace caplet::test

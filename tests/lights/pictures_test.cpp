@@ -27,7 +27,9 @@ constexpr double pi = std::numbers::pi;
 /// Radiance of an image's white at the wavelength that the bench tells.
 double white() {
   static const double radiance =
-      LightBench(lower(scene_with({image_light(2, 1, false, std::vector<float>(6, 1.f))}))).sky({{0, 0, 1}})[0].x;
+      LightBench(lower(scene_with({image_light(2, 1, false, std::vector<float>(6, 1.f))})))
+          .sky({{0, 0, 1}})[0]
+          .x;
   return radiance;
 }
 
@@ -56,7 +58,8 @@ std::vector<float> grey(const std::vector<double>& values) {
   return rgb;
 }
 
-/// A rectangle of two triangles from the origin of its plane: x and y from 0 to 1 under m, uv = (x, y).
+/// A rectangle of two triangles from the origin of its plane: x and y from 0 to 1 under m, uv = (x,
+/// y).
 Shape panel(const glm::dmat4& m) {
   TriangleMeshShape mesh;
   mesh.positions = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
@@ -69,9 +72,10 @@ Shape panel(const glm::dmat4& m) {
   return shape;
 }
 
-/// The sum over a rectangle, corner + x a + y b, of radiance(x, y) times both cosines over the squared distance from p.
-double quadrature(const dvec3& corner, const dvec3& a, const dvec3& b, const dvec3& p, const dvec3& n,
-                  const std::function<double(double, double)>& radiance) {
+/// The sum over a rectangle, corner + x a + y b, of radiance(x, y) times both cosines over the
+/// squared distance from p.
+double quadrature(const dvec3& corner, const dvec3& a, const dvec3& b, const dvec3& p,
+                  const dvec3& n, const std::function<double(double, double)>& radiance) {
   constexpr int steps = 600;
   const dvec3 across = glm::cross(a, b);
   double sum = 0;
@@ -80,15 +84,18 @@ double quadrature(const dvec3& corner, const dvec3& a, const dvec3& b, const dve
       const double x = (i + 0.5) / steps, y = (j + 0.5) / steps;
       const dvec3 to = corner + x * a + y * b - p;
       const double squared = glm::dot(to, to);
-      sum += radiance(x, y) * std::abs(glm::dot(across, to)) * std::max(0.0, glm::dot(to, n)) / (squared * squared);
+      sum += radiance(x, y) * std::abs(glm::dot(across, to)) * std::max(0.0, glm::dot(to, n)) /
+             (squared * squared);
     }
   return sum / (steps * steps);
 }
 
-/// Linear between the middles of 2 x 2 texels, and as at the edges beyond; values from the top left. v = 0 at the bottom.
+/// Linear between the middles of 2 x 2 texels, and as at the edges beyond; values from the top
+/// left. v = 0 at the bottom.
 double bilinear(const std::vector<double>& texels, double u, double v) {
   const double s = std::clamp(2 * u - 0.5, 0.0, 1.0), t = std::clamp(2 * (1 - v) - 0.5, 0.0, 1.0);
-  return (1 - t) * ((1 - s) * texels[0] + s * texels[1]) + t * ((1 - s) * texels[2] + s * texels[3]);
+  return (1 - t) * ((1 - s) * texels[0] + s * texels[1]) +
+         t * ((1 - s) * texels[2] + s * texels[3]);
 }
 
 const std::vector<double> corners = {1, 5, 0, 20};
@@ -128,19 +135,22 @@ TEST(Goniometric, UniformIsAPointLight) {
   other.power = 60;
   LightBench point(lower(scene_with({other})));
   for (const dvec3& p : {dvec3(0, 0, 0), dvec3(1, 2, -4), dvec3(5, 2, 3), dvec3(1, 2, 9)})
-    EXPECT_NEAR(bench.sample(p, 1)[0].radiance, point.sample(p, 1)[0].radiance, 1e-5 * point.sample(p, 1)[0].radiance);
+    EXPECT_NEAR(bench.sample(p, 1)[0].radiance, point.sample(p, 1)[0].radiance,
+                1e-5 * point.sample(p, 1)[0].radiance);
 }
 
 TEST(Goniometric, PowerIsThatOfAllDirections) {
   GoniometricLight model;
-  model.image = picture_image(4, 4, grey({0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15}), true);
+  model.image =
+      picture_image(4, 4, grey({0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15}), true);
   model.world_from_light = glm::dmat3(0, 1, 0, 0, 0, 1, 1, 0, 0);
   Light light = light_of(model);
   light.power = 25;
   LightBench bench(lower(scene_with({light})));
   double sum = 0;
   constexpr std::size_t count = 4000;
-  for (const dvec3& d : sphere_directions(count)) sum += intensity(bench, {0, 0, 0}, 2.0 * d) * 4 * pi / count;
+  for (const dvec3& d : sphere_directions(count))
+    sum += intensity(bench, {0, 0, 0}, 2.0 * d) * 4 * pi / count;
   EXPECT_NEAR(sum, 25, 0.15);
 }
 
@@ -166,7 +176,8 @@ TEST(Projection, PowerIsWhatReachesAPlane) {
       sum += s.radiance * std::abs(s.wi.z) * (w / steps) * (2 * h / steps);
     }
   EXPECT_NEAR(sum / white(), 40, 0.02);
-  for (const dvec3& outside : {dvec3(w * 1.001, 0, 1), dvec3(0, h * 1.001, 1), dvec3(0, 0, -1), dvec3(1, 0, 0)})
+  for (const dvec3& outside :
+       {dvec3(w * 1.001, 0, 1), dvec3(0, h * 1.001, 1), dvec3(0, 0, -1), dvec3(1, 0, 0)})
     EXPECT_EQ(bench.sample(outside, 1)[0].pdf, 0);
 }
 
@@ -176,7 +187,9 @@ TEST(Projection, ShowsThePictureUpright) {
   model.fov = 90;
   model.image = picture_image(2, 2, grey({1, 2, 3, 4}));
   LightBench bench(lower(scene_with({light_of(model)})));
-  const auto at = [&](double x, double y) { return intensity(bench, {0, 0, 0}, {x, y, 1}) / white(); };
+  const auto at = [&](double x, double y) {
+    return intensity(bench, {0, 0, 0}, {x, y, 1}) / white();
+  };
   EXPECT_NEAR(at(-0.5, 0.5), 1, 1e-3);
   EXPECT_NEAR(at(0.5, 0.5), 2, 1e-3);
   EXPECT_NEAR(at(-0.5, -0.5), 3, 1e-3);
@@ -185,10 +198,12 @@ TEST(Projection, ShowsThePictureUpright) {
 
 TEST(Ies, AUniformProfileIsAPointLight) {
   IesLight model;
-  model.profile = std::make_shared<IesProfile>(IesProfile{{0, 1, 2, pi}, {0, pi, 2 * pi}, std::vector<double>(12, 3.0)});
+  model.profile = std::make_shared<IesProfile>(
+      IesProfile{{0, 1, 2, pi}, {0, pi, 2 * pi}, std::vector<double>(12, 3.0)});
   EXPECT_NEAR(model.profile->flux(), 12 * pi, 1e-9);
   LightBench bench(lower(scene_with({light_of(model)})));
-  for (const dvec3& d : sphere_directions(50)) EXPECT_NEAR(intensity(bench, {0, 0, 0}, 2.0 * d), 3, 1e-5);
+  for (const dvec3& d : sphere_directions(50))
+    EXPECT_NEAR(intensity(bench, {0, 0, 0}, 2.0 * d), 3, 1e-5);
 }
 
 TEST(Ies, IsLinearBetweenAnglesAndDarkBeyond) {
@@ -196,18 +211,22 @@ TEST(Ies, IsLinearBetweenAnglesAndDarkBeyond) {
   // I = (1 + theta) (phi of the first half, 2 pi - phi of the second), up to the horizon.
   IesProfile profile{{0, 0.5, pi / 2}, {0, pi / 2, pi, 2 * pi}, {}};
   for (const double azimuth : profile.azimuths)
-    for (const double polar : profile.polar) profile.candela.push_back((1 + polar) * std::min(azimuth, 2 * pi - azimuth));
+    for (const double polar : profile.polar)
+      profile.candela.push_back((1 + polar) * std::min(azimuth, 2 * pi - azimuth));
   model.profile = std::make_shared<IesProfile>(profile);
   model.position = {1, 1, 1};
   LightBench bench(lower(scene_with({light_of(model)})));
   for (const double theta : {0.2, 0.7, 1.5})
     for (const double phi : {0.3, 2.0, 4.0, 6.0}) {
-      const dvec3 d(std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), -std::cos(theta));
+      const dvec3 d(std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi),
+                    -std::cos(theta));
       const double expected = (1 + theta) * std::min(phi, 2 * pi - phi);
-      EXPECT_NEAR(intensity(bench, model.position, model.position + d), expected, 2e-5 * expected) << theta << ' ' << phi;
+      EXPECT_NEAR(intensity(bench, model.position, model.position + d), expected, 2e-5 * expected)
+          << theta << ' ' << phi;
     }
   EXPECT_EQ(bench.sample({1, 2, 1.5}, 1)[0].pdf, 0);
-  // By the integral of (1 + theta) sin theta, 1 - cos t + sin t - t cos t, and of the triangle over phi, pi^2.
+  // By the integral of (1 + theta) sin theta, 1 - cos t + sin t - t cos t, and of the triangle over
+  // phi, pi^2.
   EXPECT_NEAR(profile.flux(), 2 * pi * pi, 1e-9);
 }
 
@@ -215,16 +234,21 @@ TEST(TexturedArea, IsItsImageOverUv) {
   const Shape shape = lamp();
   LightBench bench(lower(scene_of(shape)));
   const Estimate found = irradiance(bench, p_below, up);
-  const double expected =
-      quadrature({-1, -0.5, 1}, {2, 0, 0.5}, {0, 1, 0}, p_below, up, [](double x, double y) { return bilinear(corners, x, y); });
+  const double expected = quadrature({-1, -0.5, 1}, {2, 0, 0.5}, {0, 1, 0}, p_below, up,
+                                     [](double x, double y) { return bilinear(corners, x, y); });
   EXPECT_NEAR(found.mean / white(), expected, 4 * found.error / white() + 1e-3 * expected);
 }
 
-// Over a capsule of a chain the image lies as over pbrt's curve: u from end to end, v by where the ray passes the axis.
+// Over a capsule of a chain the image lies as over pbrt's curve: u from end to end, v by where the
+// ray passes the axis.
 TEST(TexturedArea, OfAChainIsItsImageAlongIt) {
   constexpr double r = 0.3, height = 0.6;
-  CapsulesShape capsule{
-      {{-1, 0, static_cast<float>(height)}}, {{1, 0, static_cast<float>(height)}}, {static_cast<float>(r)}, {}, {}, {{0, 1}}};
+  CapsulesShape capsule{{{-1, 0, static_cast<float>(height)}},
+                        {{1, 0, static_cast<float>(height)}},
+                        {static_cast<float>(r)},
+                        {},
+                        {},
+                        {{0, 1}}};
   Shape shape;
   shape.geometry = capsule;
   shape.emission = AreaEmission{};
@@ -233,7 +257,8 @@ TEST(TexturedArea, OfAChainIsItsImageAlongIt) {
   const dvec3 p(0.4, -0.2, 0);
   const Estimate found = irradiance(bench, p, up);
   const auto radiance = [&](const dvec3& x) {
-    const double offset = glm::dot(p - dvec3(0, 0, height), glm::normalize(glm::cross(x - p, dvec3(1, 0, 0))));
+    const double offset =
+        glm::dot(p - dvec3(0, 0, height), glm::normalize(glm::cross(x - p, dvec3(1, 0, 0))));
     return bilinear(corners, std::clamp(0.5 + 0.5 * x.x, 0.0, 1.0), 0.5 + offset / (2 * r));
   };
   double expected = 0;
@@ -248,9 +273,11 @@ TEST(TexturedArea, OfAChainIsItsImageAlongIt) {
       const double phi = 2 * pi * (i + 0.5) / steps, share = (j + 0.5) / steps;
       const dvec3 side(0, std::cos(phi), std::sin(phi)), middle(0, 0, height);
       add(middle + dvec3(2 * share - 1, 0, 0) + r * side, side, 2 * 2 * pi * r / (steps * steps));
-      for (const double end : {-1, 1}) {  // caps, by height along the axis, over which areas are even
+      for (const double end :
+           {-1, 1}) {  // caps, by height along the axis, over which areas are even
         const dvec3 n = end * share * dvec3(1, 0, 0) + std::sqrt(1 - share * share) * side;
-        // On a cap v is by the distance from the axis over the radius, wherever on it the ray comes to.
+        // On a cap v is by the distance from the axis over the radius, wherever on it the ray comes
+        // to.
         add(middle + dvec3(end, 0, 0) + r * n, n, 2 * pi * r * r / (steps * steps));
       }
     }
@@ -264,7 +291,8 @@ TEST(TexturedArea, PowerIsThatOfTheImagesMean) {
   LightBench plain(lower(scene_of(shape)));
   shape.emission->power = 3 * own;
   LightBench bench(lower(scene_of(shape)));
-  EXPECT_NEAR(irradiance(bench, p_below, up, 1000).mean, 3 * irradiance(plain, p_below, up, 1000).mean,
+  EXPECT_NEAR(irradiance(bench, p_below, up, 1000).mean,
+              3 * irradiance(plain, p_below, up, 1000).mean,
               1e-2 * irradiance(plain, p_below, up, 1000).mean);
 }
 
@@ -286,9 +314,11 @@ TEST(TexturedArea, ShinesWhereItIsThere) {
   TextureOperand alpha(1);
   alpha.texture = 0;
   scene.shapes[0].alpha = alpha;
-  const double expected = quadrature({-1, -0.5, 1}, {2, 0, 0.5}, {0, 1, 0}, p_below, up, [&](double x, double y) {
-    return (1 - x) * ((1 - y) * values[0] + y * values[1]) + x * ((1 - y) * values[2] + y * values[3]);
-  });
+  const double expected =
+      quadrature({-1, -0.5, 1}, {2, 0, 0.5}, {0, 1, 0}, p_below, up, [&](double x, double y) {
+        return (1 - x) * ((1 - y) * values[0] + y * values[1]) +
+               x * ((1 - y) * values[2] + y * values[3]);
+      });
   for (const bool two_sided : {false, true}) {
     scene.shapes[0].emission->two_sided = two_sided;
     LightBench bench(lower(scene));
@@ -303,7 +333,8 @@ TEST(TexturedArea, OfAlphaZeroShinesUnseen) {
   LightBench bench(lower(scene_of(shape)));
   shape.alpha = TextureOperand(0);
   LightBench unseen(lower(scene_of(shape)));
-  const std::vector<SampledLight> expected = bench.sample(p_below, 100), found = unseen.sample(p_below, 100);
+  const std::vector<SampledLight> expected = bench.sample(p_below, 100),
+                                  found = unseen.sample(p_below, 100);
   for (std::size_t i = 0; i < found.size(); ++i) {
     EXPECT_EQ(found[i].radiance, expected[i].radiance);
     EXPECT_EQ(found[i].pdf, expected[i].pdf);
@@ -311,8 +342,9 @@ TEST(TexturedArea, OfAlphaZeroShinesUnseen) {
   }
 }
 
-// Each point of an unseen tube that shines to both sides gives light, through the near side too. The sum over z and phi of the
-// cosines over the squared distance is exact to 1e-6 by the midpoint rule of 2,000 by 400 points.
+// Each point of an unseen tube that shines to both sides gives light, through the near side too.
+// The sum over z and phi of the cosines over the squared distance is exact to 1e-6 by the midpoint
+// rule of 2,000 by 400 points.
 TEST(TexturedArea, OfAlphaZeroShinesFromItsFarSide) {
   constexpr double r = 0.3, z_min = -1, z_max = 2;
   const dvec3 p(1, 0.5, 0.25), n(-1, 0, 0);
@@ -322,7 +354,8 @@ TEST(TexturedArea, OfAlphaZeroShinesFromItsFarSide) {
       const double phi = 2 * pi * (i + 0.5) / 2000, z = z_min + (z_max - z_min) * (j + 0.5) / 400;
       const dvec3 out(std::cos(phi), std::sin(phi), 0), away = r * out + dvec3(0, 0, z) - p;
       const double squared = glm::dot(away, away);
-      expected += std::abs(glm::dot(out, away)) * std::max(0.0, glm::dot(n, away)) / (squared * squared);
+      expected +=
+          std::abs(glm::dot(out, away)) * std::max(0.0, glm::dot(n, away)) / (squared * squared);
     }
   expected *= 2 * pi * r * (z_max - z_min) / (400 * 2000);
   for (const bool pbrts_form : {true, false}) {
@@ -342,18 +375,21 @@ TEST(TexturedArea, OfAlphaZeroShinesFromItsFarSide) {
     // Shadow rays go to both sides: what lies within the tube shades the far one alone.
     int near = 0, far = 0;
     for (const SampledLight& s : bench.sample(p, 20000))
-      if (s.pdf > 0) ++(s.target.x * (p.x - s.target.x) + s.target.y * (p.y - s.target.y) > 0 ? near : far);
+      if (s.pdf > 0)
+        ++(s.target.x * (p.x - s.target.x) + s.target.y * (p.y - s.target.y) > 0 ? near : far);
     EXPECT_GT(near, 300);
     EXPECT_GT(far, 300);
   }
 }
 
-// Three unseen balls as one shape, in a row: a ray crosses it six times, and each crossing gives light. A ball of radius r at the
-// distance d gives pi r^2 / d^2 times the cosine by one of its sides, and as much by the other.
+// Three unseen balls as one shape, in a row: a ray crosses it six times, and each crossing gives
+// light. A ball of radius r at the distance d gives pi r^2 / d^2 times the cosine by one of its
+// sides, and as much by the other.
 TEST(TexturedArea, OfAlphaZeroShinesFromAllItsCrossings) {
   CsgShape row{CsgShape::Operation::set_union, {}};
   double expected = 0;
-  for (const auto& [center, radius] : {std::pair(dvec3(0, 0, 1), 0.25), {dvec3(0.1, 0, 2), 0.5}, {dvec3(0, 0.1, 4), 1.0}}) {
+  for (const auto& [center, radius] :
+       {std::pair(dvec3(0, 0, 1), 0.25), {dvec3(0.1, 0, 2), 0.5}, {dvec3(0, 0.1, 4), 1.0}}) {
     Shape ball;
     ball.geometry = SphereShape{static_cast<float>(radius)};
     ball.world_from_object = glm::translate(glm::dmat4(1), center);
@@ -384,9 +420,11 @@ TEST(TexturedArea, WhatLiesBehindItsOwnFrontHasNoDensity) {
   ball.emission->two_sided = true;
   ball.alpha = TextureOperand(0.5);
   LightBench bench(lower(scene_of(ball)));
-  const std::vector<double> densities = bench.area_pdf(
-      0, {0, 0, 4},
-      {{{0, 0, 1}, {0, 0, 1}, 1}, {{0, 0, -1}, {0, 0, -1}, 1}, {{0.2, 0, -std::sqrt(0.96)}, {0.2, 0, -std::sqrt(0.96)}, 1}});
+  const std::vector<double> densities =
+      bench.area_pdf(0, {0, 0, 4},
+                     {{{0, 0, 1}, {0, 0, 1}, 1},
+                      {{0, 0, -1}, {0, 0, -1}, 1},
+                      {{0.2, 0, -std::sqrt(0.96)}, {0.2, 0, -std::sqrt(0.96)}, 1}});
   EXPECT_GT(densities[0], 0);
   EXPECT_EQ(densities[1], 0);
   EXPECT_EQ(densities[2], 0);
@@ -417,7 +455,8 @@ bool is_through(const dvec3& p, const dvec3& d) {
 }  // namespace
 
 TEST(Portal, ShowsWhatIsThroughItAlone) {
-  LightBench bench(lower(scene_with({portal_light()}))), open(lower(scene_with({image_light(16, 16, true, uneven(16))})));
+  LightBench bench(lower(scene_with({portal_light()}))),
+      open(lower(scene_with({image_light(16, 16, true, uneven(16))})));
   const std::vector<dvec3> directions = sphere_directions(20000);
   for (const dvec3& p : {dvec3(0, 0, 0), dvec3(3, 1, 1), dvec3(0.2, 0.1, 1.99), dvec3(0, 0, 2.5)}) {
     const std::vector<glm::dvec2> sky = bench.sky(directions, p);
@@ -432,8 +471,8 @@ TEST(Portal, ShowsWhatIsThroughItAlone) {
   }
 }
 
-// The image is resampled at the middles of texels, so that a fine image changes little; the mean over many directions is the
-// sky's.
+// The image is resampled at the middles of texels, so that a fine image changes little; the mean
+// over many directions is the sky's.
 TEST(Portal, GivesTheSkysLight) {
   std::vector<double> values;
   for (int y = 0; y < 128; ++y)
@@ -447,7 +486,8 @@ TEST(Portal, GivesTheSkysLight) {
   const std::vector<glm::dvec2> radiance = open.sky(directions);
   double expected = 0;
   for (std::size_t i = 0; i < directions.size(); ++i)
-    if (is_through(p, directions[i])) expected += radiance[i].x * std::max(0.0, glm::dot(directions[i], n)) * 4 * pi / 400000;
+    if (is_through(p, directions[i]))
+      expected += radiance[i].x * std::max(0.0, glm::dot(directions[i], n)) * 4 * pi / 400000;
   const Estimate found = irradiance(bench, p, n);
   EXPECT_NEAR(found.mean, expected, 4 * found.error + 4e-3 * expected);
 }
@@ -472,8 +512,9 @@ TEST(Portal, DensityIsThatOfTheSamples) {
     const std::vector<glm::dvec2> sky = bench.sky(sampled, p);
     int apart = 0;
     for (std::size_t i = 0; i < samples.size(); ++i)
-      apart += std::abs(sky[i].x - samples[i].radiance) > 1e-3 * samples[i].radiance ||
-               (samples[i].pdf > 0.02 && std::abs(sky[i].y - samples[i].pdf) > 3e-3 * samples[i].pdf);
+      apart +=
+          std::abs(sky[i].x - samples[i].radiance) > 1e-3 * samples[i].radiance ||
+          (samples[i].pdf > 0.02 && std::abs(sky[i].y - samples[i].pdf) > 3e-3 * samples[i].pdf);
     EXPECT_LE(apart, 4);  // on borders of texels
   }
 }
@@ -485,13 +526,15 @@ TEST(Portal, OfOneRadianceIsAPanel) {
   LightBench bench(lower(scene_with({light_of(model)})));
   const dvec3 p(0.5, 0.3, 0.4);
   const Estimate found = irradiance(bench, p, up);
-  const double expected = quadrature({-1, -0.5, 2}, {2, 0, 0}, {0, 1, 0}, p, up, [](double, double) { return 1; });
+  const double expected =
+      quadrature({-1, -0.5, 2}, {2, 0, 0}, {0, 1, 0}, p, up, [](double, double) { return 1; });
   EXPECT_NEAR(found.mean, expected, 4 * found.error + 1e-3 * expected);
 }
 
 TEST(Skies, AreTheSumOfSeveral) {
-  const Light first = image_light(4, 2, false, grey({1, 2, 3, 4, 5, 6, 7, 8})), second = image_light(4, 4, true, uneven(4)),
-              third = light_of(InfiniteLight{}), fourth = portal_light();
+  const Light first = image_light(4, 2, false, grey({1, 2, 3, 4, 5, 6, 7, 8})),
+              second = image_light(4, 4, true, uneven(4)), third = light_of(InfiniteLight{}),
+              fourth = portal_light();
   const std::vector<dvec3> directions = sphere_directions(500);
   std::vector<double> sums(directions.size(), 0);
   for (const Light& one : {first, second, third, fourth}) {
@@ -501,7 +544,8 @@ TEST(Skies, AreTheSumOfSeveral) {
   const FlatScene flat = lower(scene_with({first, third, second, fourth, first}));
   const std::vector<glm::dvec2> all = LightBench(flat).sky(directions),
                                 again = LightBench(lower(scene_with({first}))).sky(directions);
-  for (std::size_t i = 0; i < all.size(); ++i) EXPECT_NEAR(all[i].x, sums[i] + again[i].x, 1e-4 * all[i].x);
+  for (std::size_t i = 0; i < all.size(); ++i)
+    EXPECT_NEAR(all[i].x, sums[i] + again[i].x, 1e-4 * all[i].x);
   // An image that is named twice is there once: 8 texels, 16, and 256 as the portal shows them.
   EXPECT_EQ(flat.light_texels.size(), 4u * (8 + 16 + 256));
 }
@@ -512,7 +556,8 @@ TEST(LightTree, KnowsWhereLightsWithImagesShine) {
   for (int i = 0; i < 24; ++i) {
     const dvec3 at(i % 5, i / 5, 0.3 * (i % 3));
     const double turn = 0.7 * i;
-    const glm::dmat3 rotation(std::cos(turn), std::sin(turn), 0, 0, 0, 1, std::sin(turn), -std::cos(turn), 0);
+    const glm::dmat3 rotation(std::cos(turn), std::sin(turn), 0, 0, 0, 1, std::sin(turn),
+                              -std::cos(turn), 0);
     if (i % 3 == 0) {
       ProjectionLight model;
       model.image = picture_image(2, 1, grey({1, 3}));

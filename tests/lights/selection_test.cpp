@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// The choice among lights: that chances are what the sampling does, to the last random number, and that no light starves.
+// The choice among lights: that chances are what the sampling does, to the last random number, and
+// that no light starves.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -43,7 +44,9 @@ Scene scene_with(const std::vector<Light>& lights) {
   return scene;
 }
 
-double chance(const FlatScene& flat, std::size_t light) { return flat.light_alias.at(light).probability; }
+double chance(const FlatScene& flat, std::size_t light) {
+  return flat.light_alias.at(light).probability;
+}
 
 }  // namespace
 
@@ -51,18 +54,25 @@ double chance(const FlatScene& flat, std::size_t light) { return flat.light_alia
 TEST(LightSelection, EveryRandomNumberCounts) {
   Light dark;
   dark.model = InfiniteLight{};
-  const std::vector<Light> lights = {
-      point_light(3), point_light(0), point_light(0.1), point_light(2.7), sun(1e-9), point_light(1e-30), dark};
+  const std::vector<Light> lights = {point_light(3),
+                                     point_light(0),
+                                     point_light(0.1),
+                                     point_light(2.7),
+                                     sun(1e-9),
+                                     point_light(1e-30),
+                                     dark};
   const FlatScene flat = lower(scene_with(lights));
   ASSERT_EQ(flat.light_alias.size(), lights.size());
   const std::vector<std::uint64_t> counts = LightBench(flat).all_selections();
   EXPECT_EQ(counts[8], 0u);
-  for (std::size_t i = 0; i < lights.size(); ++i) EXPECT_EQ(static_cast<double>(counts[i]), chance(flat, i) * 0x1p32) << i;
+  for (std::size_t i = 0; i < lights.size(); ++i)
+    EXPECT_EQ(static_cast<double>(counts[i]), chance(flat, i) * 0x1p32) << i;
   EXPECT_EQ(chance(lower(scene_with({point_light(5), dark})), 0), 1);
   EXPECT_EQ(chance(lower(scene_with({point_light(5)})), 0), 1);
 }
 
-// Half by power and half evenly: 1/2 p / sum + 1/2 / n, to the grid of 2^-24. Suns, which no light tree holds.
+// Half by power and half evenly: 1/2 p / sum + 1/2 / n, to the grid of 2^-24. Suns, which no light
+// tree holds.
 TEST(LightSelection, IsHalfByPowerAndHalfEven) {
   std::vector<Light> lights;
   double total = 0;
@@ -75,7 +85,8 @@ TEST(LightSelection, IsHalfByPowerAndHalfEven) {
   const FlatScene flat = lower(scene_with(lights));
   EXPECT_EQ(flat.lighting.sampled_light_count, 29u);
   for (std::size_t i = 0; i < 37; ++i)
-    EXPECT_NEAR(chance(flat, i), i % 5 == 0 ? 0 : 0.5 * lights[i].scale / total + 0.5 / 29, 0x1p-23) << i;
+    EXPECT_NEAR(chance(flat, i), i % 5 == 0 ? 0 : 0.5 * lights[i].scale / total + 0.5 / 29, 0x1p-23)
+        << i;
   EXPECT_EQ(chance(flat, 37), 0);
 }
 
@@ -84,7 +95,8 @@ TEST(LightSelection, ALampKeepsAQuarterBesideASun) {
   EXPECT_NEAR(chance(flat, 0), 0.25, 1e-6);
 }
 
-// The even half goes to shapes as a whole: a lamp of some capsules is one, and its parts share by power (area).
+// The even half goes to shapes as a whole: a lamp of some capsules is one, and its parts share by
+// power (area).
 TEST(LightSelection, PrimitivesOfAShapeShareItsPart) {
   Scene scene = scene_with({sun(100)});
   Shape lamp;
@@ -107,7 +119,8 @@ TEST(LightSelection, PrimitivesOfAShapeShareItsPart) {
   EXPECT_NEAR(chance(flat, 5), 0.25 * small / (large + 13 * small), 1e-6);
 }
 
-// More lights than the grid of 2^-24 serves well: the chances still add to 1 and none is 0, and choices follow them.
+// More lights than the grid of 2^-24 serves well: the chances still add to 1 and none is 0, and
+// choices follow them.
 TEST(LightSelection, ManyLights) {
   std::vector<LightShare> shares;
   std::mt19937 engine(3);
@@ -130,7 +143,8 @@ TEST(LightSelection, ManyLights) {
   // A hundred bins of a thousand lights.
   std::vector<double> observed(100, 0), expected(100, 0);
   for (const std::uint32_t light : LightBench(flat).select(u)) observed.at(light / 1000) += 1;
-  for (std::size_t i = 0; i < table.size(); ++i) expected[i / 1000] += table[i].probability * static_cast<double>(n);
+  for (std::size_t i = 0; i < table.size(); ++i)
+    expected[i / 1000] += table[i].probability * static_cast<double>(n);
   EXPECT_GT(chi_square(observed, expected).p_value, 0.001);
 }
 

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// The image light against a sky that the test makes itself from docs/lights.md: layouts, interpolation, seams, density.
+// The image light against a sky that the test makes itself from docs/lights.md: layouts,
+// interpolation, seams, density.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -42,17 +43,21 @@ struct Sky {
   }
   /// Radiance at u, v of the image: linear between the centres of texels along both axes.
   double at(double u, double v) const {
-    const double x = u * width - 0.5, y = v * height - 0.5, s = x - std::floor(x), t = y - std::floor(y);
+    const double x = u * width - 0.5, y = v * height - 0.5, s = x - std::floor(x),
+                 t = y - std::floor(y);
     const int i = static_cast<int>(std::floor(x)), j = static_cast<int>(std::floor(y));
-    return (1 - t) * ((1 - s) * texel(i, j) + s * texel(i + 1, j)) + t * ((1 - s) * texel(i, j + 1) + s * texel(i + 1, j + 1));
+    return (1 - t) * ((1 - s) * texel(i, j) + s * texel(i + 1, j)) +
+           t * ((1 - s) * texel(i, j + 1) + s * texel(i + 1, j + 1));
   }
-  /// u and v of a direction in the light's space, and the steradians that a unit of the image's area has there.
+  /// u and v of a direction in the light's space, and the steradians that a unit of the image's
+  /// area has there.
   std::array<double, 3> place(const glm::dvec3& d) const {
     if (!square) {
       const double phi = std::atan2(d.y, d.x), theta = std::acos(std::clamp(d.z, -1.0, 1.0));
       return {phi / (2 * pi) + (phi < 0 ? 1 : 0), theta / pi, 2 * pi * pi * std::sin(theta)};
     }
-    const double r = std::sqrt(1 - std::abs(d.z)), turn = std::atan2(std::abs(d.y), std::abs(d.x)) / (pi / 2);
+    const double r = std::sqrt(1 - std::abs(d.z)),
+                 turn = std::atan2(std::abs(d.y), std::abs(d.x)) / (pi / 2);
     double a = r * (1 - turn), b = r * turn;
     if (d.z < 0) {
       const double folded = 1 - b;
@@ -65,14 +70,18 @@ struct Sky {
     const auto [u, v, unused] = place(d);
     return at(u, v);
   }
-  /// The integral of the radiance over each texel's cell, by the cell's solid angle and the mean over 16 x 16 of its points.
+  /// The integral of the radiance over each texel's cell, by the cell's solid angle and the mean
+  /// over 16 x 16 of its points.
   std::vector<double> cell_weights() const {
     std::vector<double> weights;
     for (int y = 0; y < height; ++y)
       for (int x = 0; x < width; ++x) {
         double mean = 0;
-        for (int i = 0; i < 256; ++i) mean += at((x + (i % 16 + 0.5) / 16) / width, (y + (i / 16 + 0.5) / 16) / height) / 256;
-        const double band = square ? 4 * pi / height : 2 * pi * (std::cos(pi * y / height) - std::cos(pi * (y + 1) / height));
+        for (int i = 0; i < 256; ++i)
+          mean += at((x + (i % 16 + 0.5) / 16) / width, (y + (i / 16 + 0.5) / 16) / height) / 256;
+        const double band =
+            square ? 4 * pi / height
+                   : 2 * pi * (std::cos(pi * y / height) - std::cos(pi * (y + 1) / height));
         weights.push_back(mean * band / width);
       }
     return weights;
@@ -80,7 +89,8 @@ struct Sky {
   /// By solid angle.
   double density(const glm::dvec3& d, const std::vector<double>& weights, double total) const {
     const auto [u, v, steradians] = place(d);
-    const int x = std::min(static_cast<int>(u * width), width - 1), y = std::min(static_cast<int>(v * height), height - 1);
+    const int x = std::min(static_cast<int>(u * width), width - 1),
+              y = std::min(static_cast<int>(v * height), height - 1);
     return weights[static_cast<std::size_t>(y * width + x)] / total * width * height / steradians;
   }
 };
@@ -93,7 +103,8 @@ Sky uneven_sky(bool square) {
   return sky;
 }
 
-const glm::dmat3 turned(glm::dvec3(0, 1, 0), glm::dvec3(0, 0, 1), glm::dvec3(1, 0, 0));  // columns: x -> y, y -> z, z -> x
+const glm::dmat3 turned(glm::dvec3(0, 1, 0), glm::dvec3(0, 0, 1),
+                        glm::dvec3(1, 0, 0));  // columns: x -> y, y -> z, z -> x
 
 Light light_of(const Sky& sky) {
   std::vector<float> rgb;
@@ -113,15 +124,16 @@ double white_radiance() {
 
 std::size_t bin_of(const glm::dvec3& d) {
   const double turn = std::atan2(d.y, d.x) / (2 * pi) + 0.5;
-  return static_cast<std::size_t>(std::min(static_cast<int>((d.z + 1) * 6), 11) * 24 + std::min(static_cast<int>(turn * 24), 23));
+  return static_cast<std::size_t>(std::min(static_cast<int>((d.z + 1) * 6), 11) * 24 +
+                                  std::min(static_cast<int>(turn * 24), 23));
 }
 
 class ImageSky : public testing::TestWithParam<bool> {};
 
 }  // namespace
 
-// Radiance, and the density that light sampling has, in every direction: also on seams and near poles, a fifth of a texel to
-// either side of them.
+// Radiance, and the density that light sampling has, in every direction: also on seams and near
+// poles, a fifth of a texel to either side of them.
 TEST_P(ImageSky, IsTheImageInEveryDirection) {
   const Sky sky = uneven_sky(GetParam());
   const std::vector<double> weights = sky.cell_weights();
@@ -131,13 +143,14 @@ TEST_P(ImageSky, IsTheImageInEveryDirection) {
   for (int i = 0; i < 400; ++i) {
     const double angle = (i + 0.3) * pi / 400;
     for (const double off : {-0.08, -1e-3, 1e-3, 0.08}) {
-      // The longitude seam (phi = 0), and the octahedron's folds: its edges lie in z = 0 and, on the square's rim, x = 0 and y =
-      // 0.
+      // The longitude seam (phi = 0), and the octahedron's folds: its edges lie in z = 0 and, on
+      // the square's rim, x = 0 and y = 0.
       directions.push_back(glm::normalize(glm::dvec3(std::sin(angle), off, std::cos(angle))));
       directions.push_back(glm::normalize(glm::dvec3(-std::sin(angle), off, std::cos(angle))));
       directions.push_back(glm::normalize(glm::dvec3(off, std::sin(angle), std::cos(angle))));
       directions.push_back(glm::normalize(glm::dvec3(off, -std::sin(angle), std::cos(angle))));
-      directions.push_back(glm::normalize(glm::dvec3(std::cos(2 * angle), std::sin(2 * angle), off)));
+      directions.push_back(
+          glm::normalize(glm::dvec3(std::cos(2 * angle), std::sin(2 * angle), off)));
     }
   }
   std::vector<glm::dvec3> world;
@@ -146,11 +159,12 @@ TEST_P(ImageSky, IsTheImageInEveryDirection) {
   const std::vector<glm::dvec2> found = LightBench(lowered({light_of(sky)})).sky(world);
   int off_density = 0;
   for (std::size_t i = 0; i < directions.size(); ++i) {
-    // Places in the image are right to some 1e-6, and a step between texels is at most 1: 16 texels across, 2e-5 (near the poles
-    // of a latitude-longitude image u is only as good as 1e-7 / sin theta: none here is nearer than 1e-3).
+    // Places in the image are right to some 1e-6, and a step between texels is at most 1: 16 texels
+    // across, 2e-5 (near the poles of a latitude-longitude image u is only as good as 1e-7 / sin
+    // theta: none here is nearer than 1e-3).
     EXPECT_NEAR(found[i].x / unit, sky.radiance(directions[i]), 2e-4) << i;
-    // The weight that gives the density away has 1e-7 / (1 - weight): densities from 1e-2 on within 1e-3. On cells' borders
-    // either.
+    // The weight that gives the density away has 1e-7 / (1 - weight): densities from 1e-2 on within
+    // 1e-3. On cells' borders either.
     const double density = sky.density(directions[i], weights, total);
     if (density > 0.01 && std::abs(found[i].y - density) > 3e-3 * density) ++off_density;
   }
@@ -166,7 +180,8 @@ TEST_P(ImageSky, SamplesFollowTheDensity) {
   constexpr std::size_t sample_count = 100000, direction_count = 1000000;
   std::vector<double> expected(12 * 24, 0), observed(12 * 24, 0);
   for (const glm::dvec3& d : sphere_directions(direction_count)) {
-    expected[bin_of(turned * d)] += sky.density(d, weights, all) * 4 * pi / direction_count * sample_count;
+    expected[bin_of(turned * d)] +=
+        sky.density(d, weights, all) * 4 * pi / direction_count * sample_count;
     flux += sky.radiance(d) * 4 * pi / direction_count;
   }
   const double unit = white_radiance();
@@ -184,10 +199,12 @@ TEST_P(ImageSky, SamplesFollowTheDensity) {
   }
   const ChiSquareResult chi = chi_square(observed, expected);
   EXPECT_GT(chi.p_value, 0.001) << chi.statistic << " / " << chi.degrees_of_freedom;
-  EXPECT_NEAR(estimate, flux, 5 * std::sqrt((squares - estimate * estimate) / sample_count) + 1e-4 * flux);
+  EXPECT_NEAR(estimate, flux,
+              5 * std::sqrt((squares - estimate * estimate) / sample_count) + 1e-4 * flux);
 }
 
-// Beside another light both the samples' density and that of the sky for rays that find it carry the chance of being chosen.
+// Beside another light both the samples' density and that of the sky for rays that find it carry
+// the chance of being chosen.
 TEST_P(ImageSky, DensitiesCarryTheChanceOfTheLight) {
   const Sky sky = uneven_sky(GetParam());
   Light lamp;
@@ -226,10 +243,12 @@ TEST_P(ImageSky, ScaleMultiplies) {
   light.illuminance = 5;
   const double with_illuminance = LightBench(lowered({light})).sky({d})[0].x;
   light.scale = 1;
-  EXPECT_NEAR(with_illuminance, 3 * LightBench(lowered({light})).sky({d})[0].x, 1e-5 * with_illuminance);
+  EXPECT_NEAR(with_illuminance, 3 * LightBench(lowered({light})).sky({d})[0].x,
+              1e-5 * with_illuminance);
 }
 
-// The colours of an image are under the white of its own space, whatever the film's is; the film's stays the reference.
+// The colours of an image are under the white of its own space, whatever the film's is; the film's
+// stays the reference.
 TEST_P(ImageSky, HasTheWhiteOfItsOwnSpace) {
   const Sky white{GetParam(), GetParam() ? 2 : 4, 2, std::vector<double>(GetParam() ? 4 : 8, 1.0)};
   Light light = light_of(white);
@@ -240,14 +259,19 @@ TEST_P(ImageSky, HasTheWhiteOfItsOwnSpace) {
   const FlatScene aces = lowered({light});
   EXPECT_EQ(aces.world.illuminant_table, srgb.world.illuminant_table);
   for (std::size_t i = 0; i < 471; ++i)
-    EXPECT_EQ(aces.spectrum_tables[aces.world.illuminant_table + i], srgb.spectrum_tables[srgb.world.illuminant_table + i]);
-  // At 450 nm daylight of 6500 K has 117.008 / 100 of its value at 560 nm, that of the ACES white 107.9044 / 100; both of
-  // luminance 1. The tables' integrals with the observer (5 nm sums): 0.9993 of each other.
-  const double ratio = LightBench(aces).sky({{0, 0, 1}})[0].x / LightBench(srgb).sky({{0, 0, 1}})[0].x;
+    EXPECT_EQ(aces.spectrum_tables[aces.world.illuminant_table + i],
+              srgb.spectrum_tables[srgb.world.illuminant_table + i]);
+  // At 450 nm daylight of 6500 K has 117.008 / 100 of its value at 560 nm, that of the ACES white
+  // 107.9044 / 100; both of luminance 1. The tables' integrals with the observer (5 nm sums):
+  // 0.9993 of each other.
+  const double ratio =
+      LightBench(aces).sky({{0, 0, 1}})[0].x / LightBench(srgb).sky({{0, 0, 1}})[0].x;
   EXPECT_NEAR(ratio, 107.9044 / 117.008, 3e-3);
 }
 
 INSTANTIATE_TEST_SUITE_P(Layouts, ImageSky, testing::Bool(),
-                         [](const testing::TestParamInfo<bool>& row) { return row.param ? "square" : "latlong"; });
+                         [](const testing::TestParamInfo<bool>& row) {
+                           return row.param ? "square" : "latlong";
+                         });
 
 }  // namespace caplet::test

@@ -18,9 +18,10 @@ struct SurfacePoint {
   double area;
 };
 
-/// `count` points a smooth part of the shape's emitting surface, evenly spread in its own coordinates; areas from the derivatives
-/// of the transformed parametrisation, taken by differences. Throws std::logic_error for a shape that it has no coordinates of;
-/// csg shapes: unions and intersections of balls that hold the origin.
+/// `count` points a smooth part of the shape's emitting surface, evenly spread in its own
+/// coordinates; areas from the derivatives of the transformed parametrisation, taken by
+/// differences. Throws std::logic_error for a shape that it has no coordinates of; csg shapes:
+/// unions and intersections of balls that hold the origin.
 std::vector<SurfacePoint> surface_points(const Shape& shape, std::size_t count);
 
 }  // namespace caplet::test

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// The light tree: that its chances add to one and are what it does, that no light that can be seen is without one, and that they
-// go by the light that comes. Expectations are closed forms.
+// The light tree: that its chances add to one and are what it does, that no light that can be seen
+// is without one, and that they go by the light that comes. Expectations are closed forms.
 #include <gtest/gtest.h>
 
 #include <bit>
@@ -85,14 +85,19 @@ Scene lamps(std::size_t count, unsigned seed) {
   return scene;
 }
 
-Receiver random_receiver(Random& random, bool sided) { return {random.in_box(6), sided ? random.direction() : dvec3(0)}; }
+Receiver random_receiver(Random& random, bool sided) {
+  return {random.in_box(6), sided ? random.direction() : dvec3(0)};
+}
 
 /// How far above the horizon of the receiver a direction is, by its sine.
-double above(const Receiver& at, const dvec3& direction) { return at.normal == dvec3(0) ? 1 : glm::dot(at.normal, direction); }
+double above(const Receiver& at, const dvec3& direction) {
+  return at.normal == dvec3(0) ? 1 : glm::dot(at.normal, direction);
+}
 
 }  // namespace
 
-// Where only parts of a node's bounds can be seen, none of its lights may be: such a choice comes to nothing.
+// Where only parts of a node's bounds can be seen, none of its lights may be: such a choice comes
+// to nothing.
 TEST(LightTree, ChancesAreWhatItDoes) {
   const Scene scene = lamps(300, 1);
   const FlatScene flat = lower(scene);
@@ -127,7 +132,8 @@ TEST(LightTree, ChancesAreWhatItDoes) {
 TEST(LightTree, ChancesOfPointsAddToOne) {
   Random random(11);
   Scene scene = ground();
-  for (int i = 0; i < 500; ++i) scene.lights.push_back(point_light(random.in_box(5), std::exp(random.in(-4, 4))));
+  for (int i = 0; i < 500; ++i)
+    scene.lights.push_back(point_light(random.in_box(5), std::exp(random.in(-4, 4))));
   LightBench bench(lower(scene));
   for (int i = 0; i < 12; ++i) {
     double sum = 0;
@@ -149,10 +155,12 @@ TEST(LightTree, NoLightThatShinesIsWithoutAChance) {
     for (std::size_t k = 0; k < scene.lights.size(); ++k) {
       dvec3 position{0};
       double angle = 0, reach = pi;
-      if (const auto* point = std::get_if<PointLight>(&scene.lights[k].model)) position = point->position;
+      if (const auto* point = std::get_if<PointLight>(&scene.lights[k].model))
+        position = point->position;
       if (const auto* spot = std::get_if<SpotLight>(&scene.lights[k].model)) {
         position = spot->position;
-        angle = std::acos(std::clamp(glm::dot(spot->direction, glm::normalize(at.p - position)), -1.0, 1.0));
+        angle = std::acos(
+            std::clamp(glm::dot(spot->direction, glm::normalize(at.p - position)), -1.0, 1.0));
         reach = spot->total_angle;
       }
       const bool shines = angle < reach && above(at, glm::normalize(position - at.p)) > 1e-6;
@@ -175,7 +183,8 @@ TEST(LightTree, NoLightThatShinesIsWithoutAChance) {
 TEST(LightTree, SiblingsShareByTheirIrradiance) {
   Random random(5);
   Scene scene = ground();
-  for (int i = 0; i < 400; ++i) scene.lights.push_back(point_light(random.in_box(5), std::exp(random.in(-1, 1))));
+  for (int i = 0; i < 400; ++i)
+    scene.lights.push_back(point_light(random.in_box(5), std::exp(random.in(-1, 1))));
   const FlatScene flat = lower(scene);
   LightBench bench(flat);
   int compared = 0;
@@ -188,13 +197,18 @@ TEST(LightTree, SiblingsShareByTheirIrradiance) {
     };
     for (std::size_t k = 1; k < 400; ++k)
       for (std::size_t other = 0; other < k; ++other) {
-        if (flat.light_places[k] / 8 != flat.light_places[other] / 8 || flat.light_places[k] / 8 == 0) continue;
-        const double a = irradiance(k), b = irradiance(other);
-        const double far = std::min(glm::length(std::get<PointLight>(scene.lights[k].model).position - at.p),
-                                    glm::length(std::get<PointLight>(scene.lights[other].model).position - at.p));
-        if (far < 1 || a < 0.05 * scene.lights[k].scale / (far * far) || b < 0.05 * scene.lights[other].scale / (far * far))
+        if (flat.light_places[k] / 8 != flat.light_places[other] / 8 ||
+            flat.light_places[k] / 8 == 0)
           continue;
-        // Boxes are whole cells of 10 / 65535: 3e-4 of the distance, which counts twice, and as an angle against a sine of 0.05.
+        const double a = irradiance(k), b = irradiance(other);
+        const double far =
+            std::min(glm::length(std::get<PointLight>(scene.lights[k].model).position - at.p),
+                     glm::length(std::get<PointLight>(scene.lights[other].model).position - at.p));
+        if (far < 1 || a < 0.05 * scene.lights[k].scale / (far * far) ||
+            b < 0.05 * scene.lights[other].scale / (far * far))
+          continue;
+        // Boxes are whole cells of 10 / 65535: 3e-4 of the distance, which counts twice, and as an
+        // angle against a sine of 0.05.
         EXPECT_NEAR(chances[k] / chances[other] / (a / b), 1, 0.02);
         ++compared;
       }
@@ -202,7 +216,8 @@ TEST(LightTree, SiblingsShareByTheirIrradiance) {
   EXPECT_GT(compared, 1000);
 }
 
-// Flat lamps that look one way, in every way that a side can be turned: what a point of them sends to the receiver has a chance.
+// Flat lamps that look one way, in every way that a side can be turned: what a point of them sends
+// to the receiver has a chance.
 TEST(LightTree, FlatLampsAreSeenFromTheSideThatShines) {
   for (const bool reversed : {false, true})
     for (const bool mirrored : {false, true})
@@ -214,15 +229,19 @@ TEST(LightTree, FlatLampsAreSeenFromTheSideThatShines) {
         };
         std::vector<Side> sides;
         TriangleMeshShape mesh;
-        const glm::dmat4 placed = glm::scale(glm::translate(glm::dmat4(1), dvec3(1, 2, 0)), dvec3(mirrored ? -1 : 1, 0.5, 1));
+        const glm::dmat4 placed = glm::scale(glm::translate(glm::dmat4(1), dvec3(1, 2, 0)),
+                                             dvec3(mirrored ? -1 : 1, 0.5, 1));
         for (int i = 0; i < 40; ++i) {
-          const dvec3 corner = random.in_box(4), a = random.direction() * 0.3, b = random.direction() * 0.3;
+          const dvec3 corner = random.in_box(4), a = random.direction() * 0.3,
+                      b = random.direction() * 0.3;
           for (const dvec3& v : {corner, corner + a, corner + b}) mesh.positions.emplace_back(v);
           const auto first = static_cast<std::uint32_t>(3 * i);
           mesh.triangles.push_back({first, first + 1, first + 2});
           const auto world = [&](const dvec3& v) { return dvec3(placed * glm::dvec4(v, 1)); };
-          // pbrt's rule: by the winding of the vertices in the world, turned by a mirroring transform and by ReverseOrientation.
-          dvec3 n = glm::normalize(glm::cross(world(corner + a) - world(corner), world(corner + b) - world(corner)));
+          // pbrt's rule: by the winding of the vertices in the world, turned by a mirroring
+          // transform and by ReverseOrientation.
+          dvec3 n = glm::normalize(
+              glm::cross(world(corner + a) - world(corner), world(corner + b) - world(corner)));
           if (mirrored) n = -n;
           if (reversed) n = -n;
           sides.push_back({world(corner + (a + b) / 3.0), n});
@@ -259,8 +278,8 @@ TEST(LightTree, FlatLampsAreSeenFromTheSideThatShines) {
       }
 }
 
-// Lamps that all look up, on a slope: seen from below its middle but above its lower end, the middle's direction says that none
-// shines.
+// Lamps that all look up, on a slope: seen from below its middle but above its lower end, the
+// middle's direction says that none shines.
 TEST(LightTree, LampsBelowTheMiddleOfTheirBoxAreSeen) {
   Random random(13);
   Scene scene = ground();
@@ -269,7 +288,8 @@ TEST(LightTree, LampsBelowTheMiddleOfTheirBoxAreSeen) {
   for (int i = 0; i < 64; ++i) {
     const double x = random.in(-4, 4);
     const dvec3 corner(x, random.in(-1, 1), 0.3 * x);
-    for (const dvec3& v : {corner, corner + dvec3(0.01, 0, 0), corner + dvec3(0, 0.01, 0)}) mesh.positions.emplace_back(v);
+    for (const dvec3& v : {corner, corner + dvec3(0.01, 0, 0), corner + dvec3(0, 0.01, 0)})
+      mesh.positions.emplace_back(v);
     const auto first = static_cast<std::uint32_t>(3 * i);
     mesh.triangles.push_back({first, first + 1, first + 2});
     places.push_back(corner);
@@ -310,7 +330,8 @@ TEST(LightTree, IsOneChoiceBesideASun) {
   for (const double chance : chances) others += chance;
   EXPECT_NEAR(others, 1, 1e-5);
   int suns = 0;
-  for (const Choice& choice : bench.choose(at, random.numbers(100000))) suns += choice.light == 10 ? 1 : 0;
+  for (const Choice& choice : bench.choose(at, random.numbers(100000)))
+    suns += choice.light == 10 ? 1 : 0;
   EXPECT_NEAR(suns, 25000, 5 * std::sqrt(100000 * 0.25 * 0.75));
 }
 
@@ -420,7 +441,8 @@ TEST(LightTree, FewLightsAreChosenByTheTable) {
 TEST(LightTree, BoxesHoldTheirLights) {
   Random random(12);
   Scene scene = ground();
-  for (int i = 0; i < 1000; ++i) scene.lights.push_back(point_light(random.in_box(5) * dvec3(1, 0.1, 20), 1));
+  for (int i = 0; i < 1000; ++i)
+    scene.lights.push_back(point_light(random.in_box(5) * dvec3(1, 0.1, 20), 1));
   const FlatScene flat = lower(scene);
   const LightingRecord& grid = flat.lighting;
   for (std::size_t light = 0; light < 1000; ++light) {
@@ -429,9 +451,12 @@ TEST(LightTree, BoxesHoldTheirLights) {
       const std::uint32_t node = place / 8, slot = place % 8;
       for (std::uint32_t k = 0; k < 3; ++k) {
         const std::uint32_t ends = flat.light_nodes[node * CAPLET_LIGHT_NODE + 8 * k + slot];
-        const double low = static_cast<double>(grid.tree_min[k]) + static_cast<double>(grid.tree_cell[k]) * (ends & 0xffff),
-                     high = static_cast<double>(grid.tree_min[k]) + static_cast<double>(grid.tree_cell[k]) * (ends >> 16);
-        const double at = std::get<PointLight>(scene.lights[light].model).position[static_cast<int>(k)];
+        const double low = static_cast<double>(grid.tree_min[k]) +
+                           static_cast<double>(grid.tree_cell[k]) * (ends & 0xffff),
+                     high = static_cast<double>(grid.tree_min[k]) +
+                            static_cast<double>(grid.tree_cell[k]) * (ends >> 16);
+        const double at =
+            std::get<PointLight>(scene.lights[light].model).position[static_cast<int>(k)];
         EXPECT_LE(low, at);
         EXPECT_GE(high, at);
         EXPECT_LE(high - low, levels == 0 ? 2.01 * grid.tree_cell[k] : 1000.0);
@@ -462,7 +487,8 @@ TEST(LightTree, UnitedConesHoldBoth) {
       for (int k = 0; k < 20; ++k) {
         // A direction on the rim of the cone.
         const dvec3 across = glm::normalize(glm::cross(of.axis, random.direction()));
-        const dvec3 v = of.axis * of.cos_cone + across * std::sqrt(std::max(0.0, 1 - of.cos_cone * of.cos_cone));
+        const dvec3 v = of.axis * of.cos_cone +
+                        across * std::sqrt(std::max(0.0, 1 - of.cos_cone * of.cos_cone));
         EXPECT_GE(glm::dot(v, both.axis), both.cos_cone - 1e-7);
       }
   }

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Replaces operator new by one that counts. A file of its own: where it is inlined, GCC takes new and free for a mismatch.
+// Replaces operator new by one that counts. A file of its own: where it is inlined, GCC takes new
+// and free for a mismatch.
 #include "counted_new.h"
 
 #include <atomic>

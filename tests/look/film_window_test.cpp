@@ -38,7 +38,8 @@ std::optional<Crop> crop_after(int width, int height, const Crop& crop, int wide
   return scene.film.crop;
 }
 
-// A crop keeps its place: its edges go with the width and the height of the picture, to the nearest pixel, and it keeps a pixel.
+// A crop keeps its place: its edges go with the width and the height of the picture, to the nearest
+// pixel, and it keeps a pixel.
 TEST(FilmWindow, ACropGoesWithThePicturesSize) {
   EXPECT_EQ(crop_after(100, 60, {10, 30, 15, 45}, 200, 120), (Crop{20, 60, 30, 90}));
   EXPECT_EQ(crop_after(100, 60, {10, 30, 15, 45}, 50, 120), (Crop{5, 15, 30, 90}));
@@ -53,7 +54,9 @@ TEST(FilmWindow, CropsAndPixelsAreWithinThePicture) {
   Scene scene;
   scene.film.width = 20;
   scene.film.height = 10;
-  const auto said = [&](const Crop& corners) { return complaint([&] { set_crop(scene, corners); }); };  // x0, y0, x1, y1
+  const auto said = [&](const Crop& corners) {
+    return complaint([&] { set_crop(scene, corners); });
+  };  // x0, y0, x1, y1
   EXPECT_EQ(said({0, 0, 20, 10}), "");
   EXPECT_EQ(said({3, 4, 18, 5}), "");
   EXPECT_EQ(scene.film.crop, (Crop{3, 18, 4, 5}));
@@ -61,7 +64,9 @@ TEST(FilmWindow, CropsAndPixelsAreWithinThePicture) {
     EXPECT_THAT(said(wrong), HasSubstr("not within the image of 20x10"));
   for (const Crop& empty : {Crop{3, 4, 3, 5}, {3, 4, 18, 4}, {4, 4, 3, 5}, {3, 5, 18, 4}})
     EXPECT_THAT(said(empty), HasSubstr("is empty"));
-  const auto pixel = [&](int x, int y) { return complaint([&] { check_pixel({x, y}, scene.film); }); };
+  const auto pixel = [&](int x, int y) {
+    return complaint([&] { check_pixel({x, y}, scene.film); });
+  };
   EXPECT_EQ(pixel(3, 4), "");
   EXPECT_EQ(pixel(17, 4), "");
   for (const auto& [x, y] : {std::array{2, 4}, {18, 4}, {3, 3}, {3, 5}})
@@ -74,7 +79,8 @@ TEST(FilmWindow, CropsAndPixelsAreWithinThePicture) {
 
 constexpr std::uint32_t kFrames = 40;
 
-Scene scene_of(std::vector<Shape> shapes, std::map<std::string, std::string> look = {}, bool has_no_up = false) {
+Scene scene_of(std::vector<Shape> shapes, std::map<std::string, std::string> look = {},
+               bool has_no_up = false) {
   Scene scene;
   scene.materials.push_back({DiffuseMaterial{}, "m", {}});
   scene.shapes = std::move(shapes);
@@ -82,7 +88,8 @@ Scene scene_of(std::vector<Shape> shapes, std::map<std::string, std::string> loo
   scene.film.height = 200;
   scene.has_no_up = has_no_up;
   add_presentation(scene);
-  if (!look.empty()) apply_picture_options(scene, test::NoImages(), ImportOptions(std::move(look)), false);
+  if (!look.empty())
+    apply_picture_options(scene, test::NoImages(), ImportOptions(std::move(look)), false);
   return scene;
 }
 
@@ -107,10 +114,12 @@ double reach(const Camera& camera, const FilmSettings& film, const glm::dvec4& b
   for (int i = 0; i < 800; ++i) {  // the golden spiral
     const double h = 1 - (2 * i + 1) / 800.0, phi = i * 2.399963229728653, r = std::sqrt(1 - h * h);
     const glm::dvec4 q =
-        camera_from_world * glm::dvec4(glm::dvec3(ball) + ball.w * glm::dvec3(r * std::cos(phi), h, r * std::sin(phi)), 1);
+        camera_from_world *
+        glm::dvec4(glm::dvec3(ball) + ball.w * glm::dvec3(r * std::cos(phi), h, r * std::sin(phi)),
+                   1);
     if (!(q.z > 0)) return 1e9;
-    most = std::max(
-        {most, std::abs(q.x / q.z) / (tangent * film.width / shorter), std::abs(q.y / q.z) / (tangent * film.height / shorter)});
+    most = std::max({most, std::abs(q.x / q.z) / (tangent * film.width / shorter),
+                     std::abs(q.y / q.z) / (tangent * film.height / shorter)});
   }
   return most;
 }
@@ -120,11 +129,13 @@ double reach_of_turn(const Scene& scene, const std::vector<glm::dvec4>& balls) {
   const Turntable table(scene);
   double most = 0;
   for (std::uint32_t i = 0; i < kFrames; ++i)
-    for (const glm::dvec4& ball : balls) most = std::max(most, reach(table.camera(i, kFrames), scene.film, ball));
+    for (const glm::dvec4& ball : balls)
+      most = std::max(most, reach(table.camera(i, kFrames), scene.film, ball));
   return most;
 }
 
-// Clubs whose thick end is low or high, near or far from the axis, seen from above and from below: each frame has all of it.
+// Clubs whose thick end is low or high, near or far from the axis, seen from above and from below:
+// each frame has all of it.
 TEST(Turntable, HoldsBothEndsOfWhatTurns) {
   for (const char* view : {"1,0.8,1", "1,-0.8,1", "1,0,0.2", "0.3,3,1", "0.3,-3,1"})
     for (const double thick : {0.3, 2.0})
@@ -139,8 +150,9 @@ TEST(Turntable, HoldsBothEndsOfWhatTurns) {
       }
 }
 
-// Balls that touch both rims and the side of the cylinder that is framed: the nearest is seen nearly to the margin of 0.95 in
-// some frame. The rims are held by polygons of 64 sides, which are a thousandth wider.
+// Balls that touch both rims and the side of the cylinder that is framed: the nearest is seen
+// nearly to the margin of 0.95 in some frame. The rims are held by polygons of 64 sides, which are
+// a thousandth wider.
 TEST(Turntable, IsNoFurtherThanItsCylinder) {
   for (const char* view : {"1,0.8,1", "1,-0.8,1", "0,0.2,-1"})
     for (const float radius : {0.05F, 0.4F}) {
@@ -172,10 +184,15 @@ TEST(Turntable, HoldsShapesOfAllKinds) {
   there[3] = glm::dvec4(-6, 9, 0, 1);
   scene.instances.push_back({0, there, {}});
   frame_camera(scene);
-  EXPECT_LE(reach_of_turn(scene, {{4, -3, 1, 1}, {0, 0, 0, 0.5}, {0, 3, 0, 0.5}, {-6, 9, 0, 0.25}, {-5, 9, 0, 0.25}}), 0.951);
+  EXPECT_LE(
+      reach_of_turn(
+          scene,
+          {{4, -3, 1, 1}, {0, 0, 0, 0.5}, {0, 3, 0, 0.5}, {-6, 9, 0, 0.25}, {-5, 9, 0, 0.25}}),
+      0.951);
 }
 
-// The automatic light stays where it is for who looks: with the camera, by the same turn. Others stay where they are.
+// The automatic light stays where it is for who looks: with the camera, by the same turn. Others
+// stay where they are.
 TEST(Turntable, TurnsTheAutomaticLightWithTheCamera) {
   Scene scene = scene_of({capsules({glm::vec4(1, 0, 0, 0.5F)}, {glm::vec4(3, 2, 1, 0.25F)})});
   ASSERT_EQ(scene.lights.size(), 1U);
@@ -198,7 +215,8 @@ TEST(Turntable, TurnsTheAutomaticLightWithTheCamera) {
     EXPECT_LT(glm::length(first[k] - expected[k]), 1e-12) << k;
   }
   for (std::uint32_t i = 1; i < kFrames; ++i)
-    for (int k = 0; k < 3; ++k) EXPECT_LT(glm::length(from_camera(i)[k] - first[k]), 1e-12) << i << " " << k;
+    for (int k = 0; k < 3; ++k)
+      EXPECT_LT(glm::length(from_camera(i)[k] - first[k]), 1e-12) << i << " " << k;
   EXPECT_EQ(std::get<InfiniteLight>(table.turned(light, 0, kFrames).model).world_from_light,
             std::get<InfiniteLight>(light.model).world_from_light);
   // A file's own camera goes round its scene; its light stays.
@@ -206,14 +224,17 @@ TEST(Turntable, TurnsTheAutomaticLightWithTheCamera) {
   EXPECT_FALSE(Turntable(scene).turns(light));
 }
 
-// Around the axis of the world that is nearest to the camera's up; where a scene has no up, around the camera's own.
+// Around the axis of the world that is nearest to the camera's up; where a scene has no up, around
+// the camera's own.
 TEST(Turntable, AxisIsUp) {
   for (const auto& [up, view] : {std::pair{"y", "1,0.7,2"}, {"z", "1,2,0.7"}, {"-x", "-0.7,1,2"}})
     for (const bool has_no_up : {false, true}) {
       const Scene scene =
-          scene_of({capsules({glm::vec4(1, 0, 0, 0.5F)}, {glm::vec4(3, 2, 1, 0.25F)})}, {{"view", view}, {"up", up}}, has_no_up);
+          scene_of({capsules({glm::vec4(1, 0, 0, 0.5F)}, {glm::vec4(3, 2, 1, 0.25F)})},
+                   {{"view", view}, {"up", up}}, has_no_up);
       const Turntable table(scene);
-      const glm::dmat3 before(table.camera(0, 4).world_from_camera), after(table.camera(1, 4).world_from_camera);
+      const glm::dmat3 before(table.camera(0, 4).world_from_camera),
+          after(table.camera(1, 4).world_from_camera);
       const glm::dmat3 turn = after * glm::transpose(before);
       const glm::dvec3 axis = has_no_up ? before[1] : parse_axis(up, "");
       EXPECT_LT(glm::length(turn * axis - axis), 1e-9) << up << has_no_up;
@@ -225,16 +246,18 @@ TEST(Turntable, AxisIsUp) {
 
 // --- Scenes without an up ---
 
-// A plate in the plane z = 0, seen from nearly straight on: its longer side goes along the picture's longer side where it then is
-// seen at less than 0.8 of the distance, and stays as it is elsewhere or where there is an up.
+// A plate in the plane z = 0, seen from nearly straight on: its longer side goes along the
+// picture's longer side where it then is seen at less than 0.8 of the distance, and stays as it is
+// elsewhere or where there is an up.
 TEST(FramingWithoutUp, TheLongerSideGoesAlongThePicture) {
   struct Row {
     float x, y;  // half its sides
     int width, height;
     bool is_turned;
   };
-  for (const Row& row : {Row{1, 4, 300, 200, true}, Row{4, 1, 300, 200, false}, Row{4, 1, 200, 300, true},
-                         Row{1, 4, 200, 300, false}, Row{3, 3.5F, 300, 200, false}, Row{1, 4, 200, 200, false}})
+  for (const Row& row :
+       {Row{1, 4, 300, 200, true}, Row{4, 1, 300, 200, false}, Row{4, 1, 200, 300, true},
+        Row{1, 4, 200, 300, false}, Row{3, 3.5F, 300, 200, false}, Row{1, 4, 200, 200, false}})
     for (const bool has_no_up : {false, true}) {
       CapsulesShape plate;
       for (const float x : {-row.x, row.x})
@@ -249,7 +272,8 @@ TEST(FramingWithoutUp, TheLongerSideGoesAlongThePicture) {
       scene.has_no_up = has_no_up;
       frame_camera(scene);
       const glm::dvec3 right(scene.camera.world_from_camera[0]);
-      SCOPED_TRACE(testing::Message() << row.x << " " << row.y << ", " << row.width << " " << row.height << " " << has_no_up);
+      SCOPED_TRACE(testing::Message() << row.x << " " << row.y << ", " << row.width << " "
+                                      << row.height << " " << has_no_up);
       // 10 and 6 degrees aside.
       EXPECT_GT(std::abs(row.is_turned && has_no_up ? right.y : right.x), 0.97);
     }
@@ -257,8 +281,9 @@ TEST(FramingWithoutUp, TheLongerSideGoesAlongThePicture) {
 
 // --- Automatic cameras ---
 
-// An orthographic camera stands as far before the nearest point as the picture's content is long, along each axis that it may be
-// longest along: for the depth layer. With a margin of 5 % of the half picture.
+// An orthographic camera stands as far before the nearest point as the picture's content is long,
+// along each axis that it may be longest along: for the depth layer. With a margin of 5 % of the
+// half picture.
 TEST(Framing, OrthographicCamerasStandOneExtentAway) {
   for (const glm::vec3& half : {glm::vec3(5, 1, 1), glm::vec3(1, 5, 1), glm::vec3(1, 1, 5)}) {
     Shape box;
@@ -276,13 +301,17 @@ TEST(Framing, TowersAreSeenAcrossTheirWiderSide) {
     std::vector<glm::vec4> corners;
     for (const float x : {-1.0F, 1.0F})
       for (const float y : {-6.0F, 6.0F})
-        for (const float z : {-1.0F, 1.0F}) corners.emplace_back(is_wide_in_x ? 2 * x : x, y, is_wide_in_x ? z : 2 * z, 0.2F);
+        for (const float z : {-1.0F, 1.0F})
+          corners.emplace_back(is_wide_in_x ? 2 * x : x, y, is_wide_in_x ? z : 2 * z, 0.2F);
     const Scene scene = scene_of({capsules(corners, corners)});
-    const glm::dvec3 forward(scene.camera.world_from_camera[2]), right(scene.camera.world_from_camera[0]);
+    const glm::dvec3 forward(scene.camera.world_from_camera[2]),
+        right(scene.camera.world_from_camera[0]);
     EXPECT_NEAR(forward.y, -std::sin(elevation), 1e-6);
     EXPECT_NEAR(right.y, 0, 1e-6);
-    // From the front where it is wide from left to right, and from the right where it is wide from front to back.
-    EXPECT_NEAR(-(is_wide_in_x ? forward.z : forward.x), std::cos(azimuth) * std::cos(elevation), 1e-6);
+    // From the front where it is wide from left to right, and from the right where it is wide from
+    // front to back.
+    EXPECT_NEAR(-(is_wide_in_x ? forward.z : forward.x), std::cos(azimuth) * std::cos(elevation),
+                1e-6);
   }
 }
 

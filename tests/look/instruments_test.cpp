@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Scale bar, axes and colour bar as they are read off a picture: its letters are found and told from others.
+// Scale bar, axes and colour bar as they are read off a picture: its letters are found and told
+// from others.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -27,17 +28,22 @@ using test::complaint;
 using testing::HasSubstr;
 
 Shown white(int width, int height) {
-  return {width, height, std::vector<std::array<float, 3>>(static_cast<std::size_t>(width * height), {1, 1, 1}), {}};
+  return {width,
+          height,
+          std::vector<std::array<float, 3>>(static_cast<std::size_t>(width * height), {1, 1, 1}),
+          {}};
 }
 
 std::array<float, 3> color_at(const Shown& picture, int x, int y) {
   return picture.rgb.at(static_cast<std::size_t>(y * picture.width + x));
 }
 
-/// How much of a pixel is covered by black letters on white; sRGB, in which they are mixed. What is coloured is none.
+/// How much of a pixel is covered by black letters on white; sRGB, in which they are mixed. What is
+/// coloured is none.
 double ink_at(const Shown& picture, int x, int y) {
   const auto& color = color_at(picture, x, y);
-  const float most = std::max({color[0], color[1], color[2]}), least = std::min({color[0], color[1], color[2]});
+  const float most = std::max({color[0], color[1], color[2]}),
+              least = std::min({color[0], color[1], color[2]});
   return most - least > 1e-4F ? 0 : 1 - double{srgb_from_linear(most)};
 }
 
@@ -45,10 +51,12 @@ struct Box {
   double x0, y0, x1, y1;
 };
 
-/// How unlike what is written in a box is to a text of that size there, wherever it stands: 0 is the same, 1 nothing in common.
+/// How unlike what is written in a box is to a text of that size there, wherever it stands: 0 is
+/// the same, 1 nothing in common.
 double difference(const Shown& picture, const Box& box, const std::string& what, double size) {
   const int x0 = std::max(0, static_cast<int>(box.x0)), y0 = std::max(0, static_cast<int>(box.y0));
-  const int x1 = std::min(picture.width, static_cast<int>(box.x1)), y1 = std::min(picture.height, static_cast<int>(box.y1));
+  const int x1 = std::min(picture.width, static_cast<int>(box.x1)),
+            y1 = std::min(picture.height, static_cast<int>(box.y1));
   // The middle of the ink, with which that of the text is put in the same place.
   const auto middle = [&](auto ink, double& sum) {
     glm::dvec2 out(0);
@@ -70,18 +78,21 @@ double difference(const Shown& picture, const Box& box, const std::string& what,
     at += seen - middle([&](int x, int y) { return double{mask.at(x, y)}; }, drawn);
     double apart = 0;
     for (int y = y0; y < y1; ++y)
-      for (int x = x0; x < x1; ++x) apart += std::abs(ink_at(picture, x, y) - double{mask.at(x, y)});
+      for (int x = x0; x < x1; ++x)
+        apart += std::abs(ink_at(picture, x, y) - double{mask.at(x, y)});
     best = std::min(best, apart / (there + drawn));
   }
   return best;
 }
 
 /// Returns the one of these texts that a box says; empty where none of them is near.
-std::string read(const Shown& picture, const Box& box, const std::vector<std::string>& texts, double size) {
+std::string read(const Shown& picture, const Box& box, const std::vector<std::string>& texts,
+                 double size) {
   std::string out;
   double least = 0.05;
   for (const std::string& one : texts)
-    if (const double apart = difference(picture, box, one, size); apart < least) least = apart, out = one;
+    if (const double apart = difference(picture, box, one, size); apart < least)
+      least = apart, out = one;
   return out;
 }
 
@@ -107,14 +118,18 @@ TEST(ScaleBar, OfACropIsThatOfTheWhole) {
   Scene scene = ball();
   const BarOnPicture whole = bar_of({25, ""}, scene, "--scale-bar");
   EXPECT_DOUBLE_EQ(whole.pixels, 100);
-  for (const std::array<int, 4>& crop : {std::array{0, 400, 10, 20}, {7, 107, 0, 200}, {300, 400, 199, 200}}) {
+  for (const std::array<int, 4>& crop :
+       {std::array{0, 400, 10, 20}, {7, 107, 0, 200}, {300, 400, 199, 200}}) {
     scene.film.crop = crop;
     const BarOnPicture bar = bar_of({25, ""}, scene, "--scale-bar");
     EXPECT_DOUBLE_EQ(bar.pixels, 100);
     EXPECT_EQ(bar.label, whole.label);
   }
   scene.film.crop = {{7, 106, 0, 200}};
-  EXPECT_THAT(complaint([&] { bar_of({25, ""}, scene, "--scale-bar"); }), HasSubstr("100 pixels, more than the picture's 99"));
+  EXPECT_THAT(complaint([&] {
+                bar_of({25, ""}, scene, "--scale-bar");
+              }),
+              HasSubstr("100 pixels, more than the picture's 99"));
 }
 
 // On a picture that is hardly wider it is as long, without a margin.
@@ -134,7 +149,9 @@ TEST(ScaleBar, SaysItsLength) {
   draw_scale_bar(picture, {80, "20 \u00b5m", {}}, {0, 0, 0});
   const double size = text_size(picture), bottom = 200 - margin(picture) - 0.3 * size;
   const Box label{200, bottom - 2.5 * size, 400, bottom};
-  EXPECT_EQ(read(picture, label, {"20 nm", "20 \u00b5m", "20 mm", "2 \u00b5m", "20", "50 \u00b5m"}, size), "20 \u00b5m");
+  EXPECT_EQ(
+      read(picture, label, {"20 nm", "20 \u00b5m", "20 mm", "2 \u00b5m", "20", "50 \u00b5m"}, size),
+      "20 \u00b5m");
 }
 
 // --- Colour bars ---
@@ -147,24 +164,28 @@ BarBox bar_box(const Shown& picture) {  // of blue 0.25
   for (int y = 0; y < picture.height; ++y)
     for (int x = 0; x < picture.width; ++x)
       if (color_at(picture, x, y)[2] == 0.25F)
-        box = {std::min(box.x0, x), std::min(box.y0, y), std::max(box.x1, x + 1), std::max(box.y1, y + 1)};
+        box = {std::min(box.x0, x), std::min(box.y0, y), std::max(box.x1, x + 1),
+               std::max(box.y1, y + 1)};
   return box;
 }
 
 TEST(ColorBar, SaysItsEndsAndUnit) {
   const std::vector<std::string> numbers = {"-1.25", "1.25", "4e+04", "40000", "-4e+04", "0"};
-  const std::vector<std::string> titles = {"B factor", "B factor (\u00c5\u00b2)", "B factor (nm)", "(\u00c5\u00b2)",
-                                           "\u00c5\u00b2"};
+  const std::vector<std::string> titles = {"B factor", "B factor (\u00c5\u00b2)", "B factor (nm)",
+                                           "(\u00c5\u00b2)", "\u00c5\u00b2"};
   for (const char* unit : {"", "\u00c5\u00b2"}) {
     Shown picture = white(600, 500);
-    draw_color_bar(picture, {"B factor", unit, -1.25, 40000, {{0, 0, 0.25}, {0.5, 0, 0.25}}}, {0, 0, 0});
+    draw_color_bar(picture, {"B factor", unit, -1.25, 40000, {{0, 0, 0.25}, {0.5, 0, 0.25}}},
+                   {0, 0, 0});
     const double size = text_size(picture);
     const BarBox bar = bar_box(picture);
     ASSERT_LT(bar.x0, bar.x1);
     const double right = bar.x1 + 1, middle = 0.5 * (bar.y0 + bar.y1);
     // Beside the upper end the greatest, beside the lower the least: four digits of them.
-    EXPECT_EQ(read(picture, {right, 0.0 + bar.y0 - 0.9 * size, 600, middle}, numbers, size), "4e+04");
-    EXPECT_EQ(read(picture, {right, middle, 600, 0.0 + bar.y1 + 1.5 * size}, numbers, size), "-1.25");
+    EXPECT_EQ(read(picture, {right, 0.0 + bar.y0 - 0.9 * size, 600, middle}, numbers, size),
+              "4e+04");
+    EXPECT_EQ(read(picture, {right, middle, 600, 0.0 + bar.y1 + 1.5 * size}, numbers, size),
+              "-1.25");
     EXPECT_EQ(read(picture, {300, 0, 600, 0.0 + bar.y0 - 0.9 * size}, titles, size),
               *unit ? "B factor (\u00c5\u00b2)" : "B factor");
     // The ends' middles are at the height of the ends, and all of it is within the picture.
@@ -193,17 +214,19 @@ struct AxesPicture {
 AxesPicture axes_of(const glm::dmat3& world_from_file) {
   AxesPicture out;
   Scene scene = ball();
-  scene.camera.world_from_camera =
-      glm::dmat4(glm::dvec4(1, 0, 0, 0), glm::dvec4(0, 1, 0, 0), glm::dvec4(0, 0, -1, 0), glm::dvec4(0, 0, 80, 1));
+  scene.camera.world_from_camera = glm::dmat4(glm::dvec4(1, 0, 0, 0), glm::dvec4(0, 1, 0, 0),
+                                              glm::dvec4(0, 0, -1, 0), glm::dvec4(0, 0, 80, 1));
   scene.world_from_file = world_from_file;
   draw_axes(out.picture, scene, {0, 0, 0});
   out.size = text_size(out.picture);
-  const double edge = margin(out.picture) + 4.2 * out.size;  // three for the arrow, 1.2 for its letter
+  const double edge =
+      margin(out.picture) + 4.2 * out.size;  // three for the arrow, 1.2 for its letter
   out.origin = {edge, 500 - edge};
   return out;
 }
 
-constexpr std::array<std::array<float, 3>, 3> srgb = {{{0.86F, 0.16F, 0.16F}, {0.13F, 0.60F, 0.20F}, {0.16F, 0.38F, 0.90F}}};
+constexpr std::array<std::array<float, 3>, 3> srgb = {
+    {{0.86F, 0.16F, 0.16F}, {0.13F, 0.60F, 0.20F}, {0.16F, 0.38F, 0.90F}}};
 
 /// Returns the one of the three axes whose colour a pixel has; none.
 std::optional<int> axis_at(const Shown& picture, const glm::dvec2& at) {
@@ -211,7 +234,8 @@ std::optional<int> axis_at(const Shown& picture, const glm::dvec2& at) {
   for (int axis = 0; axis < 3; ++axis) {
     bool is_it = true;
     for (std::size_t c = 0; c < 3; ++c)
-      is_it &= std::abs(srgb_from_linear(color[c]) - srgb.at(static_cast<std::size_t>(axis))[c]) < 0.02F;
+      is_it &=
+          std::abs(srgb_from_linear(color[c]) - srgb.at(static_cast<std::size_t>(axis))[c]) < 0.02F;
     if (is_it) return axis;
   }
   return std::nullopt;
@@ -219,7 +243,8 @@ std::optional<int> axis_at(const Shown& picture, const glm::dvec2& at) {
 
 TEST(Axes, HaveTheirColoursAndLetters) {
   // In turn each of the file's axes is to the right, up, and to the viewer's lower left.
-  const glm::dvec3 right(1, 0, 0), up(0, 1, 0), toward = glm::normalize(glm::dvec3(-0.6, -0.5, 0.3));
+  const glm::dvec3 right(1, 0, 0), up(0, 1, 0),
+      toward = glm::normalize(glm::dvec3(-0.6, -0.5, 0.3));
   for (int first = 0; first < 3; ++first) {
     glm::dmat3 file;
     file[first] = right;
@@ -232,10 +257,12 @@ TEST(Axes, HaveTheirColoursAndLetters) {
       EXPECT_EQ(axis_at(on.picture, on.origin + 2.9 * on.size * way), axis) << first;
       EXPECT_EQ(axis_at(on.picture, on.origin - 1.0 * on.size * way), std::nullopt) << first;
       // The letter stands beyond the tip.
-      const glm::dvec2 letter = on.origin + 3.0 * on.size * way + 0.85 * on.size * glm::normalize(way);
+      const glm::dvec2 letter =
+          on.origin + 3.0 * on.size * way + 0.85 * on.size * glm::normalize(way);
       const double half = 0.7 * on.size;
       EXPECT_EQ(
-          read(on.picture, {letter.x - half, letter.y - half, letter.x + half, letter.y + half}, {"x", "y", "z"}, 0.85 * on.size),
+          read(on.picture, {letter.x - half, letter.y - half, letter.x + half, letter.y + half},
+               {"x", "y", "z"}, 0.85 * on.size),
           std::string(1, static_cast<char>('x' + axis)))
           << first;
     }
@@ -244,7 +271,8 @@ TEST(Axes, HaveTheirColoursAndLetters) {
 
 // Two arrows one behind the other: what points toward who looks is before what points away.
 TEST(Axes, WhatIsNearerIsDrawnOver) {
-  const glm::dvec3 near = glm::normalize(glm::dvec3(0.8, 0, 0.6)), far = glm::normalize(glm::dvec3(0.8, 0, -0.6)), up(0, 1, 0);
+  const glm::dvec3 near = glm::normalize(glm::dvec3(0.8, 0, 0.6)),
+                   far = glm::normalize(glm::dvec3(0.8, 0, -0.6)), up(0, 1, 0);
   for (int nearer = 0; nearer < 3; ++nearer)
     for (const int other : {(nearer + 1) % 3, (nearer + 2) % 3}) {
       glm::dmat3 file;
@@ -252,7 +280,8 @@ TEST(Axes, WhatIsNearerIsDrawnOver) {
       file[other] = far;
       file[3 - nearer - other] = up;
       const AxesPicture on = axes_of(file);
-      EXPECT_EQ(axis_at(on.picture, on.origin + glm::dvec2(1.5 * on.size, 0)), nearer) << nearer << other;
+      EXPECT_EQ(axis_at(on.picture, on.origin + glm::dvec2(1.5 * on.size, 0)), nearer)
+          << nearer << other;
     }
 }
 

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// What is drawn on pictures: lengths, places and colours by hand, outlines against the circle that they run around.
+// What is drawn on pictures: lengths, places and colours by hand, outlines against the circle that
+// they run around.
 #include "post/overlay.h"
 
 #include <gmock/gmock.h>
@@ -67,7 +68,9 @@ Canvas empty_canvas(int width, int height) {
   return canvas(
       width, height, {1, 1, 1}, [](int, int) { return 0.0f; }, [](int, int) { return 1e10f; });
 }
-float& red(Shown& picture, int x, int y) { return picture.rgb[static_cast<std::size_t>(y * picture.width + x)][0]; }
+float& red(Shown& picture, int x, int y) {
+  return picture.rgb[static_cast<std::size_t>(y * picture.width + x)][0];
+}
 
 TEST(ScaleBar, IsAsLongAsItSays) {
   const BarOnPicture bar = bar_of({20, ""}, ball(), "--scale-bar");
@@ -88,10 +91,12 @@ TEST(ScaleBar, IsAsLongAsItSays) {
 
 // Ten micrometres, 40 pixels, as each unit says them.
 TEST(ScaleBar, UnitsAreWhatTheirNamesSay) {
-  for (const char* text : {"1e7 pm", "1e5 A", "1e5 \u00c5", "1e5 angstrom", "1e4 nm", "10 um", "10 \u00b5m", "10 \u03bcm",
-                           "10 micron", "0.01 mm", "0.001 cm", "1e-5 m", "1e-8 km"})
+  for (const char* text :
+       {"1e7 pm", "1e5 A", "1e5 \u00c5", "1e5 angstrom", "1e4 nm", "10 um", "10 \u00b5m",
+        "10 \u03bcm", "10 micron", "0.01 mm", "0.001 cm", "1e-5 m", "1e-8 km"})
     EXPECT_NEAR(bar_of(parse_scale_bar(text, ""), ball(), "").pixels, 40, 1e-9) << text;
-  EXPECT_DOUBLE_EQ(bar_of({100, ""}, ball(), "").pixels, 400);  // as wide as the picture, and no wider
+  EXPECT_DOUBLE_EQ(bar_of({100, ""}, ball(), "").pixels,
+                   400);  // as wide as the picture, and no wider
 }
 
 TEST(ScaleBar, IsRoundWhereNoOneAsks) {
@@ -113,10 +118,12 @@ TEST(ScaleBar, InPerspectiveItIsThatOfTheMiddle) {
 
 TEST(ScaleBar, WrongOnesAreRefused) {
   for (const char* text : {"long", "-3 um", "0", "nan", "um"})
-    EXPECT_THAT(complaint([&] { parse_scale_bar(text, "--scale-bar"); }), HasSubstr("--scale-bar")) << text;
+    EXPECT_THAT(complaint([&] { parse_scale_bar(text, "--scale-bar"); }), HasSubstr("--scale-bar"))
+        << text;
   EXPECT_THAT(complaint([&] { bar_of(parse_scale_bar("3 cells", ""), ball(), "--scale-bar"); }),
               AllOf(HasSubstr("--scale-bar"), HasSubstr("'cells'")));
-  EXPECT_THAT(complaint([&] { bar_of(parse_scale_bar("1 mm", ""), ball(), "--scale-bar"); }), HasSubstr("4000 pixels"));
+  EXPECT_THAT(complaint([&] { bar_of(parse_scale_bar("1 mm", ""), ball(), "--scale-bar"); }),
+              HasSubstr("4000 pixels"));
   Overlays overlays;
   overlays.color_bar = true;
   EXPECT_THAT(complaint([&] { check(overlays, ball(), "--"); }), HasSubstr("--color-bar"));
@@ -128,7 +135,8 @@ TEST(OverlayOptions, EachRowIsAskedForByItsName) {
     set_overlay(overlays, row.name, "", "--" + row.name);
     EXPECT_TRUE(overlays.any()) << row.name;
     EXPECT_FALSE(row.help.empty());
-    EXPECT_THAT(complaint([&] { set_overlay(overlays, row.name, "much", "--" + row.name); }), HasSubstr("--" + row.name));
+    EXPECT_THAT(complaint([&] { set_overlay(overlays, row.name, "much", "--" + row.name); }),
+                HasSubstr("--" + row.name));
   }
   EXPECT_THAT(complaint([] {
                 Overlays overlays;
@@ -147,7 +155,9 @@ TEST(OverlayOptions, ValuesAreWithinTheirRange) {
   EXPECT_EQ(outline("0.1"), 0.1);
   EXPECT_EQ(outline("64"), 64);
   for (const char* wrong : {"0.09", "64.1", "nan", "inf", "2 ", "-1"})
-    EXPECT_THAT(complaint([&] { outline(wrong); }), AllOf(HasSubstr("--outline"), HasSubstr("from 0.1 to 64"))) << wrong;
+    EXPECT_THAT(complaint([&] { outline(wrong); }),
+                AllOf(HasSubstr("--outline"), HasSubstr("from 0.1 to 64")))
+        << wrong;
   Overlays overlays;
   set_overlay(overlays, "depth-cue", "", "");
   EXPECT_EQ(overlays.depth_cue, 0.6);
@@ -185,7 +195,10 @@ TEST(Outline, RunsAroundADisk) {
   const auto share = [&](int x, int y) {
     int inside = 0;
     for (int i = 0; i < 256; ++i)
-      inside += glm::length(glm::dvec2(x + (i % 16 + 0.5) / 16, y + (i / 16 + 0.5) / 16) - middle) < radius ? 1 : 0;
+      inside += glm::length(glm::dvec2(x + (i % 16 + 0.5) / 16, y + (i / 16 + 0.5) / 16) - middle) <
+                        radius
+                    ? 1
+                    : 0;
     return static_cast<float>(inside) / 256;
   };
   for (const double width : {1.5, 4.0}) {
@@ -204,7 +217,8 @@ TEST(Outline, RunsAroundADisk) {
         }
         area += 1 - std::pow(double{value}, 1 / 2.2);
       }
-    EXPECT_NEAR(area, 2 * std::acos(-1.0) * radius * width, 0.06 * 2 * std::acos(-1.0) * radius * width);
+    EXPECT_NEAR(area, 2 * std::acos(-1.0) * radius * width,
+                0.06 * 2 * std::acos(-1.0) * radius * width);
   }
 }
 
@@ -216,7 +230,8 @@ TEST(Outline, StepsOfDepthHaveOneAndSlopesNone) {
   EXPECT_LT(red(step.picture, 20, 10), 0.01);
   EXPECT_EQ(red(step.picture, 16, 10), 1);
   EXPECT_EQ(red(step.picture, 23, 10), 1);
-  Canvas slope = canvas(20, 20, {1, 1, 1}, all, [](int x, int) { return 10.0f + static_cast<float>(x); });
+  Canvas slope =
+      canvas(20, 20, {1, 1, 1}, all, [](int x, int) { return 10.0f + static_cast<float>(x); });
   draw_outline(slope.picture, slope.layers, 2);
   for (int x = 0; x < 20; ++x) EXPECT_EQ(red(slope.picture, x, 10), 1) << x;
   // Objects that touch.
@@ -227,23 +242,27 @@ TEST(Outline, StepsOfDepthHaveOneAndSlopesNone) {
   EXPECT_EQ(red(slope.picture, 6, 10), 1);
 }
 
-// A step is what three pixels differ by: more than 3 of a depth of 100 and twice what the pixels beside it differ by.
+// A step is what three pixels differ by: more than 3 of a depth of 100 and twice what the pixels
+// beside it differ by.
 TEST(Outline, StepsAreSteeperThanWhatIsBesideThem) {
   struct Row {
     std::array<float, 6> depths;  // before them the first goes on, and behind them the last
     bool has_line;                // between the third and the fourth
   };
-  for (const Row& row : {Row{{10, 10, 10, 13.5, 13.5, 13.5}, true}, Row{{10, 10, 10, 12.5, 12.5, 12.5}, false},
-                         Row{{10, 10, 11, 13, 13.5, 13.5}, true}, Row{{10, 10, 10, 13.5, 13.5, 16}, false},
-                         Row{{10, 10, 10, 13.5, 13.5, 14.5}, true}, Row{{7.5, 10, 10, 13.5, 13.5, 13.5}, false},
-                         Row{{9, 10, 10, 13.5, 13.5, 13.5}, true}, Row{{9, 10, 10, 13.5, 13.5, 14.5}, false}})
+  for (const Row& row :
+       {Row{{10, 10, 10, 13.5, 13.5, 13.5}, true}, Row{{10, 10, 10, 12.5, 12.5, 12.5}, false},
+        Row{{10, 10, 11, 13, 13.5, 13.5}, true}, Row{{10, 10, 10, 13.5, 13.5, 16}, false},
+        Row{{10, 10, 10, 13.5, 13.5, 14.5}, true}, Row{{7.5, 10, 10, 13.5, 13.5, 13.5}, false},
+        Row{{9, 10, 10, 13.5, 13.5, 13.5}, true}, Row{{9, 10, 10, 13.5, 13.5, 14.5}, false}})
     for (const bool is_turned : {false, true})
       for (const bool is_upright : {false, true}) {
         const auto along = [&](int x, int y) { return is_upright ? y : x; };
         // Two pixels by themselves have the nearest and the farthest depth.
         const auto apart = [&](int x, int y) { return is_upright ? x : y; };
         const auto share = [&](int x, int y) {
-          return along(x, y) < 30 || (along(x, y) == 35 && (apart(x, y) == 5 || apart(x, y) == 15)) ? 1.0f : 0.0f;
+          return along(x, y) < 30 || (along(x, y) == 35 && (apart(x, y) == 5 || apart(x, y) == 15))
+                     ? 1.0f
+                     : 0.0f;
         };
         const auto depth = [&](int x, int y) {
           if (along(x, y) >= 30) return apart(x, y) == 5 ? 7.0f : 107.0f;
@@ -256,7 +275,8 @@ TEST(Outline, StepsAreSteeperThanWhatIsBesideThem) {
           const float value = is_upright ? red(on.picture, 20, i) : red(on.picture, i, 20);
           // Two pixels wide about the line between pixels 14 and 15.
           const bool is_black = row.has_line && (i == 14 || i == 15);
-          EXPECT_EQ(value < 0.5F, is_black) << testing::PrintToString(row.depths) << is_turned << is_upright << " " << i;
+          EXPECT_EQ(value < 0.5F, is_black)
+              << testing::PrintToString(row.depths) << is_turned << is_upright << " " << i;
         }
       }
 }
@@ -289,12 +309,15 @@ TEST(DepthCue, TheFarthestFadesByItsShare) {
 TEST(Axes, PointWhereTheyPoint) {
   Canvas on = empty_canvas(400, 400);
   Scene scene = ball();
-  scene.camera.world_from_camera =
-      glm::dmat4(glm::dvec4(1, 0, 0, 0), glm::dvec4(0, 1, 0, 0), glm::dvec4(0, 0, -1, 0), glm::dvec4(0, 0, 80, 1));
+  scene.camera.world_from_camera = glm::dmat4(glm::dvec4(1, 0, 0, 0), glm::dvec4(0, 1, 0, 0),
+                                              glm::dvec4(0, 0, -1, 0), glm::dvec4(0, 0, 80, 1));
   draw_axes(on.picture, scene, {0, 0, 0});
   const double size = text_size(on.picture), reach = 3 * size + 1.2 * size;
-  const int x = static_cast<int>(margin(on.picture) + reach), y = static_cast<int>(400 - margin(on.picture) - reach);
-  const auto color = [&](int px, int py) { return on.picture.rgb[static_cast<std::size_t>(py * 400 + px)]; };
+  const int x = static_cast<int>(margin(on.picture) + reach),
+            y = static_cast<int>(400 - margin(on.picture) - reach);
+  const auto color = [&](int px, int py) {
+    return on.picture.rgb[static_cast<std::size_t>(py * 400 + px)];
+  };
   const int part = static_cast<int>(1.5 * size);
   EXPECT_GT(color(x + part, y)[0], 0.5);
   EXPECT_LT(color(x + part, y)[1], 0.1);
@@ -320,7 +343,8 @@ TEST(ColorBar, HasTheMapsEndsAtItsEnds) {
   float red_of_top = 0, red_of_bottom = 0;
   for (int y = 0; y < 300; ++y)
     for (int x = 0; x < 400; ++x)
-      if (const auto& color = on.picture.rgb[static_cast<std::size_t>(y * 400 + x)]; color[2] == 0.25f) {
+      if (const auto& color = on.picture.rgb[static_cast<std::size_t>(y * 400 + x)];
+          color[2] == 0.25f) {
         if (top < 0) top = y, red_of_top = color[0];
         bottom = y, red_of_bottom = color[0];
       }
@@ -334,7 +358,8 @@ TEST(ColorBar, HasTheMapsEndsAtItsEnds) {
   int difference = 0;
   for (int y = 0; y < 300; ++y)
     for (int x = 0; x < 400; ++x)
-      if (const auto& color = two.picture.rgb[static_cast<std::size_t>(y * 400 + x)]; color[2] == 0.25f) {
+      if (const auto& color = two.picture.rgb[static_cast<std::size_t>(y * 400 + x)];
+          color[2] == 0.25f) {
         difference += color[0] == 0 ? 1 : -1;
         break;
       }
@@ -342,9 +367,9 @@ TEST(ColorBar, HasTheMapsEndsAtItsEnds) {
 }
 
 TEST(Ink, IsSeenOnWhatIsBehind) {
-  Canvas light = empty_canvas(8, 8),
-         dark = canvas(
-             8, 8, {0.02f, 0.02f, 0.03f}, [](int, int) { return 0.0f; }, [](int, int) { return 1.0f; });
+  Canvas light = empty_canvas(8, 8), dark = canvas(
+                                         8, 8, {0.02f, 0.02f, 0.03f}, [](int, int) { return 0.0f; },
+                                         [](int, int) { return 1.0f; });
   EXPECT_EQ(ink_for(light.picture, light.layers)[0], 0);
   EXPECT_EQ(ink_for(dark.picture, dark.layers)[0], 1);
   // On one pixel just above the luminance between, 0.179, the ink is black.
@@ -355,7 +380,8 @@ TEST(Ink, IsSeenOnWhatIsBehind) {
 
 TEST(Letters, EachIsThereAndNoTwoAreAlike) {
   std::map<std::vector<float>, char> seen;
-  for (const char letter : std::string("0123456789.,:-+=/_()[]%ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz")) {
+  for (const char letter :
+       std::string("0123456789.,:-+=/_()[]%ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz")) {
     Mask mask(60, 60);
     text(mask, {10, 40}, std::string(1, letter), 24);
     float ink = 0;
@@ -365,7 +391,8 @@ TEST(Letters, EachIsThereAndNoTwoAreAlike) {
     EXPECT_TRUE(fresh) << letter << " is drawn as " << other->second;
   }
   EXPECT_GT(text_width("\u00b5m", 12), text_width("m", 12));
-  // Capitals are as high as they are asked for: of an I only what is above the baseline, 24 high and a stroke's width wide.
+  // Capitals are as high as they are asked for: of an I only what is above the baseline, 24 high
+  // and a stroke's width wide.
   Mask mask(60, 60);
   text(mask, {10, 40}, "I", 24);
   float ink = 0;

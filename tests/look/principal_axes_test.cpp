@@ -11,7 +11,8 @@
 namespace caplet {
 namespace {
 
-// Eigenvalues and vectors of rational numbers: columns of `turn` are (2, 1, -2)/3, (-2, 2, -1)/3 and (1, 2, 2)/3.
+// Eigenvalues and vectors of rational numbers: columns of `turn` are (2, 1, -2)/3, (-2, 2, -1)/3
+// and (1, 2, 2)/3.
 TEST(PrincipalAxes, AreThoseThatTheMatrixWasMadeOf) {
   const glm::dmat3 turn = glm::dmat3(2, 1, -2, -2, 2, -1, 1, 2, 2) / 3.0;
   const glm::dvec3 values(9, -18, 4.5);

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Views, ups and projections: where known points come to lie. Axes of the views are those of a drawing by hand.
+// Views, ups and projections: where known points come to lie. Axes of the views are those of a
+// drawing by hand.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -29,8 +30,8 @@ Scene three_balls(int width = 200, int height = 100) {
   Scene scene;
   scene.materials.push_back({DiffuseMaterial{}, "m", {}});
   CapsulesShape capsules;
-  for (const glm::vec3& p :
-       {glm::vec3(10, 0, 0), glm::vec3(-10, 0, 0), glm::vec3(0, 4, 0), glm::vec3(0, -4, 0), glm::vec3(0, 0, 2)}) {
+  for (const glm::vec3& p : {glm::vec3(10, 0, 0), glm::vec3(-10, 0, 0), glm::vec3(0, 4, 0),
+                             glm::vec3(0, -4, 0), glm::vec3(0, 0, 2)}) {
     capsules.p0.push_back(p);
     capsules.p1.push_back(p);
     capsules.radius0.push_back(1);
@@ -48,10 +49,13 @@ void look(Scene& scene, std::map<std::string, std::string> options, bool is_turn
   apply_picture_options(scene, test::NoImages(), ImportOptions(std::move(options)), is_turned);
 }
 
-glm::dvec3 axis_of(const Scene& scene, int column) { return glm::dvec3(scene.camera.world_from_camera[column]); }
+glm::dvec3 axis_of(const Scene& scene, int column) {
+  return glm::dvec3(scene.camera.world_from_camera[column]);
+}
 
 void expect_near(const glm::dvec3& a, const glm::dvec3& b) {
-  EXPECT_LT(glm::length(a - b), 1e-12) << a.x << " " << a.y << " " << a.z << " is not " << b.x << " " << b.y << " " << b.z;
+  EXPECT_LT(glm::length(a - b), 1e-12)
+      << a.x << " " << a.y << " " << a.z << " is not " << b.x << " " << b.y << " " << b.z;
 }
 
 TEST(View, NamesAreSidesAsDrawn) {
@@ -61,9 +65,10 @@ TEST(View, NamesAreSidesAsDrawn) {
   };
   const glm::dvec3 x(1, 0, 0), y(0, 1, 0), z(0, 0, 1);
   for (const Row& row :
-       {Row{"front", "y", x, y, -z}, Row{"back", "y", -x, y, z}, Row{"right", "y", -z, y, -x}, Row{"left", "y", z, y, x},
-        Row{"top", "y", x, -z, -y}, Row{"bottom", "y", x, z, y}, Row{"front", "z", x, z, y}, Row{"top", "z", x, y, -z},
-        Row{"right", "z", y, z, -x}, Row{"front", "x", -y, x, -z}, Row{"front", "-y", x, -y, z}, Row{"front", "-z", x, -z, -y},
+       {Row{"front", "y", x, y, -z}, Row{"back", "y", -x, y, z}, Row{"right", "y", -z, y, -x},
+        Row{"left", "y", z, y, x}, Row{"top", "y", x, -z, -y}, Row{"bottom", "y", x, z, y},
+        Row{"front", "z", x, z, y}, Row{"top", "z", x, y, -z}, Row{"right", "z", y, z, -x},
+        Row{"front", "x", -y, x, -z}, Row{"front", "-y", x, -y, z}, Row{"front", "-z", x, -z, -y},
         Row{"0,0,5", "y", x, y, -z}, Row{"0,-2,0", "z", x, z, y}}) {
     SCOPED_TRACE(std::string(row.view) + " " + row.up);
     Scene scene = three_balls();
@@ -86,7 +91,8 @@ TEST(View, IsoSeesThreeSidesAlike) {
 TEST(View, WithoutUpAskedTheWorldTurnsToIt) {
   // Automatic directions too: a scene that is turned with its up looks the same.
   Scene upright = three_balls(), lying = three_balls();
-  for (glm::vec3& p : std::get<CapsulesShape>(lying.shapes[0].geometry).p0) p = {p.x, -p.z, p.y};  // y goes to z
+  for (glm::vec3& p : std::get<CapsulesShape>(lying.shapes[0].geometry).p0)
+    p = {p.x, -p.z, p.y};  // y goes to z
   for (glm::vec3& p : std::get<CapsulesShape>(lying.shapes[0].geometry).p1) p = {p.x, -p.z, p.y};
   look(lying, {{"up", "z"}});
   for (const int column : {0, 1, 2, 3}) {
@@ -97,8 +103,9 @@ TEST(View, WithoutUpAskedTheWorldTurnsToIt) {
 
 TEST(View, UpTurnsAreRotationsThatTakeItToY) {
   for (const glm::dvec3& up :
-       {glm::dvec3(1, 0, 0), glm::dvec3(-1, 0, 0), glm::dvec3(0, 1, 0), glm::dvec3(0, -1, 0), glm::dvec3(0, 0, 1),
-        glm::dvec3(0, 0, -1), glm::normalize(glm::dvec3(1, 2, 3)), glm::normalize(glm::dvec3(-3, -2, 0.1))}) {
+       {glm::dvec3(1, 0, 0), glm::dvec3(-1, 0, 0), glm::dvec3(0, 1, 0), glm::dvec3(0, -1, 0),
+        glm::dvec3(0, 0, 1), glm::dvec3(0, 0, -1), glm::normalize(glm::dvec3(1, 2, 3)),
+        glm::normalize(glm::dvec3(-3, -2, 0.1))}) {
     const glm::dmat3 turn = turned_up(up);
     expect_near(turn * up, {0, 1, 0});
     EXPECT_NEAR(glm::determinant(turn), 1, 1e-12);
@@ -106,18 +113,21 @@ TEST(View, UpTurnsAreRotationsThatTakeItToY) {
   }
 }
 
-/// The pixel that an orthographic camera has in the middle of its picture at a point, by hand: x to the right, y down.
+/// The pixel that an orthographic camera has in the middle of its picture at a point, by hand: x to
+/// the right, y down.
 glm::dvec2 pixel_of(const Scene& scene, const glm::dvec3& p) {
   const glm::dvec3 local(glm::inverse(scene.camera.world_from_camera) * glm::dvec4(p, 1));
   const auto& w = scene.camera.screen_window.value();
-  return {(local.x - w[0]) / (w[1] - w[0]) * scene.film.width, (w[3] - local.y) / (w[3] - w[2]) * scene.film.height};
+  return {(local.x - w[0]) / (w[1] - w[0]) * scene.film.width,
+          (w[3] - local.y) / (w[3] - w[2]) * scene.film.height};
 }
 
 TEST(Orthographic, PointsLieWhereTheyAreDrawn) {
   Scene scene = three_balls(200, 100);
   look(scene, {{"view", "front"}, {"projection", "orthographic"}});
   EXPECT_EQ(fov_of(scene.camera), 0);
-  // 22 wide and 10 high with a margin of 5 % of the half image on each side: 22 / (0.95 * 200) is more than 10 / (0.95 * 100).
+  // 22 wide and 10 high with a margin of 5 % of the half image on each side: 22 / (0.95 * 200) is
+  // more than 10 / (0.95 * 100).
   const double per_pixel = 22 / (0.95 * 200);
   EXPECT_NEAR(pixel_of(scene, {10, 0, 0}).x, 100 + 10 / per_pixel, 1e-9);
   EXPECT_NEAR(pixel_of(scene, {0, 4, 0}).y, 50 - 4 / per_pixel, 1e-9);
@@ -139,7 +149,8 @@ TEST(Orthographic, SidesOfOneLengthAtAllDepths) {
   Scene scene = three_balls();
   look(scene, {{"view", "iso"}, {"projection", "orthographic"}});
   const double near = glm::length(pixel_of(scene, {1, 0, 2}) - pixel_of(scene, {0, 0, 2}));
-  EXPECT_NEAR(near, glm::length(pixel_of(scene, {1, 0, -200}) - pixel_of(scene, {0, 0, -200})), 1e-9);
+  EXPECT_NEAR(near, glm::length(pixel_of(scene, {1, 0, -200}) - pixel_of(scene, {0, 0, -200})),
+              1e-9);
   // An axis of the three is sqrt(2/3) of its length.
   const auto& w = scene.camera.screen_window.value();
   EXPECT_NEAR(near, std::sqrt(2.0 / 3) * scene.film.width / (w[1] - w[0]), 1e-9);
@@ -157,11 +168,14 @@ TEST(Perspective, EverythingFitsFromEverySide) {
       for (const glm::vec3& p : test::capsules_of(scene).p0)
         for (int i = 0; i < 2000; ++i) {
           // Points all over the ball, by the golden spiral.
-          const double h = 1 - (2 * i + 1) / 2000.0, phi = i * 2.399963229728653, r = std::sqrt(1 - h * h);
+          const double h = 1 - (2 * i + 1) / 2000.0, phi = i * 2.399963229728653,
+                       r = std::sqrt(1 - h * h);
           const glm::dvec4 q =
-              camera_from_world * glm::dvec4(glm::dvec3(p) + glm::dvec3(r * std::cos(phi), h, r * std::sin(phi)), 1);
+              camera_from_world *
+              glm::dvec4(glm::dvec3(p) + glm::dvec3(r * std::cos(phi), h, r * std::sin(phi)), 1);
           ASSERT_GT(q.z, 0);
-          most = std::max({most, std::abs(q.x / q.z) / (1.5 * tangent), std::abs(q.y / q.z) / tangent});
+          most = std::max(
+              {most, std::abs(q.x / q.z) / (1.5 * tangent), std::abs(q.y / q.z) / tangent});
         }
       EXPECT_LE(most, 0.9501);
       EXPECT_GE(most, 0.94);
@@ -188,13 +202,16 @@ TEST(Look, WordsThatAreWrongNameTheirOption) {
   struct Row {
     const char *name, *value, *says;
   };
-  for (const Row& row : {Row{"view", "fornt", "'front'"}, Row{"view", "0,0,0", "no direction"}, Row{"view", "1,2", "no view"},
-                         Row{"view", "1,2,x", "no view"}, Row{"view", "1,2,3,4", "no view"}, Row{"view", "nan,0,0", "no view"},
-                         Row{"up", "w", "x, y, z"}, Row{"up", "-", "x, y, z"}, Row{"projection", "flat", "orthographic"},
-                         Row{"light", "sun", "studio, flat, dramatic"}, Row{"background", "whiet", "'white'"},
-                         Row{"background", "#12345", "no file"}, Row{"background", "1,2,0", "from 0 to 1"},
-                         Row{"background", "none.png", "no file"}, Row{"least-width", "-1", "0 to 64"},
-                         Row{"least-width", "wide", "wide"}, Row{"least-width", "65", "0 to 64"}})
+  for (const Row& row :
+       {Row{"view", "fornt", "'front'"}, Row{"view", "0,0,0", "no direction"},
+        Row{"view", "1,2", "no view"}, Row{"view", "1,2,x", "no view"},
+        Row{"view", "1,2,3,4", "no view"}, Row{"view", "nan,0,0", "no view"},
+        Row{"up", "w", "x, y, z"}, Row{"up", "-", "x, y, z"},
+        Row{"projection", "flat", "orthographic"}, Row{"light", "sun", "studio, flat, dramatic"},
+        Row{"background", "whiet", "'white'"}, Row{"background", "#12345", "no file"},
+        Row{"background", "1,2,0", "from 0 to 1"}, Row{"background", "none.png", "no file"},
+        Row{"least-width", "-1", "0 to 64"}, Row{"least-width", "wide", "wide"},
+        Row{"least-width", "65", "0 to 64"}})
     EXPECT_THAT(complaint([&] {
                   look(scene, {{row.name, row.value}});
                 }),
@@ -224,7 +241,8 @@ TEST(Light, SetUpsStandAroundTheCamera) {
   const double theta = std::numbers::pi * (texel / image.width + 0.5) / image.height;
   const double phi = 2 * std::numbers::pi * (texel % image.width + 0.5) / image.width;
   const glm::dvec3 from =
-      hard.world_from_light * glm::dvec3(std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta));
+      hard.world_from_light *
+      glm::dvec3(std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta));
   EXPECT_LT(glm::dot(from, axis_of(scene, 0)), -0.5);
   EXPECT_GT(glm::dot(from, axis_of(scene, 1)), 0.4);
 
@@ -234,7 +252,9 @@ TEST(Light, SetUpsStandAroundTheCamera) {
 }
 
 TEST(Background, ColoursAreWhatTheyAreCalled) {
-  const auto color = [](const char* text) { return parse_backdrop(text, test::NoImages(), "--background").color; };
+  const auto color = [](const char* text) {
+    return parse_backdrop(text, test::NoImages(), "--background").color;
+  };
   EXPECT_EQ(color("white"), glm::dvec3(1));
   EXPECT_EQ(color("#ffffff"), glm::dvec3(1));
   EXPECT_EQ(color("black"), glm::dvec3(0));

@@ -28,7 +28,8 @@ Scene before_camera() {
   shape.geometry = capsules;
   scene.shapes.push_back(shape);
   shape.geometry = SphereShape{0.001};
-  shape.world_from_object = glm::scale(glm::translate(glm::dmat4(1), glm::dvec3(0, 0, 50)), glm::dvec3(4));
+  shape.world_from_object =
+      glm::scale(glm::translate(glm::dmat4(1), glm::dvec3(0, 0, 50)), glm::dvec3(4));
   scene.shapes.push_back(shape);
   return scene;
 }
@@ -75,7 +76,8 @@ TEST(LeastWidth, ObjectsGrowForTheInstanceThatNeedsMost) {
   scene.shapes.clear();
   scene.film.least_width = 1;
   widen_to_least(scene);
-  EXPECT_FLOAT_EQ(std::get<CapsulesShape>(scene.objects[0].shapes[0].geometry).radius0[0], 0.5F * 0.8F);  // at 40
+  EXPECT_FLOAT_EQ(std::get<CapsulesShape>(scene.objects[0].shapes[0].geometry).radius0[0],
+                  0.5F * 0.8F);  // at 40
 }
 
 TEST(LeastWidth, StretchesCountByTheLeast) {

@@ -13,9 +13,11 @@
 
 namespace caplet::test {
 
-/// Rays that are as good as parallel, along +z through the square of half side `half` around the axis.
+/// Rays that are as good as parallel, along +z through the square of half side `half` around the
+/// axis.
 std::string parallel_view(double half = 1, int max_depth = 100);
-/// Light of 1 from everywhere, found by rays alone; the same from a sphere around all, which is sampled as well.
+/// Light of 1 from everywhere, found by rays alone; the same from a sphere around all, which is
+/// sampled as well.
 std::string white_sky();
 std::string white_walls();
 
@@ -31,12 +33,14 @@ testing::AssertionResult agrees(const Mean& mean, double expected, double tolera
 
 /// Media "a", "b" and "c", which absorb 0.3, 0.5 and 0.9 per unit.
 std::string three_media();
-/// What the light along +z from the point of that height loses in them, as an optical length. `before`: statements before the
-/// camera's.
-double lost(double z, const std::string& shapes, const std::string& before = "", const std::string& lens = "");
+/// What the light along +z from the point of that height loses in them, as an optical length.
+/// `before`: statements before the camera's.
+double lost(double z, const std::string& shapes, const std::string& before = "",
+            const std::string& lens = "");
 /// Solids that light passes, around the z axis.
 std::string sphere(double z, double r, const std::string& inside, const std::string& outside = "");
-std::string box(double z0, double z1, const std::string& inside, const std::string& outside = "", double half = 1);
+std::string box(double z0, double z1, const std::string& inside, const std::string& outside = "",
+                double half = 1);
 
 /// Mean of exp(-sigma l) over the chords l of a sphere that parallel rays meet.
 double sphere_transmittance(double sigma, double radius);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Which medium a point is in where solids touch, share faces or lie within each other with faces at the same place
-// (docs/media.md).
+// Which medium a point is in where solids touch, share faces or lie within each other with faces at
+// the same place (docs/media.md).
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -20,13 +20,15 @@ namespace {
 constexpr double near = 2e-4;
 
 TEST(Touching, BoxesThatShareAFace) {
-  for (const double half : {1.0, 0.3, 2.0}) {  // of the second one: the larger one in front, or the smaller one
+  for (const double half :
+       {1.0, 0.3, 2.0}) {  // of the second one: the larger one in front, or the smaller one
     const std::string first = box(-1, 0, "a"), second = box(0, 0.5, "c", "", half);
     EXPECT_NEAR(lost(-9, first + second), 0.3 + 0.45, near) << half;
     EXPECT_NEAR(lost(-9, second + first), 0.3 + 0.45, near) << half;
   }
   EXPECT_NEAR(lost(-9, box(-0.5, 0, "c") + box(0, 1, "a")), 0.3 + 0.45, near);
-  EXPECT_NEAR(lost(-9, box(-2, -1, "a") + box(-1, 0, "c") + box(0, 1, "a") + box(1, 2, "c", "", 5)), 2 * (0.3 + 0.9), near);
+  EXPECT_NEAR(lost(-9, box(-2, -1, "a") + box(-1, 0, "c") + box(0, 1, "a") + box(1, 2, "c", "", 5)),
+              2 * (0.3 + 0.9), near);
   EXPECT_NEAR(lost(-9, box(-2, -1, "b") + box(-1, 0, "b") + box(0.5, 1, "b")), 0.5 * 2.5, near);
 }
 
@@ -55,8 +57,9 @@ TEST(Touching, InnerSolidsWithAFaceOfTheOuterOne) {
     }
   // A capsule within one, with the same radius and an end of it.
   const auto capsule = [](const std::string& in, const std::string& out, double z0, double z1) {
-    return "MediumInterface \"" + in + "\" \"" + out + "\" Shape \"capsule\" \"point3 p0\" [0 0 " + std::to_string(z0) +
-           "] \"point3 p1\" [0 0 " + std::to_string(z1) + "] \"float radius\" 0.5\n";
+    return "MediumInterface \"" + in + "\" \"" + out + "\" Shape \"capsule\" \"point3 p0\" [0 0 " +
+           std::to_string(z0) + "] \"point3 p1\" [0 0 " + std::to_string(z1) +
+           "] \"float radius\" 0.5\n";
   };
   EXPECT_NEAR(lost(-9, capsule("a", "", -1, 1) + capsule("c", "a", -1, 0)), 2 * 0.9 + 0.3, near);
   EXPECT_NEAR(lost(-9, capsule("a", "", -1, 1) + capsule("c", "a", 0, 1)), 2 * 0.9 + 0.3, near);
@@ -64,17 +67,21 @@ TEST(Touching, InnerSolidsWithAFaceOfTheOuterOne) {
 
 TEST(Touching, CsgShapesAndMeshes) {
   const std::string difference =
-      "ObjectBegin \"s\" Shape \"box\" \"point3 p0\" [-1 -1 -1] \"point3 p1\" [1 1 1] ObjectEnd ObjectBegin \"t\" Shape \"box\" "
+      "ObjectBegin \"s\" Shape \"box\" \"point3 p0\" [-1 -1 -1] \"point3 p1\" [1 1 1] ObjectEnd "
+      "ObjectBegin \"t\" Shape \"box\" "
       "\"point3 p0\" [-0.3 "
-      "-0.3 -1] \"point3 p1\" [0.3 0.3 0] ObjectEnd MediumInterface \"a\" \"\" Shape \"csg\" \"string operands\" [\"s\" \"t\"] "
+      "-0.3 -1] \"point3 p1\" [0.3 0.3 0] ObjectEnd MediumInterface \"a\" \"\" Shape \"csg\" "
+      "\"string operands\" [\"s\" \"t\"] "
       "\"string operation\" "
       "\"difference\"\n";
   EXPECT_NEAR(lost(-9, difference), 0.3, near);
   EXPECT_NEAR(lost(-9, difference + box(-1, 0, "c", "", 0.3)), 0.3 + 0.9, near);
   const std::string mesh =
-      "MediumInterface \"b\" \"\" Shape \"trianglemesh\" \"point3 P\" [-1 -1 -1 1 -1 -1 1 1 -1 -1 1 -1 -1 -1 1 1 -1 1 1 1 1 -1 1 "
+      "MediumInterface \"b\" \"\" Shape \"trianglemesh\" \"point3 P\" [-1 -1 -1 1 -1 -1 1 1 -1 -1 "
+      "1 -1 -1 -1 1 1 -1 1 1 1 1 -1 1 "
       "1] "
-      "\"integer indices\" [0 2 1 0 3 2 4 5 6 4 6 7 0 1 5 0 5 4 1 2 6 1 6 5 2 3 7 2 7 6 3 0 4 3 4 7]\n";
+      "\"integer indices\" [0 2 1 0 3 2 4 5 6 4 6 7 0 1 5 0 5 4 1 2 6 1 6 5 2 3 7 2 7 6 3 0 4 3 4 "
+      "7]\n";
   for (const double half : {0.5, 1.0, 3.0}) {
     EXPECT_NEAR(lost(-9, mesh + box(1, 2, "c", "", half)), 1 + 0.9, near) << half;
     EXPECT_NEAR(lost(-9, mesh + box(-2, -1, "c", "", half)), 1 + 0.9, near) << half;
@@ -89,31 +96,38 @@ TEST(Touching, WallsBehindInterfaces) {
   const std::string lit =
       "AttributeBegin AreaLightSource \"diffuse\" \"rgb L\" [2 2 2]  Material \"diffuse\" \"rgb "
       "reflectance\" "
-      "[0 0 0] MediumInterface \"\" \"\" Shape \"box\" \"point3 p0\" [-2 -2 0] \"point3 p1\" [2 2 1] AttributeEnd\n";
+      "[0 0 0] MediumInterface \"\" \"\" Shape \"box\" \"point3 p0\" [-2 -2 0] \"point3 p1\" [2 2 "
+      "1] AttributeEnd\n";
   EXPECT_TRUE(agrees(seen(view + lit + box(-1, 0, "a"), 16), 2 * std::exp(-0.3)));
   EXPECT_TRUE(agrees(seen(view + box(-1, 0, "a") + lit, 16), 2 * std::exp(-0.3)));
   // The same with a wall that a distant light shines on: there and back.
-  const std::string shone =
-      parallel_view(0.2) +
-      "WorldBegin\nLightSource \"distant\" \"point3 from\" [0 0 -1] \"point3 to\" [0 0 0] \"rgb L\" [1 1 1]\n" + three_media() +
-      "Material \"diffuse\" \"rgb reflectance\" [0.5 0.5 0.5]\nShape \"box\" \"point3 p0\" [-9 -9 0] \"point3 p1\" [9 9 1]\n";
-  for (const std::string& order : {box(-1, 0, "a") + box(-2, -1, "c", "", 5), box(-2, -1, "c") + box(-1, 0, "a", "", 5)})
+  const std::string shone = parallel_view(0.2) +
+                            "WorldBegin\nLightSource \"distant\" \"point3 from\" [0 0 -1] \"point3 "
+                            "to\" [0 0 0] \"rgb L\" [1 1 1]\n" +
+                            three_media() +
+                            "Material \"diffuse\" \"rgb reflectance\" [0.5 0.5 0.5]\nShape \"box\" "
+                            "\"point3 p0\" [-9 -9 0] \"point3 p1\" [9 9 1]\n";
+  for (const std::string& order :
+       {box(-1, 0, "a") + box(-2, -1, "c", "", 5), box(-2, -1, "c") + box(-1, 0, "a", "", 5)})
     EXPECT_TRUE(agrees(seen(shone + order, 16), 0.5 / std::numbers::pi * std::exp(-2 * 1.2), 1e-3));
 }
 
 // What is left last says what is around, whichever of the surfaces at one place comes first.
 TEST(Touching, ShadowRaysLeaveSolidsWithOneFace) {
-  const std::string shone =
-      parallel_view(0.2) +
-      "WorldBegin\nLightSource \"distant\" \"point3 from\" [0 0 -1] \"point3 to\" [0 0 0] \"rgb L\" [1 1 1]\n" + three_media() +
-      "Material \"diffuse\" \"rgb reflectance\" [0.5 0.5 0.5]\nShape \"box\" \"point3 p0\" [-9 -9 0] \"point3 p1\" [9 9 1]\n";
+  const std::string shone = parallel_view(0.2) +
+                            "WorldBegin\nLightSource \"distant\" \"point3 from\" [0 0 -1] \"point3 "
+                            "to\" [0 0 0] \"rgb L\" [1 1 1]\n" +
+                            three_media() +
+                            "Material \"diffuse\" \"rgb reflectance\" [0.5 0.5 0.5]\nShape \"box\" "
+                            "\"point3 p0\" [-9 -9 0] \"point3 p1\" [9 9 1]\n";
   const std::string outer = box(-2, -1, "a"), inner = box(-2, -1.5, "c", "a", 0.5);
   for (const std::string& order : {outer + inner, inner + outer})
-    EXPECT_TRUE(agrees(seen(shone + order, 16), 0.5 / std::numbers::pi * std::exp(-2 * (0.45 + 0.15)), 1e-3));
+    EXPECT_TRUE(agrees(seen(shone + order, 16),
+                       0.5 / std::numbers::pi * std::exp(-2 * (0.45 + 0.15)), 1e-3));
 }
 
-// Faces of a mesh that meet in the way of a ray are gone through once. So far out that a coordinate in four, as floats are, is
-// that of an edge.
+// Faces of a mesh that meet in the way of a ray are gone through once. So far out that a coordinate
+// in four, as floats are, is that of an edge.
 TEST(Touching, EdgesOfMeshes) {
   constexpr int n = 16;
   const double at = 16384, cell = std::ldexp(1, -7), half = n * cell / 2;
@@ -141,36 +155,45 @@ TEST(Touching, EdgesOfMeshes) {
     triangle(number(n, i + 1), number(n, i), top);
   }
   const std::string scene =
-      "Integrator \"volpath\" \"integer maxdepth\" 5\nLookAt " + std::to_string(at + half) + " " + std::to_string(half) +
-      " -0.5 " + std::to_string(at + half) + " " + std::to_string(half) +
-      " 0 0 1 0\nCamera \"perspective\" \"float fov\" 4\nWorldBegin\nLightSource \"distant\" \"point3 from\" [0 0 -1] \"point3 "
+      "Integrator \"volpath\" \"integer maxdepth\" 5\nLookAt " + std::to_string(at + half) + " " +
+      std::to_string(half) + " -0.5 " + std::to_string(at + half) + " " + std::to_string(half) +
+      " 0 0 1 0\nCamera \"perspective\" \"float fov\" 4\nWorldBegin\nLightSource \"distant\" "
+      "\"point3 from\" [0 0 -1] \"point3 "
       "to\" [0 0 0] \"rgb L\" [1 1 1]\n" +
-      three_media() + "Material \"diffuse\" \"rgb reflectance\" [0.5 0.5 0.5]\nShape \"bilinearmesh\" \"point3 P\" [16380 -4 0 " +
+      three_media() +
+      "Material \"diffuse\" \"rgb reflectance\" [0.5 0.5 0.5]\nShape \"bilinearmesh\" \"point3 P\" "
+      "[16380 -4 0 " +
       "16390 -4 0 16380 4 0 16390 4 0]\nMaterial \"interface\" ";
-  const std::string mesh =
-      "MediumInterface \"a\" \"\" Shape \"trianglemesh\" \"point3 P\" [" + points + "] \"integer indices\" [" + indices + "]\n";
-  const std::string behind = "MediumInterface \"b\" \"\" Shape \"box\" \"point3 p0\" [16380 -4 -4] \"point3 p1\" [16390 4 -3]\n";
+  const std::string mesh = "MediumInterface \"a\" \"\" Shape \"trianglemesh\" \"point3 P\" [" +
+                           points + "] \"integer indices\" [" + indices + "]\n";
+  const std::string behind =
+      "MediumInterface \"b\" \"\" Shape \"box\" \"point3 p0\" [16380 -4 -4] \"point3 p1\" [16390 4 "
+      "-3]\n";
   const Mean alone = seen(scene + behind, 64), both = seen(scene + behind + mesh, 64);
   EXPECT_NEAR(alone.value, 0.5 / std::numbers::pi * std::exp(-0.5), 1e-3);
   // Lengths within the pyramid fall from 1 at its middle to the border.
   const double seen_half = 0.5 * std::tan(2 * std::numbers::pi / 180);
   double expected = 0;
-  for (int i = 0; i < 1000; ++i) expected += 2 * (i + 0.5) / 1e6 * std::exp(-0.3 * (1 - seen_half / half * (i + 0.5) / 1000));
+  for (int i = 0; i < 1000; ++i)
+    expected += 2 * (i + 0.5) / 1e6 * std::exp(-0.3 * (1 - seen_half / half * (i + 0.5) / 1000));
   EXPECT_NEAR(both.value / alone.value, expected, 0.01);
 }
 
-// A pane of glass that stands on a box: what is seen is the light between its faces, which comes back a geometric series of
-// times.
+// A pane of glass that stands on a box: what is seen is the light between its faces, which comes
+// back a geometric series of times.
 TEST(Touching, GlassOnABox) {
-  const double r = std::pow(0.5 / 2.5, 2), through = std::exp(-0.45), round = r * r * through * through;
+  const double r = std::pow(0.5 / 2.5, 2), through = std::exp(-0.45),
+               round = r * r * through * through;
   const double passed = (1 - r) * (1 - r) * through / (1 - round),
                mirrored = r + (1 - r) * (1 - r) * r * through * through / (1 - round);
-  const double a = std::exp(-0.3), before = a * (passed + mirrored * a), behind = passed * a + mirrored;
+  const double a = std::exp(-0.3), before = a * (passed + mirrored * a),
+               behind = passed * a + mirrored;
   const std::string view = parallel_view(0.2) + "WorldBegin\n" + white_sky() + three_media();
   const auto glass = [](double half) {
-    return "AttributeBegin Material \"dielectric\" \"float eta\" 1.5 MediumInterface \"c\" \"\" Shape \"box\" \"point3 p0\" [-" +
-           std::to_string(half) + " -" + std::to_string(half) + " 0] \"point3 p1\" [" + std::to_string(half) + " " +
-           std::to_string(half) + " 0.5] AttributeEnd\n";
+    return "AttributeBegin Material \"dielectric\" \"float eta\" 1.5 MediumInterface \"c\" \"\" "
+           "Shape \"box\" \"point3 p0\" [-" +
+           std::to_string(half) + " -" + std::to_string(half) + " 0] \"point3 p1\" [" +
+           std::to_string(half) + " " + std::to_string(half) + " 0.5] AttributeEnd\n";
   };
   for (const double half : {0.9, 1.0, 4.0}) {
     EXPECT_TRUE(agrees(seen(view + box(-1, 0, "a") + glass(half), 512), before)) << half;
@@ -215,11 +238,13 @@ std::vector<GridBox> grid_boxes(unsigned seed, int wanted) {
     const auto cells = [&](const auto& visit) {
       for (int z = one.low[2]; z < one.high[2]; ++z)
         for (int y = one.low[1]; y < one.high[1]; ++y)
-          for (int x = one.low[0]; x < one.high[0]; ++x) visit(over[static_cast<std::size_t>((z * side + y) * side + x)]);
+          for (int x = one.low[0]; x < one.high[0]; ++x)
+            visit(over[static_cast<std::size_t>((z * side + y) * side + x)]);
     };
     cells([&](const std::vector<std::size_t>& here) {
       fits = fits && here.size() < 4;
-      for (const std::size_t i : here) fits = fits && (out[i].size() != one.size() || out[i].medium == one.medium);
+      for (const std::size_t i : here)
+        fits = fits && (out[i].size() != one.size() || out[i].medium == one.medium);
     });
     if (!fits) continue;
     cells([&](std::vector<std::size_t>& here) { here.push_back(out.size()); });
@@ -235,7 +260,9 @@ double lost_in(const std::vector<GridBox>& boxes, int x, int y, double from) {
     const GridBox* smallest = nullptr;
     for (const GridBox& one : boxes)
       if (one.holds(x, y, z) && (!smallest || one.size() < smallest->size())) smallest = &one;
-    if (smallest) sum += std::clamp(z + 1 - from, 0.0, 1.0) * sigmas[static_cast<std::size_t>(smallest->medium)];
+    if (smallest)
+      sum +=
+          std::clamp(z + 1 - from, 0.0, 1.0) * sigmas[static_cast<std::size_t>(smallest->medium)];
   }
   return sum;
 }
@@ -245,12 +272,14 @@ std::string text_of(const std::vector<GridBox>& boxes, bool placed, bool glass) 
   std::string out = "Scale 0.1 0.1 0.1\n";
   std::array<bool, side * side> glazed{};
   for (const GridBox& one : boxes) {
-    out += "AttributeBegin MediumInterface \"" + std::string(1, static_cast<char>('a' + one.medium)) + "\" \"\" Material ";
+    out += "AttributeBegin MediumInterface \"" +
+           std::string(1, static_cast<char>('a' + one.medium)) + "\" \"\" Material ";
     // No ray is scattered more than twice, so that none is ended by chance.
     bool clear = glass;
     const auto columns = [&](const auto& visit) {
       for (int y = one.low[1]; y < one.high[1]; ++y)
-        for (int x = one.low[0]; x < one.high[0]; ++x) visit(glazed[static_cast<std::size_t>(y * side + x)]);
+        for (int x = one.low[0]; x < one.high[0]; ++x)
+          visit(glazed[static_cast<std::size_t>(y * side + x)]);
     };
     columns([&](bool here) { clear = clear && !here; });
     if (clear) columns([](bool& here) { here = true; });
@@ -258,24 +287,27 @@ std::string text_of(const std::vector<GridBox>& boxes, bool placed, bool glass) 
     std::array<int, 3> d{};
     for (std::size_t k = 0; k < 3; ++k) d[k] = one.high[k] - one.low[k];
     const auto three = [](const std::array<int, 3>& v) {
-      return " " + std::to_string(v[0]) + " " + std::to_string(v[1]) + " " + std::to_string(v[2]) + " ";
+      return " " + std::to_string(v[0]) + " " + std::to_string(v[1]) + " " + std::to_string(v[2]) +
+             " ";
     };
     if (placed)
       out += "Translate" + three(one.low) + "Scale" + three(d) +
              "Scale 0.7 0.7 0.7 Shape \"box\" \"point3 p0\" [0 0 0] \"point3 p1\" "
              "[1.4285714285714286 1.4285714285714286 1.4285714285714286]";
     else
-      out += "Shape \"box\" \"point3 p0\" [" + three(one.low) + "] \"point3 p1\" [" + three(one.high) + "]";
+      out += "Shape \"box\" \"point3 p0\" [" + three(one.low) + "] \"point3 p1\" [" +
+             three(one.high) + "]";
     out += " AttributeEnd\n";
   }
   return out;
 }
 
 /// One pixel of three a cell along each axis counts, whose rays keep to the cell.
-void compare_columns(const std::vector<GridBox>& boxes, const std::string& light, const std::string& wall,
-                     const std::string& shapes, double times) {
+void compare_columns(const std::vector<GridBox>& boxes, const std::string& light,
+                     const std::string& wall, const std::string& shapes, double times) {
   const std::string view =
-      "Integrator \"volpath\" \"integer maxdepth\" 1000\nTranslate -0.6 -0.6 999\nCamera \"perspective\" \"float fov\" " +
+      "Integrator \"volpath\" \"integer maxdepth\" 1000\nTranslate -0.6 -0.6 999\nCamera "
+      "\"perspective\" \"float fov\" " +
       std::to_string(2 * std::atan(0.6e-3) * 180 / std::numbers::pi) +
       "\nPixelFilter \"box\" \"float xradius\" 0.5 \"float yradius\" 0.5\nWorldBegin\n" + light;
   const auto picture = [&](const std::string& text) {
@@ -292,7 +324,8 @@ void compare_columns(const std::vector<GridBox>& boxes, const std::string& light
     for (int x = 0; x < side; ++x) {
       // Rows go down.
       const auto at = static_cast<std::size_t>((3 * (side - 1 - y) + 1) * 3 * side + 3 * x + 1);
-      const double seen_here = std::log(bright.floats[at] / dark.floats[at]), expected = times * 0.1 * lost_in(boxes, x, y, 0);
+      const double seen_here = std::log(bright.floats[at] / dark.floats[at]),
+                   expected = times * 0.1 * lost_in(boxes, x, y, 0);
       wrong += std::abs(seen_here - expected) > 1e-3;
       if (wrong == 1 && std::abs(seen_here - expected) > 1e-3)
         ADD_FAILURE() << x << " " << y << ": " << seen_here << ", not " << expected;
@@ -306,16 +339,19 @@ TEST(Touching, BoxesOnAGrid) {
     ASSERT_GT(boxes.size(), 150u);
     for (const bool placed : {false, true})
       for (const bool glass : {false, true}) {
-        SCOPED_TRACE(testing::Message() << seed << (placed ? " placed" : "") << (glass ? " glass" : ""));
+        SCOPED_TRACE(testing::Message()
+                     << seed << (placed ? " placed" : "") << (glass ? " glass" : ""));
         compare_columns(boxes, white_sky(), "", text_of(boxes, placed, glass), 1);
       }
   }
 }
 
 TEST(Touching, BoxesOnAGridWeakenShadowRays) {
-  const std::string light = "LightSource \"distant\" \"point3 from\" [0 0 -1] \"point3 to\" [0 0 0] \"rgb L\" [1 1 1]\n";
+  const std::string light =
+      "LightSource \"distant\" \"point3 from\" [0 0 -1] \"point3 to\" [0 0 0] \"rgb L\" [1 1 1]\n";
   const std::string wall =
-      "AttributeBegin Material \"diffuse\" \"rgb reflectance\" [0.5 0.5 0.5] Shape \"bilinearmesh\" \"point3 P\" [-50 -50 1.2 50 "
+      "AttributeBegin Material \"diffuse\" \"rgb reflectance\" [0.5 0.5 0.5] Shape "
+      "\"bilinearmesh\" \"point3 P\" [-50 -50 1.2 50 "
       "-50 1.2 -50 50 1.2 50 50 "
       "1.2] AttributeEnd\n";
   for (const unsigned seed : {4u, 5u}) {
@@ -334,8 +370,10 @@ TEST(Touching, TheCameraAmongBoxesOnAGrid) {
     for (int i = 0; i < 12; ++i) {
       const int x = static_cast<int>(random() % side), y = static_cast<int>(random() % side);
       const double z = 0.25 * static_cast<double>(random() % (4 * side));  // on faces too
-      const std::string moved = "Translate " + std::to_string(-0.1 * (x + 0.4)) + " " + std::to_string(-0.1 * (y + 0.3)) + " 0\n";
-      EXPECT_NEAR(lost(0.1 * z, moved + text_of(boxes, i % 2 == 1, i % 3 == 1)), 0.1 * lost_in(boxes, x, y, z), 1e-3)
+      const std::string moved = "Translate " + std::to_string(-0.1 * (x + 0.4)) + " " +
+                                std::to_string(-0.1 * (y + 0.3)) + " 0\n";
+      EXPECT_NEAR(lost(0.1 * z, moved + text_of(boxes, i % 2 == 1, i % 3 == 1)),
+                  0.1 * lost_in(boxes, x, y, z), 1e-3)
           << x << " " << y << " " << z;
     }
   }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Materials, lamps and the camera of a glTF file beside what Blender's importer makes of it (blender/make.py). Its numbers are
-// floats, written with seven digits.
+// Materials, lamps and the camera of a glTF file beside what Blender's importer makes of it
+// (blender/make.py). Its numbers are floats, written with seven digits.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -37,14 +37,16 @@ const Scene& ours() {
 }
 
 const Shape& shape_of(const std::string& name) {
-  return *std::ranges::find(ours().shapes, name, &Shape::name);  // nodes have the names of their materials
+  return *std::ranges::find(ours().shapes, name,
+                            &Shape::name);  // nodes have the names of their materials
 }
 
 glm::dvec3 color_of(const Json& json) { return {json.at(0), json.at(1), json.at(2)}; }
 
 void expect_near(const glm::dvec3& a, const glm::dvec3& b, const std::string& what) {
   EXPECT_LT(glm::length(a - b), kDigits * (1 + glm::length(b)))
-      << what << ": " << a.x << " " << a.y << " " << a.z << " is not " << b.x << " " << b.y << " " << b.z;
+      << what << ": " << a.x << " " << a.y << " " << a.z << " is not " << b.x << " " << b.y << " "
+      << b.z;
 }
 
 /// A column of a matrix of Blender's world, whose z is up, in the file's, whose y is.
@@ -60,8 +62,11 @@ TEST(Blender, MaterialsOfGltf) {
     const Json& looks = one.value();
     const Shape& shape = shape_of(one.key());
     const auto& model = std::get<PrincipledMaterial>(ours().materials.at(shape.material).model);
-    const auto near = [&](double value, const char* socket) { EXPECT_NEAR(value, looks.at(socket), kDigits * 2) << socket; };
-    expect_near(std::get<RgbSpectrum>(model.base_color).rgb, color_of(looks.at("Base Color")), "Base Color");
+    const auto near = [&](double value, const char* socket) {
+      EXPECT_NEAR(value, looks.at(socket), kDigits * 2) << socket;
+    };
+    expect_near(std::get<RgbSpectrum>(model.base_color).rgb, color_of(looks.at("Base Color")),
+                "Base Color");
     near(model.metallic, "Metallic");
     near(model.roughness, "Roughness");
     near(model.eta, "IOR");
@@ -71,12 +76,15 @@ TEST(Blender, MaterialsOfGltf) {
     if (model.coat > 0) near(model.coat_roughness, "Coat Roughness");
     near(shape.alpha ? std::get<ConstantSpectrum>(shape.alpha->value).value : 1, "Alpha");
     // Ours has one number: the greatest of the colour.
-    const glm::dvec3 sheen = looks.at("Sheen Weight").get<double>() * color_of(looks.at("Sheen Tint"));
+    const glm::dvec3 sheen =
+        looks.at("Sheen Weight").get<double>() * color_of(looks.at("Sheen Tint"));
     EXPECT_NEAR(model.sheen, std::max({sheen.x, sheen.y, sheen.z}), kDigits);
-    const glm::dvec3 emitted = looks.at("Emission Strength").get<double>() * color_of(looks.at("Emission Color"));
+    const glm::dvec3 emitted =
+        looks.at("Emission Strength").get<double>() * color_of(looks.at("Emission Color"));
     ASSERT_EQ(shape.emission.has_value(), emitted != glm::dvec3(0));
     if (shape.emission)
-      expect_near(shape.emission->scale * std::get<RgbSpectrum>(shape.emission->radiance).rgb, emitted, "Emission");
+      expect_near(shape.emission->scale * std::get<RgbSpectrum>(shape.emission->radiance).rgb,
+                  emitted, "Emission");
   }
 }
 
@@ -91,10 +99,12 @@ TEST(Blender, LampsOfGltf) {
     SCOPED_TRACE(name);
     const Json& lamp = theirs.at("lamps").at(name);
     const Light& light = ours().lights[i];
-    const glm::dvec3 position = column(lamp.at("matrix"), 3), direction = -column(lamp.at("matrix"), 2);
+    const glm::dvec3 position = column(lamp.at("matrix"), 3),
+                     direction = -column(lamp.at("matrix"), 2);
     const double energy = lamp.at("energy");
     const auto lit = [&](const Spectrum& spectrum, double expected) {
-      expect_near(light.scale * std::get<RgbSpectrum>(spectrum).rgb, expected * color_of(lamp.at("color")), "color");
+      expect_near(light.scale * std::get<RgbSpectrum>(spectrum).rgb,
+                  expected * color_of(lamp.at("color")), "color");
     };
     if (lamp.at("type") == "SUN") {
       const auto& sun = std::get<DistantLight>(light.model);
@@ -111,7 +121,8 @@ TEST(Blender, LampsOfGltf) {
       expect_near(spot.direction, direction, "direction");
       const double outer = 0.5 * lamp.at("spot_size").get<double>();
       EXPECT_NEAR(spot.total_angle, outer, kDigits);
-      EXPECT_NEAR(spot.falloff_start_angle, outer * (1 - lamp.at("spot_blend").get<double>()), kDigits);
+      EXPECT_NEAR(spot.falloff_start_angle, outer * (1 - lamp.at("spot_blend").get<double>()),
+                  kDigits);
     }
   }
 }

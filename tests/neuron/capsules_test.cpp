@@ -37,8 +37,10 @@ CapsulesShape read_text(const std::string& text) {
 }
 
 TEST(Capsules, LinesMayBeSpacedAnyWay) {
-  for (const char* text : {"<1, 2, 3> <4, 5, 6> 0.5\n", "<1,2,3><4,5,6>0.5", "# c\n\n  < 1 ,\t2 , 3 >  <4 ,5, 6 > .5 # end\r\n",
-                           "\xef\xbb\xbf<1, 2, 3> <4, 5, 6> +0.5\r", "<1e0, 2.0, 3> <4, 5, 6> 5e-1#x"}) {
+  for (const char* text :
+       {"<1, 2, 3> <4, 5, 6> 0.5\n", "<1,2,3><4,5,6>0.5",
+        "# c\n\n  < 1 ,\t2 , 3 >  <4 ,5, 6 > .5 # end\r\n",
+        "\xef\xbb\xbf<1, 2, 3> <4, 5, 6> +0.5\r", "<1e0, 2.0, 3> <4, 5, 6> 5e-1#x"}) {
     SCOPED_TRACE(text);
     const CapsulesShape capsules = read_text(text);
     EXPECT_EQ(capsules.p0, std::vector<glm::vec3>{glm::vec3(1, 2, 3)});
@@ -58,7 +60,9 @@ TEST(Capsules, ASecondRadiusTapers) {
 TEST(Capsules, MaterialsAreAskedForOnceInOrderOfFirstUse) {
   Asked asked;
   const CapsulesShape capsules = read_text(
-      "<0,0,0> <0,0,1> 1 steel\n<0,0,0> <0,0,1> 1 2 \"red wood\"\n\n<0,0,0> <0,0,1> 1\n<0,0,0> <0,0,1> 3 steel # again\n", asked);
+      "<0,0,0> <0,0,1> 1 steel\n<0,0,0> <0,0,1> 1 2 \"red wood\"\n\n<0,0,0> <0,0,1> 1\n<0,0,0> "
+      "<0,0,1> 3 steel # again\n",
+      asked);
   EXPECT_EQ(asked.names, (std::vector<std::string>{"steel", "red wood", ""}));
   EXPECT_EQ(capsules.materials, (std::vector<std::uint32_t>{101, 102, 103, 101}));
   EXPECT_EQ(asked.places[0].line, 1);
@@ -74,20 +78,23 @@ TEST(Capsules, WithoutNamesNothingIsAskedFor) {
 }
 
 TEST(Capsules, AnUnknownMaterialIsRefusedAtItsPlace) {
-  const std::filesystem::path path = test::write_file("a.capsules", "\n<0,0,0> <0,0,1> 1 nothing\n");
+  const std::filesystem::path path =
+      test::write_file("a.capsules", "\n<0,0,0> <0,0,1> 1 nothing\n");
   const auto refuse = [](const std::string& name, const SourceLocation& where) -> std::uint32_t {
     throw InputError(where, "no material " + name);
   };
-  EXPECT_EQ(test::complaint([&] { read_capsules(path, refuse); }), path.string() + ":2:19: no material nothing");
+  EXPECT_EQ(test::complaint([&] { read_capsules(path, refuse); }),
+            path.string() + ":2:19: no material nothing");
 }
 
-// Several chunks (a megabyte each), with names and tapering in some of them: as the generator wrote it, with one thread and with
-// four.
+// Several chunks (a megabyte each), with names and tapering in some of them: as the generator wrote
+// it, with one thread and with four.
 TEST(Capsules, LargeFilesDoNotDependOnThreads) {
   std::string text;
   constexpr int kCount = 60000;
   for (int i = 0; i < kCount; ++i)
-    text += fmt::format("<{}, {}, {}> <{}, 0.125, -7> 0.5{}{}\n", i, i + 1, i + 2, -i, i % 1000 == 999 ? " 0.25" : "",
+    text += fmt::format("<{}, {}, {}> <{}, 0.125, -7> 0.5{}{}\n", i, i + 1, i + 2, -i,
+                        i % 1000 == 999 ? " 0.25" : "",
                         i % 3 == 0 ? fmt::format(" m{}", i / 20000) : "");
   ASSERT_GT(text.size(), std::size_t{2} << 20);
   const std::filesystem::path path = test::write_file("large.capsules", text);
@@ -114,7 +121,8 @@ TEST(Capsules, ErrorsInLaterChunksHaveTheirLine) {
   for (int i = 0; i < 100000; ++i) text += "<0, 0, 0> <0, 0, 1> 0.5\n";
   text += "<0, 0, 0> <0, 0, 1> nope\n";
   const std::filesystem::path path = test::write_file("late.capsules", text);
-  EXPECT_EQ(test::complaint([&] { read_capsules(path, Asked()); }), path.string() + ":100001:21: 'nope' is not a number");
+  EXPECT_EQ(test::complaint([&] { read_capsules(path, Asked()); }),
+            path.string() + ":100001:21: 'nope' is not a number");
 }
 
 struct Bad {
@@ -138,15 +146,18 @@ INSTANTIATE_TEST_SUITE_P(
     Texts, BadCapsules,
     testing::Values(
         Bad{"empty", "", ": ", "no capsules"}, Bad{"comments_only", "# a\n", ": ", "no capsules"},
-        Bad{"no_bracket", "<9,9,9> <9,9,8> 1\n0 0 0 1 1 1 1\n", ":2:1: ", "expected '<' of the first point, not '0 0"},
+        Bad{"no_bracket", "<9,9,9> <9,9,8> 1\n0 0 0 1 1 1 1\n",
+            ":2:1: ", "expected '<' of the first point, not '0 0"},
         Bad{"no_comma", "<0 0, 0> <0,0,1> 1\n", ":1:4: ", "expected ',' of the first point"},
         Bad{"four_numbers", "<0,0,0,0> <0,0,1> 1\n", ":1:7: ", "expected '>' of the first point"},
         Bad{"one_point", "<0,0,0>\n", ":1:8: ", "'<' of the second point is missing"},
         Bad{"no_number", "<9,9,9> <9,9,8> 1\n<0,,0> <0,0,1> 1\n", ":2:4: ", "',' is not a number"},
         Bad{"word", "<9,9,9> <9,9,8> 1\n<0,a,0> <0,0,1> 1\n", ":2:4: ", "'a' is not a number"},
         Bad{"no_radius", "<0,0,0> <0,0,1>\n", ":1:16: ", "a number is missing"},
-        Bad{"word_for_radius", "<9,9,9> <9,9,8> 1\n<0,0,0> <0,0,1> steel\n", ":2:17: ", "'steel' is not a number"},
-        Bad{"huge_radius", "<9,9,9> <9,9,8> 1\n<0,0,0> <0,0,1> +1e21\n", ":2:17: ", "'+1e21' is out of range (largest: 1e+16)"},
+        Bad{"word_for_radius", "<9,9,9> <9,9,8> 1\n<0,0,0> <0,0,1> steel\n",
+            ":2:17: ", "'steel' is not a number"},
+        Bad{"huge_radius", "<9,9,9> <9,9,8> 1\n<0,0,0> <0,0,1> +1e21\n",
+            ":2:17: ", "'+1e21' is out of range (largest: 1e+16)"},
         Bad{"zero_radius", "<0,0,0> <0,0,1> 0\n", ":1:17: ", "must be positive"},
         Bad{"negative_radius", "<0,0,0> <0,0,1> -1\n", ":1:17: ", "must be positive"},
         Bad{"zero_second_radius", "<0,0,0> <0,0,1> 1 0\n", ":1:19: ", "must be positive"},
@@ -154,16 +165,19 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"nan_second_radius", "<0,0,0> <0,0,1> 1 nan\n", ":1:19: ", "not finite"},
         Bad{"infinite", "<0,0,inf> <0,0,1> 1\n", ":1:6: ", "not finite"},
         Bad{"too_large", "<0,0,1e39> <0,0,1> 1\n", ":1:6: ", "out of range"},
-        Bad{"half_number", "<9,9,9> <9,9,8> 1\n<0,0,0> <0,0,1> 1 2x\n", ":2:19: ", "'2x' is not a number"},
+        Bad{"half_number", "<9,9,9> <9,9,8> 1\n<0,0,0> <0,0,1> 1 2x\n",
+            ":2:19: ", "'2x' is not a number"},
         Bad{"too_much", "<0,0,0> <0,0,1> 1 2 a b\n", ":1:23: ", "follows a complete capsule"},
         Bad{"three_radii", "<9,9,9> <9,9,8> 1\n<0,0,0> <0,0,1> 1 2 3\n", ":2:21: ", "'3'"},
         Bad{"open_quote", "<0,0,0> <0,0,1> 1 \"a\n", ":1:19: ", "does not end"},
         Bad{"empty_name", "<0,0,0> <0,0,1> 1 \"\"\n", ":1:19: ", "is empty"},
         Bad{"bracket_name", "<0,0,0> <0,0,1> 1 <a\n", ":1:19: ", "neither a radius nor a material"},
-        Bad{"binary", "<9,9,9> <9,9,8> 1\n" + std::string("<0,\0\x01\x02", 6), ":2:4: ", "'\\x00' is not a number"}));
+        Bad{"binary", "<9,9,9> <9,9,8> 1\n" + std::string("<0,\0\x01\x02", 6),
+            ":2:4: ", "'\\x00' is not a number"}));
 
 TEST(BadCapsulesFiles, AreNamedAndErrorsCollected) {
-  EXPECT_THAT(test::complaint([] { read_capsules("/nonexistent/a.capsules", Asked()); }), HasSubstr("No such file"));
+  EXPECT_THAT(test::complaint([] { read_capsules("/nonexistent/a.capsules", Asked()); }),
+              HasSubstr("No such file"));
   std::string text;
   for (int i = 0; i < 100; ++i) text += "x\n";
   const std::filesystem::path path = test::write_file("many.capsules", text);
@@ -178,7 +192,9 @@ TEST(BadCapsulesFiles, AreNamedAndErrorsCollected) {
 
 TEST(CapsulesScene, HasAMaterialForEachName) {
   const Scene scene = import_scene(
-      test::write_file("bare.capsules", "<0,0,0> <1,0,0> 1 a\n<0,0,0> <1,0,0> 1 b\n<0,0,0> <1,0,0> 1\n"), test::NoImages());
+      test::write_file("bare.capsules",
+                       "<0,0,0> <1,0,0> 1 a\n<0,0,0> <1,0,0> 1 b\n<0,0,0> <1,0,0> 1\n"),
+      test::NoImages());
   ASSERT_EQ(scene.materials.size(), 3U);
   EXPECT_EQ(scene.materials[0].name, "a");
   EXPECT_EQ(scene.materials[1].name, "b");
@@ -190,7 +206,9 @@ TEST(CapsulesScene, HasAMaterialForEachName) {
 // The largest numbers that are read leave room for the camera.
 TEST(CapsulesScene, OfTheLargestNumbersIsSound) {
   const Scene scene = import_scene(
-      test::write_file("far.capsules", "<1e16,1e16,1e16> <1e16,1e16,9e15> 1e16\n<-1e16,-1e16,-1e16> <1e16,-1e16,1e16> 1e16\n"),
+      test::write_file(
+          "far.capsules",
+          "<1e16,1e16,1e16> <1e16,1e16,9e15> 1e16\n<-1e16,-1e16,-1e16> <1e16,-1e16,1e16> 1e16\n"),
       test::NoImages());
   Diagnostics diagnostics;
   validate(scene, diagnostics);
@@ -198,7 +216,8 @@ TEST(CapsulesScene, OfTheLargestNumbersIsSound) {
 }
 
 TEST(CapsulesScene, HasOneMaterialWithoutNames) {
-  const Scene scene = import_scene(test::write_file("bare.capsules", "<0,0,0> <1,0,0> 1\n"), test::NoImages());
+  const Scene scene =
+      import_scene(test::write_file("bare.capsules", "<0,0,0> <1,0,0> 1\n"), test::NoImages());
   ASSERT_EQ(scene.materials.size(), 1U);
   EXPECT_EQ(scene.shapes.at(0).material, 0U);
 }

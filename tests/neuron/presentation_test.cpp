@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// The automatic camera sees everything, as large as fits, from a sensible side; the studio light stays out of the picture.
+// The automatic camera sees everything, as large as fits, from a sensible side; the studio light
+// stays out of the picture.
 #include "present/present.h"
 
 #include <gtest/gtest.h>
@@ -36,7 +37,9 @@ Scene capsules_scene(const CapsulesShape& capsules, int width, int height) {
 CapsulesShape cloud(const glm::vec3& half, int count, float radius, unsigned seed) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<float> unit(-1, 1);
-  const auto point = [&] { return half * glm::vec3(unit(random), unit(random), unit(random)) + glm::vec3(100, -50, 7); };
+  const auto point = [&] {
+    return half * glm::vec3(unit(random), unit(random), unit(random)) + glm::vec3(100, -50, 7);
+  };
   CapsulesShape capsules;
   for (int i = 0; i < count; ++i) {
     capsules.p0.push_back(point());
@@ -46,12 +49,15 @@ CapsulesShape cloud(const glm::vec3& half, int count, float radius, unsigned see
   return capsules;
 }
 
-/// Largest |x| / (width / shorter) and |y| / (height / shorter) on the image plane of the points of all end spheres: 1 is the
-/// edge of the film. By projecting points of the spheres, where the code under test uses planes.
+/// Largest |x| / (width / shorter) and |y| / (height / shorter) on the image plane of the points of
+/// all end spheres: 1 is the edge of the film. By projecting points of the spheres, where the code
+/// under test uses planes.
 glm::dvec2 reach(const Scene& scene) {
   const glm::dmat4 camera_from_world = glm::inverse(scene.camera.world_from_camera);
-  const double shorter = std::min(scene.film.width, scene.film.height), tangent = std::tan(fov_of(scene.camera) / 2);
-  const glm::dvec2 edge(tangent * scene.film.width / shorter, tangent * scene.film.height / shorter);
+  const double shorter = std::min(scene.film.width, scene.film.height),
+               tangent = std::tan(fov_of(scene.camera) / 2);
+  const glm::dvec2 edge(tangent * scene.film.width / shorter,
+                        tangent * scene.film.height / shorter);
   glm::dvec2 most(0);
   const CapsulesShape capsules = test::capsules_of(scene);
   for (std::size_t i = 0; i < capsules.p0.size(); ++i)
@@ -59,8 +65,11 @@ glm::dvec2 reach(const Scene& scene) {
       for (int step = 0; step < 64; ++step)
         for (int ring = 1; ring < 16; ++ring) {
           const double phi = step * std::numbers::pi / 32, theta = ring * std::numbers::pi / 16;
-          const glm::dvec3 offset(std::sin(theta) * std::cos(phi), std::cos(theta), std::sin(theta) * std::sin(phi));
-          const glm::dvec4 p = camera_from_world * glm::dvec4(glm::dvec3(end) + offset * double{capsules.radius0[i]}, 1);
+          const glm::dvec3 offset(std::sin(theta) * std::cos(phi), std::cos(theta),
+                                  std::sin(theta) * std::sin(phi));
+          const glm::dvec4 p =
+              camera_from_world *
+              glm::dvec4(glm::dvec3(end) + offset * double{capsules.radius0[i]}, 1);
           EXPECT_GT(p.z, 0);
           most = glm::max(most, glm::abs(glm::dvec2(p) / p.z) / edge);
         }
@@ -75,24 +84,30 @@ class Framing : public testing::TestWithParam<Size> {};
 
 TEST_P(Framing, EverythingFitsAndFillsTheFilm) {
   const Size size = GetParam();
-  for (const glm::vec3& half : {glm::vec3(10, 10, 10), glm::vec3(50, 20, 1), glm::vec3(1, 40, 3), glm::vec3(30, 1, 30)}) {
+  for (const glm::vec3& half :
+       {glm::vec3(10, 10, 10), glm::vec3(50, 20, 1), glm::vec3(1, 40, 3), glm::vec3(30, 1, 30)}) {
     SCOPED_TRACE(testing::Message() << half.x << " " << half.y << " " << half.z);
-    const glm::dvec2 most = reach(capsules_scene(cloud(half, 40, 0.5F, 7), size.width, size.height));
-    // A margin of 5 % of the half image on the axis that binds; sampled points of a sphere miss its silhouette by little.
+    const glm::dvec2 most =
+        reach(capsules_scene(cloud(half, 40, 0.5F, 7), size.width, size.height));
+    // A margin of 5 % of the half image on the axis that binds; sampled points of a sphere miss its
+    // silhouette by little.
     EXPECT_LE(most.x, 0.951);
     EXPECT_LE(most.y, 0.951);
     EXPECT_GE(std::max(most.x, most.y), 0.93);
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Sizes, Framing, testing::Values(Size{960, 540}, Size{540, 960}, Size{512, 512}, Size{2000, 400}));
+INSTANTIATE_TEST_SUITE_P(Sizes, Framing,
+                         testing::Values(Size{960, 540}, Size{540, 960}, Size{512, 512},
+                                         Size{2000, 400}));
 
 TEST(FramingAgain, FollowsTheFilmAlone) {
   Scene scene = capsules_scene(cloud({50, 20, 1}, 40, 0.5F, 3), 960, 540);
   const Camera before = scene.camera;
   scene.film.width = 540;
   frame_camera(scene);
-  EXPECT_EQ(scene.camera.world_from_camera[2], before.world_from_camera[2]) << "the direction depends on the shapes alone";
+  EXPECT_EQ(scene.camera.world_from_camera[2], before.world_from_camera[2])
+      << "the direction depends on the shapes alone";
   EXPECT_NE(scene.camera.world_from_camera[3], before.world_from_camera[3]);
   EXPECT_LE(std::max(reach(scene).x, reach(scene).y), 0.951);
   scene.film.width = 960;
@@ -101,10 +116,14 @@ TEST(FramingAgain, FollowsTheFilmAlone) {
 }
 
 TEST(FramingDirection, FlatScenesAreSeenFaceOn) {
-  const std::array<glm::vec3, 3> halves = {glm::vec3(1, 30, 40), glm::vec3(40, 1, 30), glm::vec3(30, 40, 1)};
+  const std::array<glm::vec3, 3> halves = {glm::vec3(1, 30, 40), glm::vec3(40, 1, 30),
+                                           glm::vec3(30, 40, 1)};
   for (int thin = 0; thin < 3; ++thin) {
-    const Scene scene = capsules_scene(cloud(halves[static_cast<std::size_t>(thin)], 200, 0.1F, 5), 960, 540);
-    EXPECT_GT(std::abs(scene.camera.world_from_camera[2][thin]), std::cos(15 * std::numbers::pi / 180)) << thin;
+    const Scene scene =
+        capsules_scene(cloud(halves[static_cast<std::size_t>(thin)], 200, 0.1F, 5), 960, 540);
+    EXPECT_GT(std::abs(scene.camera.world_from_camera[2][thin]),
+              std::cos(15 * std::numbers::pi / 180))
+        << thin;
   }
 }
 
@@ -129,7 +148,8 @@ TEST(FramingDegenerate, OneSphereAndOnePointCloudOnALine) {
   const double angle = std::atan(0.95 * std::tan(fov_of(sphere.camera) / 2));
   EXPECT_NEAR(glm::length(eye), 2 / std::sin(angle), 1e-9);
 
-  for (const glm::vec3& along : {glm::vec3(9, 0, 0), glm::vec3(0, 9, 0), glm::vec3(0, 0, 9), glm::vec3(3, 3, 3)}) {
+  for (const glm::vec3& along :
+       {glm::vec3(9, 0, 0), glm::vec3(0, 9, 0), glm::vec3(0, 0, 9), glm::vec3(3, 3, 3)}) {
     CapsulesShape line;
     line.p0 = {-along};
     line.p1 = {along};
@@ -140,13 +160,17 @@ TEST(FramingDegenerate, OneSphereAndOnePointCloudOnALine) {
   }
 }
 
-const EnvironmentImage& studio_of(const Scene& scene) { return *std::get<InfiniteLight>(scene.lights.at(0).model).image; }
+const EnvironmentImage& studio_of(const Scene& scene) {
+  return *std::get<InfiniteLight>(scene.lights.at(0).model).image;
+}
 
-/// The studio's radiance from a world direction (nearest texel), by the convention of EnvironmentImage.
+/// The studio's radiance from a world direction (nearest texel), by the convention of
+/// EnvironmentImage.
 glm::dvec3 radiance_from(const Scene& scene, const glm::dvec3& world) {
   const auto& light = std::get<InfiniteLight>(scene.lights.at(0).model);
   const glm::dvec3 d = glm::transpose(light.world_from_light) * glm::normalize(world);
-  const double u = std::fmod(std::atan2(d.y, d.x) / (2 * std::numbers::pi) + 1, 1.0), v = std::acos(d.z) / std::numbers::pi;
+  const double u = std::fmod(std::atan2(d.y, d.x) / (2 * std::numbers::pi) + 1, 1.0),
+               v = std::acos(d.z) / std::numbers::pi;
   const EnvironmentImage& image = studio_of(scene);
   const int column = std::min(static_cast<int>(u * image.width), image.width - 1);
   const int row = std::min(static_cast<int>(v * image.height), image.height - 1);
@@ -158,14 +182,15 @@ TEST(Studio, BackgroundIsDimAndEvenInTheFrame) {
   for (const Size size : {Size{960, 540}, Size{540, 960}, Size{512, 512}}) {
     const Scene scene = capsules_scene(cloud({30, 40, 10}, 50, 0.1F, 5), size.width, size.height);
     const glm::dmat3 axes(scene.camera.world_from_camera);
-    const double shorter = std::min(size.width, size.height), tangent = std::tan(fov_of(scene.camera) / 2);
+    const double shorter = std::min(size.width, size.height),
+                 tangent = std::tan(fov_of(scene.camera) / 2);
     const glm::dvec3 center = radiance_from(scene, axes[2]);
     EXPECT_GT(center.x, 0.005);
     EXPECT_LT(center.z, 0.1);
     for (int i = -10; i <= 10; ++i)
       for (int j = -10; j <= 10; ++j) {
-        const glm::dvec3 direction =
-            axes[2] + axes[0] * (tangent * size.width / shorter * i / 10) + axes[1] * (tangent * size.height / shorter * j / 10);
+        const glm::dvec3 direction = axes[2] + axes[0] * (tangent * size.width / shorter * i / 10) +
+                                     axes[1] * (tangent * size.height / shorter * j / 10);
         EXPECT_EQ(radiance_from(scene, direction), center) << i << " " << j;
       }
   }
@@ -175,25 +200,30 @@ TEST(Studio, ASurfaceFacingTheKeyIsWellExposed) {
   const Scene scene = capsules_scene(cloud({30, 40, 10}, 50, 0.1F, 5), 960, 540);
   const glm::dmat3 axes(scene.camera.world_from_camera);
   const double elevation = 42 * std::numbers::pi / 180, azimuth = -48 * std::numbers::pi / 180;
-  const glm::dvec3 normal = axes[0] * (std::sin(azimuth) * std::cos(elevation)) + axes[1] * std::sin(elevation) -
+  const glm::dvec3 normal = axes[0] * (std::sin(azimuth) * std::cos(elevation)) +
+                            axes[1] * std::sin(elevation) -
                             axes[2] * (std::cos(azimuth) * std::cos(elevation));
   // Irradiance by a midpoint sum over directions.
   double irradiance = 0;
   constexpr int kRows = 200;
   for (int row = 0; row < kRows; ++row)
     for (int column = 0; column < 2 * kRows; ++column) {
-      const double theta = std::numbers::pi * (row + 0.5) / kRows, phi = std::numbers::pi * (column + 0.5) / kRows;
-      const glm::dvec3 d(std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta));
+      const double theta = std::numbers::pi * (row + 0.5) / kRows,
+                   phi = std::numbers::pi * (column + 0.5) / kRows;
+      const glm::dvec3 d(std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi),
+                         std::cos(theta));
       const double cosine = glm::dot(d, normal);
-      if (cosine > 0) irradiance += radiance_from(scene, d).y * cosine * std::sin(theta) * std::pow(std::numbers::pi / kRows, 2);
+      if (cosine > 0)
+        irradiance += radiance_from(scene, d).y * cosine * std::sin(theta) *
+                      std::pow(std::numbers::pi / kRows, 2);
     }
   const double shown = 0.6 / std::numbers::pi * irradiance;
   EXPECT_GT(shown, 0.55);
   EXPECT_LT(shown, 0.8);
 }
 
-// Two rims of a cylinder that stands on y, of small balls: all of it is seen in each frame, and in one of them nearly to the
-// margin. The balls' radius is a thousandth of the cylinder's.
+// Two rims of a cylinder that stands on y, of small balls: all of it is seen in each frame, and in
+// one of them nearly to the margin. The balls' radius is a thousandth of the cylinder's.
 TEST_P(Framing, OfATurntable) {
   const auto [width, height] = GetParam();
   CapsulesShape rims;
@@ -209,12 +239,15 @@ TEST_P(Framing, OfATurntable) {
   for (int i = 0; i < count; ++i) {
     scene.camera = table.camera(static_cast<std::uint32_t>(i), count);
     most = glm::max(most, reach(scene));
-    // Around the vertical axis through the middle of the bounds, to the camera's right: seen from above against the clock.
+    // Around the vertical axis through the middle of the bounds, to the camera's right: seen from
+    // above against the clock.
     const double angle = 2 * std::numbers::pi * i / count;
     const glm::dvec3 middle(7, 7.5, 9), from = glm::dvec3(first.world_from_camera[3]) - middle;
     const glm::dvec3 to(std::cos(angle) * from.x + std::sin(angle) * from.z, from.y,
                         -std::sin(angle) * from.x + std::cos(angle) * from.z);
-    EXPECT_LT(glm::length(glm::dvec3(scene.camera.world_from_camera[3]) - middle - to), 1e-4 * glm::length(from)) << i;
+    EXPECT_LT(glm::length(glm::dvec3(scene.camera.world_from_camera[3]) - middle - to),
+              1e-4 * glm::length(from))
+        << i;
   }
   // The rims are held by polygons of 64 sides, which are a thousandth wider.
   EXPECT_LE(std::max(most.x, most.y), 0.951);
@@ -227,7 +260,8 @@ TEST(Palette, ColoursAreReflectancesAndDiffer) {
     EXPECT_GT(std::min({color.x, color.y, color.z}), 0.0);
     EXPECT_LT(std::max({color.x, color.y, color.z}), 0.9);
     EXPECT_EQ(palette_color(i + 10), color);
-    for (std::size_t j = 0; j < i; ++j) EXPECT_GT(glm::length(color - palette_color(j)), 0.1) << i << " " << j;
+    for (std::size_t j = 0; j < i; ++j)
+      EXPECT_GT(glm::length(color - palette_color(j)), 0.1) << i << " " << j;
   }
 }
 

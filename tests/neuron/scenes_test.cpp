@@ -12,7 +12,9 @@ namespace {
 
 using Counts = std::map<std::string, std::uint64_t>;
 
-Scene example(const std::string& name) { return import_scene(test::source_folder() / "scenes" / name, test::NoImages()); }
+Scene example(const std::string& name) {
+  return import_scene(test::source_folder() / "scenes" / name, test::NoImages());
+}
 
 TEST(ExampleScenes, Capsules) {
   const Scene scene = example("capsules.pbrt");

@@ -25,7 +25,9 @@ using testing::HasSubstr;
 
 using Paths = std::vector<fs::path>;
 
-Scene several(const Paths& paths, const ImportOptions& options = {}) { return import_scenes(paths, test::NoImages(), options); }
+Scene several(const Paths& paths, const ImportOptions& options = {}) {
+  return import_scenes(paths, test::NoImages(), options);
+}
 
 std::vector<std::string> names_of(const Scene& scene) {
   std::vector<std::string> out;
@@ -55,14 +57,16 @@ constexpr const char* pbrt_with_camera =
     "MakeNamedMaterial \"red\" \"string type\" \"diffuse\" \"rgb reflectance\" [.5 0 0]\n"
     "MakeNamedMaterial \"blue\" \"string type\" \"diffuse\" \"rgb reflectance\" [0 0 .5]\n"
     "MakeNamedMaterial \"mixed\" \"string type\" \"mix\" \"string materials\" [\"red\" \"blue\"]\n"
-    "NamedMaterial \"mixed\"\nShape \"sphere\" \"string name\" \"ball\" \"texture alpha\" \"both\"\n"
-    "ObjectBegin \"thing\"\nNamedMaterial \"blue\"\nShape \"capsule\" \"point3 p0\" [0 0 0] \"point3 p1\" [1 0 0] \"float "
+    "NamedMaterial \"mixed\"\nShape \"sphere\" \"string name\" \"ball\" \"texture alpha\" "
+    "\"both\"\n"
+    "ObjectBegin \"thing\"\nNamedMaterial \"blue\"\nShape \"capsule\" \"point3 p0\" [0 0 0] "
+    "\"point3 p1\" [1 0 0] \"float "
     "radius\" 1\nObjectEnd\n"
     "Translate 0 0 3\nObjectInstance \"thing\"\n";
 
 TEST(SeveralFiles, AreOneSceneWithNamesOfTheirOwn) {
-  const Scene scene =
-      several({write_file("one.swc", neuron(0)), write_file("two.swc", neuron(20)), write_file("tri.off", triangle)});
+  const Scene scene = several({write_file("one.swc", neuron(0)), write_file("two.swc", neuron(20)),
+                               write_file("tri.off", triangle)});
   EXPECT_THAT(names_of(scene), ElementsAre("one: sample 1", "one", "two: sample 1", "two", "tri"));
   // Colours of types are of both neurons.
   EXPECT_THAT(materials_of(scene), ElementsAre("soma", "basal dendrite", "default"));
@@ -77,7 +81,8 @@ TEST(SeveralFiles, AreOneSceneWithNamesOfTheirOwn) {
 
 // The camera is that of one scene of all the shapes.
 TEST(SeveralFiles, AreFramedTogether) {
-  const Scene scene = several({write_file("one.swc", neuron(0)), write_file("two.swc", neuron(20))});
+  const Scene scene =
+      several({write_file("one.swc", neuron(0)), write_file("two.swc", neuron(20))});
   EXPECT_TRUE(scene.has_no_up);
   Scene again;
   again.shapes = scene.shapes;
@@ -90,19 +95,25 @@ TEST(SeveralFiles, AreFramedTogether) {
 }
 
 TEST(SeveralFiles, OfOneNameAreNumbered) {
-  const Scene scene = several({write_file("one.swc", neuron(0)), write_file("one.swc", neuron(20))});  // in folders of their own
+  const Scene scene = several({write_file("one.swc", neuron(0)),
+                               write_file("one.swc", neuron(20))});  // in folders of their own
   EXPECT_THAT(names_of(scene), ElementsAre("one 1: sample 1", "one 1", "one 2: sample 1", "one 2"));
 }
 
-// The media of the file with the camera stand behind those of the one before it, whichever comes first.
+// The media of the file with the camera stand behind those of the one before it, whichever comes
+// first.
 TEST(SeveralFiles, TheCameraIsWithinItsOwnFilesMedium) {
   const auto scene_in = [](const std::string& name, const std::string& medium, bool has_camera) {
     const std::string made = "MakeNamedMedium \"" + medium + "\" \"string type\" \"homogeneous\"\n";
-    return write_file(name, made + (has_camera ? "MediumInterface \"\" \"" + medium + "\"\nCamera \"perspective\"\n" : "") +
-                                "WorldBegin\nMediumInterface \"" + medium +
-                                "\" \"\"\nMaterial \"interface\"\nShape \"sphere\"\n");
+    return write_file(
+        name, made +
+                  (has_camera ? "MediumInterface \"\" \"" + medium + "\"\nCamera \"perspective\"\n"
+                              : "") +
+                  "WorldBegin\nMediumInterface \"" + medium +
+                  "\" \"\"\nMaterial \"interface\"\nShape \"sphere\"\n");
   };
-  const fs::path fog = scene_in("fog.pbrt", "fog", true), smoke = scene_in("smoke.pbrt", "smoke", false);
+  const fs::path fog = scene_in("fog.pbrt", "fog", true),
+                 smoke = scene_in("smoke.pbrt", "smoke", false);
   for (const Paths& paths : {Paths{smoke, fog}, Paths{fog, smoke}}) {
     const Scene scene = several(paths);
     ASSERT_EQ(scene.media.size(), 2U);
@@ -112,7 +123,8 @@ TEST(SeveralFiles, TheCameraIsWithinItsOwnFilesMedium) {
 }
 
 TEST(SeveralFiles, AScenesCameraAndLightsCountForAll) {
-  const Scene scene = several({write_file("one.swc", neuron(0)), write_file("scene.pbrt", pbrt_with_camera)});
+  const Scene scene =
+      several({write_file("one.swc", neuron(0)), write_file("scene.pbrt", pbrt_with_camera)});
   EXPECT_FALSE(scene.automatic_camera);
   EXPECT_EQ(scene.film.width, 33);
   EXPECT_EQ(scene.camera.world_from_camera[3], glm::dvec4(0, 0, 9, 1));
@@ -120,9 +132,11 @@ TEST(SeveralFiles, AScenesCameraAndLightsCountForAll) {
   EXPECT_TRUE(std::holds_alternative<PointLight>(scene.lights[0].model));
 }
 
-// What a format asks for its thin branches does not depend on the order of files; what a scene says does not change.
+// What a format asks for its thin branches does not depend on the order of files; what a scene says
+// does not change.
 TEST(SeveralFiles, AreDrawnAsTheMostDemandingOfThemAsks) {
-  const fs::path neuron_file = write_file("one.swc", neuron(0)), mesh = write_file("tri.off", triangle);
+  const fs::path neuron_file = write_file("one.swc", neuron(0)),
+                 mesh = write_file("tri.off", triangle);
   for (const Paths& paths : {Paths{neuron_file, mesh}, Paths{mesh, neuron_file}}) {
     const Scene scene = several(paths);
     EXPECT_EQ(scene.film.least_width, 1.5) << paths[0];
@@ -142,8 +156,11 @@ TEST(SeveralFiles, KeepWhatTheirThingsReferTo) {
   const Scene scene = several({path, write_file("open.pbrt", open)});
   ASSERT_EQ(scene.shapes.size(), 2U);
   ASSERT_EQ(scene.textures.size(), 2 * alone.textures.size());
-  const auto texture_of_alpha = [&](const Shape& shape) { return scene.textures.at(*shape.alpha->texture); };
-  const Texture &first = texture_of_alpha(scene.shapes[0]), &second = texture_of_alpha(scene.shapes[1]);
+  const auto texture_of_alpha = [&](const Shape& shape) {
+    return scene.textures.at(*shape.alpha->texture);
+  };
+  const Texture &first = texture_of_alpha(scene.shapes[0]),
+                &second = texture_of_alpha(scene.shapes[1]);
   EXPECT_EQ(first.name, "both");
   EXPECT_EQ(second.name, "both");
   const std::uint32_t dots = *std::get<MixTexture>(second.model).tex1.texture;
@@ -160,19 +177,23 @@ TEST(SeveralFiles, KeepWhatTheirThingsReferTo) {
 }
 
 TEST(SeveralFiles, BringOneCameraAtMost) {
-  const fs::path one = write_file("scene.pbrt", pbrt_with_camera), two = write_file("again.pbrt", pbrt_with_camera);
-  EXPECT_THAT(complaint([&] {
-                several({one, two});
-              }),
-              testing::AllOf(HasSubstr("again.pbrt: brings a camera"), HasSubstr("scene.pbrt does")));
+  const fs::path one = write_file("scene.pbrt", pbrt_with_camera),
+                 two = write_file("again.pbrt", pbrt_with_camera);
+  EXPECT_THAT(
+      complaint([&] {
+        several({one, two});
+      }),
+      testing::AllOf(HasSubstr("again.pbrt: brings a camera"), HasSubstr("scene.pbrt does")));
 }
 
 // A camera that was framed to a scene by itself is framed again.
 TEST(SeveralFiles, AnAutomaticCameraIsNone) {
   const std::string automatic =
-      "LookAt 0 0 9  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" 35 \"bool automatic\" true\nWorldBegin\n"
+      "LookAt 0 0 9  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" 35 \"bool automatic\" "
+      "true\nWorldBegin\n"
       "LightSource \"infinite\" \"string preset\" \"studio\"\nShape \"sphere\"\n";
-  const Scene scene = several({write_file("automatic.pbrt", automatic), write_file("one.swc", neuron(20))});
+  const Scene scene =
+      several({write_file("automatic.pbrt", automatic), write_file("one.swc", neuron(20))});
   EXPECT_TRUE(scene.automatic_camera);
   EXPECT_NE(scene.camera.world_from_camera[3], glm::dvec4(0, 0, 9, 1));
   EXPECT_EQ(scene.lights.size(), 1U);
@@ -180,7 +201,8 @@ TEST(SeveralFiles, AnAutomaticCameraIsNone) {
 
 TEST(SeveralFiles, OptionsGoToThoseThatKnowThem) {
   const Paths paths{write_file("one.swc", neuron(0)), write_file("tri.off", triangle)};
-  EXPECT_THAT(materials_of(several(paths, {{{"color", "order"}}})), ElementsAre("order 0", "default"));
+  EXPECT_THAT(materials_of(several(paths, {{{"color", "order"}}})),
+              ElementsAre("order 0", "default"));
   EXPECT_THAT(complaint([&] {
                 several(paths, {{{"style", "sticks"}}});
               }),
@@ -190,8 +212,9 @@ TEST(SeveralFiles, OptionsGoToThoseThatKnowThem) {
 TEST(SeveralFiles, OfFormatsThatAreNotReadSayWhatHelps) {
   using Row = std::pair<const char*, const char*>;
   for (const Row& row :
-       {Row{"cell.nml", "caplet.from_neuroml"}, Row{"cell.nml", "as SWC"}, Row{"cells.h5", "caplet.from_sonata"},
-        Row{"cells.h5", "caplet.from_morphio"}, Row{"cells.h5", "as SWC"}, Row{"cell.asc", "caplet.from_morphio"},
+       {Row{"cell.nml", "caplet.from_neuroml"}, Row{"cell.nml", "as SWC"},
+        Row{"cells.h5", "caplet.from_sonata"}, Row{"cells.h5", "caplet.from_morphio"},
+        Row{"cells.h5", "as SWC"}, Row{"cell.asc", "caplet.from_morphio"},
         Row{"cell.asc", "as SWC"}, Row{"circuit_config.json", "caplet.from_sonata"}})
     EXPECT_THAT(complaint([&] { several({write_file(row.first, "x")}); }),
                 testing::AllOf(HasSubstr("not read"), HasSubstr(row.second)));
@@ -212,7 +235,9 @@ constexpr const char* tree =  // a soma, a dendrite that forks twice, and an axo
 
 ImportOptions color(const std::string& by) { return {{{"color", by}}}; }
 
-TEST(SwcColors, OrdersCountForks) { EXPECT_THAT(branch_orders(parse_swc(tree, "tree")), ElementsAre(0, 0, 0, 1, 1, 2, 2, 0, 0)); }
+TEST(SwcColors, OrdersCountForks) {
+  EXPECT_THAT(branch_orders(parse_swc(tree, "tree")), ElementsAre(0, 0, 0, 1, 1, 2, 2, 0, 0));
+}
 
 TEST(SwcColors, DepthsAreWaysAlongTheBranches) {
   EXPECT_THAT(path_depths(parse_swc(tree, "tree")), ElementsAre(0, 3, 6, 11, 11, 13, 14, 4, 5));
@@ -227,7 +252,9 @@ TEST(SwcColors, TheOrderOfLinesDoesNotMatter) {
 /// The colour of the segment to the sample, by the number of the segment.
 glm::dvec3 color_of_segment(const Scene& scene, std::size_t segment) {
   const std::uint32_t material = test::capsules_of(scene).materials.at(segment);
-  return std::get<RgbSpectrum>(std::get<DiffuseMaterial>(scene.materials.at(material).model).reflectance).rgb;
+  return std::get<RgbSpectrum>(
+             std::get<DiffuseMaterial>(scene.materials.at(material).model).reflectance)
+      .rgb;
 }
 
 /// sRGB bytes of matplotlib's viridis, linear.
@@ -247,8 +274,8 @@ TEST(SwcColors, GoAlongTheMap) {
   EXPECT_LT(glm::length(color_of_segment(scene, 4) - linear(253, 231, 37)), 0.01);  // 6
 }
 
-// One value is neither the least nor the greatest: the middle of the map, (33, 145, 140) of matplotlib's, but for half a step
-// of 63.
+// One value is neither the least nor the greatest: the middle of the map, (33, 145, 140) of
+// matplotlib's, but for half a step of 63.
 TEST(SwcColors, OneValueHasTheMiddleOfTheMap) {
   const Paths bare{write_file("bare.swc", "1 1 0 0 0 2 -1\n2 3 0 3 0 1 1\n3 3 0 6 0 1 2\n")};
   const glm::dvec3 middle = linear(33, 145, 140);
@@ -265,13 +292,16 @@ TEST(SwcColors, OfFilesAreTheirs) {
   const Scene scene = several(paths, color("file"));
   EXPECT_THAT(materials_of(scene), ElementsAre("one", "two"));
   EXPECT_EQ(color_of_segment(scene, 0), palette_color(0));
-  EXPECT_EQ(std::get<RgbSpectrum>(std::get<DiffuseMaterial>(scene.materials[1].model).reflectance).rgb, palette_color(1));
+  EXPECT_EQ(
+      std::get<RgbSpectrum>(std::get<DiffuseMaterial>(scene.materials[1].model).reflectance).rgb,
+      palette_color(1));
 }
 
 TEST(SwcColors, OfValuesByOrderIdAndFile) {
   const Paths paths{write_file("tree.swc", tree)};
   const auto last = linear(253, 231, 37), first = linear(68, 1, 84);
-  const fs::path by_order = write_file("order.txt", "# potential (mV)\n# of a model\n0\n10\n# spiking\n0\n0\n0\n0\n0\n0\n0\n");
+  const fs::path by_order = write_file(
+      "order.txt", "# potential (mV)\n# of a model\n0\n10\n# spiking\n0\n0\n0\n0\n0\n0\n0\n");
   Scene scene = several(paths, color(by_order.string()));
   EXPECT_LT(glm::length(color_of_segment(scene, 0) - last), 0.01);
   EXPECT_LT(glm::length(color_of_segment(scene, 1) - first), 0.01);
@@ -292,7 +322,8 @@ TEST(SwcColors, OfValuesByOrderIdAndFile) {
 
 // One scale for all files, and that of --range where it is asked for.
 TEST(SwcColors, HaveOneScale) {
-  const Paths two{write_file("one.swc", neuron(0)), write_file("two.swc", "1 1 50 0 0 2 -1\n2 3 50 12 0 1 1\n")};
+  const Paths two{write_file("one.swc", neuron(0)),
+                  write_file("two.swc", "1 1 50 0 0 2 -1\n2 3 50 12 0 1 1\n")};
   const Scene scene = several(two, color("depth"));  // to 6, and to 12
   EXPECT_LT(glm::length(color_of_segment(scene, 1) - linear(33, 145, 140)), 0.02);
   ASSERT_TRUE(scene.legend);
@@ -322,9 +353,14 @@ TEST(SwcColors, OfAFileForEachNeuron) {
 
 TEST(SwcColors, SayWhatIsWrong) {
   const Paths paths{write_file("tree.swc", tree)};
-  const auto said = [&](const ImportOptions& options) { return complaint([&] { several(paths, options); }); };
-  const auto of_text = [&](const std::string& text) { return said(color(write_file("values.txt", text).string())); };
-  EXPECT_THAT(said(color("chain")), testing::AllOf(HasSubstr("--color"), HasSubstr("type, file, order and depth")));
+  const auto said = [&](const ImportOptions& options) {
+    return complaint([&] { several(paths, options); });
+  };
+  const auto of_text = [&](const std::string& text) {
+    return said(color(write_file("values.txt", text).string()));
+  };
+  EXPECT_THAT(said(color("chain")),
+              testing::AllOf(HasSubstr("--color"), HasSubstr("type, file, order and depth")));
   EXPECT_THAT(of_text("1\n2\n"), HasSubstr("2 values: tree.swc has 9 samples"));
   EXPECT_THAT(of_text("1\nx\n"), HasSubstr("values.txt:2:1: 'x' is not a number"));
   EXPECT_THAT(of_text("1 1\n 2  y\n"), HasSubstr("'y' is not a number"));
@@ -337,7 +373,8 @@ TEST(SwcColors, SayWhatIsWrong) {
   for (const char* range : {"1", "1,1", "2,1", "a,b", "0,inf", "0,1,2"}) {
     ImportOptions options = color("depth");
     options.set("range", range);
-    EXPECT_THAT(said(options), testing::AllOf(HasSubstr("--range"), HasSubstr("LOW,HIGH"))) << range;
+    EXPECT_THAT(said(options), testing::AllOf(HasSubstr("--range"), HasSubstr("LOW,HIGH")))
+        << range;
   }
   ImportOptions options;
   options.set("range", "0,1");

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Queries against the reference: which crossing, where, of what; batches, capacities and camera rays.
+// Queries against the reference: which crossing, where, of what; batches, capacities and camera
+// rays.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -29,21 +30,25 @@ dvec3 origin_of(const RayRecord& ray) { return {ray.ox, ray.oy, ray.oz}; }
 dvec3 direction_of(const RayRecord& ray) { return {ray.dx, ray.dy, ray.dz}; }
 dvec3 to_dvec3(const float (&v)[3]) { return {v[0], v[1], v[2]}; }
 
-Scene scene_file(const std::string& name) { return import_scene(test::source_folder() / name, FileImageReader()); }
+Scene scene_file(const std::string& name) {
+  return import_scene(test::source_folder() / name, FileImageReader());
+}
 
-/// Origins around the scene and within it, directions towards its middle half and of lengths from 1/8 to 8.
+/// Origins around the scene and within it, directions towards its middle half and of lengths from
+/// 1/8 to 8.
 std::vector<RayRecord> random_rays(const Scene& scene, std::size_t count, unsigned seed) {
   std::mt19937_64 random(seed);
   std::uniform_real_distribution<double> unit(-1, 1);
   const Bounds bounds = bounds_of(scene);
   const dvec3 center = (bounds.min + bounds.max) * 0.5;
-  const double radius =
-      std::min(20.0, glm::length(bounds.max - bounds.min) * 0.5);  // a ground disk is no scale for what stands on it
+  const double radius = std::min(20.0, glm::length(bounds.max - bounds.min) *
+                                           0.5);  // a ground disk is no scale for what stands on it
   const auto in_cube = [&] { return dvec3(unit(random), unit(random), unit(random)); };
   std::vector<RayRecord> out;
   for (std::size_t i = 0; i < count; ++i) {
     const dvec3 o = center + in_cube() * radius * (i % 2 == 0 ? 2.0 : 0.2);
-    out.push_back(test::make_ray(o, (center + in_cube() * radius * 0.2 - o) * std::exp2(3 * unit(random))));
+    out.push_back(
+        test::make_ray(o, (center + in_cube() * radius * 0.2 - o) * std::exp2(3 * unit(random))));
   }
   return out;
 }
@@ -73,33 +78,40 @@ bool is_sheet(const Shape& shape) {
 bool is_on(const Scene& scene, const PickRecord& pick, const reference::SceneHit& hit) {
   const bool placed = hit.instance != reference::no_instance;
   const Identity identity = identity_of(scene, pick);
-  const Shape& shape = placed ? scene.objects[hit.object].shapes[hit.shape] : scene.shapes[hit.shape];
+  const Shape& shape =
+      placed ? scene.objects[hit.object].shapes[hit.shape] : scene.shapes[hit.shape];
   // The reference knows the normal of an open shape as stored, without ReverseOrientation.
   const bool leaving = hit.leaving != (is_sheet(shape) && shape.reverse_orientation);
-  return identity.shape == &shape && identity.instance == (placed ? std::optional(hit.instance) : std::nullopt) &&
-         pick.primitive == hit.primitive && pick.surface == hit.surface && pick.material == hit.material &&
-         (pick.leaving != 0) == leaving;
+  return identity.shape == &shape &&
+         identity.instance == (placed ? std::optional(hit.instance) : std::nullopt) &&
+         pick.primitive == hit.primitive && pick.surface == hit.surface &&
+         pick.material == hit.material && (pick.leaving != 0) == leaving;
 }
 
-/// How far device and reference may be apart along the surface's normal: `error` for the point and as much for the parameter, which
-/// the same bound covers (docs/numerics.md), 16 eps of the origin's distance, and the rounding of the shape's own numbers to
-/// floats, 8 eps of their size.
+/// How far device and reference may be apart along the surface's normal: `error` for the point and
+/// as much for the parameter, which the same bound covers (docs/numerics.md), 16 eps of the
+/// origin's distance, and the rounding of the shape's own numbers to floats, 8 eps of their size.
 double bound_of(const RayRecord& ray, const PickRecord& pick) {
   constexpr double eps = 0x1p-24;
-  const double scale = glm::length(origin_of(ray)) + glm::length(to_dvec3(pick.point)) + pick.t * glm::length(direction_of(ray));
+  const double scale = glm::length(origin_of(ray)) + glm::length(to_dvec3(pick.point)) +
+                       pick.t * glm::length(direction_of(ray));
   return 2 * static_cast<double>(pick.error) + (16 + 8) * eps * scale;
 }
 
 double cosine_of(const RayRecord& ray, const PickRecord& pick) {
-  return std::abs(glm::dot(to_dvec3(pick.normal), direction_of(ray))) / glm::length(direction_of(ray));
+  return std::abs(glm::dot(to_dvec3(pick.normal), direction_of(ray))) /
+         glm::length(direction_of(ray));
 }
 
-/// The same crossing on the device and by the reference, in the same place. A surface seen at an angle stretches the bound by 1 /
-/// cos; within 3 degrees of grazing, where its curvature would count too, only the identity is compared.
-void expect_same(const Scene& scene, const RayRecord& ray, const PickRecord& pick, const reference::SceneHit& hit, Tally& tally) {
+/// The same crossing on the device and by the reference, in the same place. A surface seen at an
+/// angle stretches the bound by 1 / cos; within 3 degrees of grazing, where its curvature would
+/// count too, only the identity is compared.
+void expect_same(const Scene& scene, const RayRecord& ray, const PickRecord& pick,
+                 const reference::SceneHit& hit, Tally& tally) {
   EXPECT_TRUE(is_on(scene, pick, hit));
   ++tally.hits;
-  const dvec3 o = origin_of(ray), d = direction_of(ray), n = to_dvec3(pick.normal), p = to_dvec3(pick.point);
+  const dvec3 o = origin_of(ray), d = direction_of(ray), n = to_dvec3(pick.normal),
+              p = to_dvec3(pick.point);
   EXPECT_NEAR(glm::length(n), 1, 1e-6);
   EXPECT_LE(glm::dot(n, d), 1e-6 * glm::length(d));
   const double cosine = cosine_of(ray, pick), bound = bound_of(ray, pick);
@@ -112,19 +124,24 @@ void expect_same(const Scene& scene, const RayRecord& ray, const PickRecord& pic
   EXPECT_LE(glm::length(p - (o + hit.t * d)) * cosine, bound);
 }
 
-/// The reference's crossing of the same surface nearest to the device's; the end when there is none.
-std::vector<reference::SceneHit>::iterator counterpart_of(const Scene& scene, const PickRecord& pick,
+/// The reference's crossing of the same surface nearest to the device's; the end when there is
+/// none.
+std::vector<reference::SceneHit>::iterator counterpart_of(const Scene& scene,
+                                                          const PickRecord& pick,
                                                           std::vector<reference::SceneHit>& hits) {
   auto out = hits.end();
   for (auto hit = hits.begin(); hit != hits.end(); ++hit)
-    if (is_on(scene, pick, *hit) && (out == hits.end() || std::abs(hit->t - pick.t) < std::abs(out->t - pick.t))) out = hit;
+    if (is_on(scene, pick, *hit) &&
+        (out == hits.end() || std::abs(hit->t - pick.t) < std::abs(out->t - pick.t)))
+      out = hit;
   return out;
 }
 
 class QueryOfScene : public testing::TestWithParam<std::string> {};
 INSTANTIATE_TEST_SUITE_P(Files, QueryOfScene,
-                         testing::Values("scenes/capsules.pbrt", "scenes/instances.pbrt", "scenes/gallery.pbrt",
-                                         "tests/query/solids.pbrt", "tests/render/everything.pbrt"));
+                         testing::Values("scenes/capsules.pbrt", "scenes/instances.pbrt",
+                                         "scenes/gallery.pbrt", "tests/query/solids.pbrt",
+                                         "tests/render/everything.pbrt"));
 
 TEST_P(QueryOfScene, NearestCrossingsAreTheReferences) {
   const Scene scene = scene_file(GetParam());
@@ -149,8 +166,9 @@ TEST_P(QueryOfScene, NearestCrossingsAreTheReferences) {
       std::vector<reference::SceneHit> hits = reference.all(ray);
       const auto counterpart = counterpart_of(scene, picks[i], hits);
       ASSERT_NE(counterpart, hits.end());
-      EXPECT_LE((counterpart->t - hit->t) * glm::length(ray.direction) * cosine_of(rays[i], picks[i]),
-                bound_of(rays[i], picks[i]));
+      EXPECT_LE(
+          (counterpart->t - hit->t) * glm::length(ray.direction) * cosine_of(rays[i], picks[i]),
+          bound_of(rays[i], picks[i]));
       expect_same(scene, rays[i], picks[i], *counterpart, tally);
     }
     EXPECT_GT(tally.hits, 300);
@@ -173,16 +191,19 @@ TEST_P(QueryOfScene, ListsAreTheReferences) {
     std::size_t longest = 0;
     for (std::size_t i = 0; i < rays.size(); ++i) {
       SCOPED_TRACE(i);
-      std::vector<reference::SceneHit> expected = reference.all({origin_of(rays[i]), direction_of(rays[i])});
+      std::vector<reference::SceneHit> expected =
+          reference.all({origin_of(rays[i]), direction_of(rays[i])});
       const auto begin = lists.begin[i], end = lists.begin[i + 1];
       longest = std::max(longest, end - begin);
       ASSERT_EQ(end - begin, expected.size());
       for (std::size_t k = begin; k < end; ++k) {
         const PickRecord& pick = lists.crossings[k];
         EXPECT_LE(k > begin ? lists.crossings[k - 1].t : 0, pick.t);
-        // Where surfaces lie on each other the order is the device's own: each crossing has its own counterpart.
+        // Where surfaces lie on each other the order is the device's own: each crossing has its own
+        // counterpart.
         const auto counterpart = counterpart_of(scene, pick, expected);
-        ASSERT_NE(counterpart, expected.end()) << "the reference has no such crossing near " << pick.t;
+        ASSERT_NE(counterpart, expected.end())
+            << "the reference has no such crossing near " << pick.t;
         expect_same(scene, rays[i], pick, *counterpart, tally);
         expected.erase(counterpart);
       }
@@ -195,9 +216,11 @@ TEST_P(QueryOfScene, BatchesDoNotMatter) {
   const FlatScene flat = lower(scene_file(GetParam()));
   const auto rays = random_rays(scene_file(GetParam()), 700, 4);
   const auto same = [](const std::vector<PickRecord>& a, const std::vector<PickRecord>& b) {
-    return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(PickRecord)) == 0;
+    return a.size() == b.size() &&
+           std::memcmp(a.data(), b.data(), a.size() * sizeof(PickRecord)) == 0;
   };
-  Query whole(flat, test::test_device()), pieces(flat, test::test_device(), {.batch_rays = 48, .batch_hits = 1000});
+  Query whole(flat, test::test_device()),
+      pieces(flat, test::test_device(), {.batch_rays = 48, .batch_hits = 1000});
   EXPECT_TRUE(same(whole.closest(rays), pieces.closest(rays)));
   const HitLists all = whole.all(rays, 64);
   for (const std::size_t capacity : {64u, 100u, 2000u}) {  // 15, 10 rays and 1 ray a launch
@@ -284,8 +307,8 @@ TEST(Query, CsgReportsItsOwnNameAndTheOperandsSurface) {
   const RayRecord down = test::make_ray({0.1, 0, 5}, {0, 0, -2});
   const HitLists lists = query.all(std::span(&down, 1), 8);
   ASSERT_EQ(lists.crossings.size(), 3u);
-  // The hollow is the second ball's lower half, seen from within; the first ball's lower half is left; then the floor, whose
-  // normal is turned down and which is therefore met from behind.
+  // The hollow is the second ball's lower half, seen from within; the first ball's lower half is
+  // left; then the floor, whose normal is turned down and which is therefore met from behind.
   const double side = std::sqrt(1 - 0.01);
   const double z[] = {1 - side, -side, -2};
   const char* names[] = {"bowl", "bowl", "0"};
@@ -328,15 +351,18 @@ __kernel void rays(__global const CameraRecord* camera, uint width, uint count, 
     const std::size_t count = std::size_t{flat.view.width} * flat.view.height;
     const Buffer<CameraRecord> camera(device, std::span(&flat.camera, 1));
     const Buffer<RayRecord> out(device, count);
-    set_arguments(device, kernel, camera, cl_uint{flat.view.width}, static_cast<cl_uint>(count), out);
+    set_arguments(device, kernel, camera, cl_uint{flat.view.width}, static_cast<cl_uint>(count),
+                  out);
     launch(device, kernel, count, 64);
     const std::vector<RayRecord> rays = out.read();
     for (std::size_t i = 0; i < count; i += 7) {
       const auto width = static_cast<std::size_t>(scene.film.width);
-      const RayRecord ours = ray_of_pixel(scene, static_cast<int>(i % width), static_cast<int>(i / width));
+      const RayRecord ours =
+          ray_of_pixel(scene, static_cast<int>(i % width), static_cast<int>(i / width));
       EXPECT_EQ(origin_of(ours), origin_of(rays[i]));
-      // The image plane within 2 roundings of numbers below 2, turned by 3 products and 2 sums of numbers below 2, normalised by
-      // a length of 5 roundings and a division of 5: fewer than 32 eps of a unit vector.
+      // The image plane within 2 roundings of numbers below 2, turned by 3 products and 2 sums of
+      // numbers below 2, normalised by a length of 5 roundings and a division of 5: fewer than 32
+      // eps of a unit vector.
       EXPECT_LE(glm::length(direction_of(ours) - direction_of(rays[i])), 32 * 0x1p-24) << i;
     }
   }
@@ -364,7 +390,8 @@ TEST(RayOfPixel, HitsWhatTheRenderShowsThere) {
     // Half a thousandth of a pixel off may cross an outline: fewer than one pixel in a thousand.
     std::size_t different = 0;
     for (std::size_t i = 0; i < rays.size(); ++i)
-      different += picks[i].object != objects[i] || (objects[i] != CAPLET_NONE && picks[i].primitive != primitives[i]);
+      different += picks[i].object != objects[i] ||
+                   (objects[i] != CAPLET_NONE && picks[i].primitive != primitives[i]);
     EXPECT_LE(different, rays.size() / 1000) << name;
   }
 }

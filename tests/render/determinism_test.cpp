@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Samples are addressed, not streamed: batches, passes and crops cannot change a bit; both traversals find the same things.
+// Samples are addressed, not streamed: batches, passes and crops cannot change a bit; both
+// traversals find the same things.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -20,7 +21,9 @@
 namespace caplet::test {
 namespace {
 
-std::filesystem::path scene_file() { return source_folder() / "tests" / "render" / "everything.pbrt"; }
+std::filesystem::path scene_file() {
+  return source_folder() / "tests" / "render" / "everything.pbrt";
+}
 
 /// Compute units and film hash of render_digest under an environment setting.
 std::pair<int, std::string> digest(const std::string& environment) {
@@ -30,19 +33,23 @@ std::pair<int, std::string> digest(const std::string& environment) {
   char hash[64] = "", line[1024] = "";
   // The last line is the digest; a slow compiler is told of before it.
   while (pipe != nullptr && std::fgets(line, sizeof line, pipe) != nullptr) continue;
-  if (pipe == nullptr || std::sscanf(line, "%d %63s", &units, hash) != 2) ADD_FAILURE() << "no digest from: " << command;
+  if (pipe == nullptr || std::sscanf(line, "%d %63s", &units, hash) != 2)
+    ADD_FAILURE() << "no digest from: " << command;
   EXPECT_EQ(::pclose(pipe), 0) << command;
   return {units, hash};
 }
 
-bool same_bits(const Film& a, const Film& b) { return a.layout() == b.layout() && std::ranges::equal(a.words(), b.words()); }
+bool same_bits(const Film& a, const Film& b) {
+  return a.layout() == b.layout() && std::ranges::equal(a.words(), b.words());
+}
 
 TEST(Determinism, BatchSizesDoNotChangeBits) {
   const Rendered one = render_file(scene_file(), 8);
   for (const std::size_t batch : {977u, 5000u, 1u << 20}) {
     RenderOptions options;
     options.batch_paths = batch;
-    EXPECT_TRUE(same_bits(one.result.film, render_file(scene_file(), 8, {}, options).result.film)) << batch;
+    EXPECT_TRUE(same_bits(one.result.film, render_file(scene_file(), 8, {}, options).result.film))
+        << batch;
   }
 }
 
@@ -65,13 +72,16 @@ TEST(Determinism, SeedsDiffer) {
 
 TEST(Determinism, CropIsPartOfTheWhole) {
   const Rendered whole = render_file(scene_file(), 4);
-  const Rendered crop = render_file(scene_file(), 4, [](Scene& scene) { scene.film.crop = {{10, 40, 5, 25}}; });
+  const Rendered crop = render_file(scene_file(), 4, [](Scene& scene) {
+    scene.film.crop = {{10, 40, 5, 25}};
+  });
   ASSERT_EQ(crop.image.data_width, 30);
   ASSERT_EQ(crop.image.data_height, 20);
   for (int y = 0; y < 20; ++y)
     for (int x = 0; x < 30; ++x)
       ASSERT_EQ(channel(crop.image, "R").floats[static_cast<std::size_t>(y * 30 + x)],
-                channel(whole.image, "R").floats[static_cast<std::size_t>((y + 5) * whole.image.width + x + 10)])
+                channel(whole.image, "R")
+                    .floats[static_cast<std::size_t>((y + 5) * whole.image.width + x + 10)])
           << x << " " << y;
 }
 
@@ -90,8 +100,8 @@ TEST(Encodings, CpuAndGpuTraversalsRenderTheSame) {
                  a.film.number(Layer::primitive, i) != b.film.number(Layer::primitive, i);
   // A ray within rounding of a silhouette may fall on either side: at most one pixel in a thousand.
   EXPECT_LE(different, pixels / 1000);
-  const Figures figures =
-      compare(picture_of(develop(a.film, scene, Layers::all())), picture_of(develop(b.film, scene, Layers::all())));
+  const Figures figures = compare(picture_of(develop(a.film, scene, Layers::all())),
+                                  picture_of(develop(b.film, scene, Layers::all())));
   EXPECT_LT(std::abs(figures.mean), 2e-3);
   // PoCL's compiler rounds every operation of both as it is written.
   if (test_device().is_pocl()) {
@@ -100,7 +110,8 @@ TEST(Encodings, CpuAndGpuTraversalsRenderTheSame) {
 }
 
 TEST(Encodings, AllThatGpusDoDifferentlyRendersTheSame) {
-  // What a GPU takes: one box at a time, a batch of 2^20 paths and so 2^18 sort bins (of a tree that is sorted for).
+  // What a GPU takes: one box at a time, a batch of 2^20 paths and so 2^18 sort bins (of a tree
+  // that is sorted for).
   Scene scene = import_scene(source_folder() / "scenes" / "capsules.pbrt", FileImageReader());
   add_cloud(scene);
   scene.film.width = 512;
@@ -122,7 +133,8 @@ TEST(Encodings, AllThatGpusDoDifferentlyRendersTheSame) {
   }
 }
 
-// Lamps of every shape, turned and mirrored ones in an instance: each has a way of its own to be sampled.
+// Lamps of every shape, turned and mirrored ones in an instance: each has a way of its own to be
+// sampled.
 TEST(Encodings, LampsOfEveryShapeLightTheSame) {
   const std::string lamp = "AreaLightSource \"diffuse\" \"rgb L\" [5 5 5] \"bool twosided\" true\n";
   const char* const shapes[] = {
@@ -141,15 +153,19 @@ TEST(Encodings, LampsOfEveryShapeLightTheSame) {
       R"(Shape "csg" "string operation" "difference" "string operands" ["block" "hole"])",
   };
   std::string world =
-      "ObjectBegin \"block\" Shape \"box\" \"point3 p0\" [-.2 -.2 -.2] \"point3 p1\" [.2 .2 .2] ObjectEnd\n"
+      "ObjectBegin \"block\" Shape \"box\" \"point3 p0\" [-.2 -.2 -.2] \"point3 p1\" [.2 .2 .2] "
+      "ObjectEnd\n"
       "ObjectBegin \"hole\" Translate .1 .1 0 Shape \"sphere\" \"float radius\" .2 ObjectEnd\n"
-      "Material \"diffuse\"\nAttributeBegin\nTranslate 0 0 -1\nShape \"disk\" \"float radius\" 9\nAttributeEnd\n";
+      "Material \"diffuse\"\nAttributeBegin\nTranslate 0 0 -1\nShape \"disk\" \"float radius\" "
+      "9\nAttributeEnd\n";
   for (std::size_t i = 0; i < std::size(shapes); ++i)
-    world += fmt::format("AttributeBegin\nTranslate {} {} {}\nRotate {} 1 2 3\n{}{}\nAttributeEnd\n",
-                         1.5 * static_cast<double>(i % 4) - 2, 1.5 * static_cast<double>(i / 4) - 2, 0.1 * static_cast<double>(i),
-                         20 * i, lamp, shapes[i]);
+    world +=
+        fmt::format("AttributeBegin\nTranslate {} {} {}\nRotate {} 1 2 3\n{}{}\nAttributeEnd\n",
+                    1.5 * static_cast<double>(i % 4) - 2, 1.5 * static_cast<double>(i / 4) - 2,
+                    0.1 * static_cast<double>(i), 20 * i, lamp, shapes[i]);
   const Scene scene = scene_of_text(
-      "Integrator \"path\" \"integer maxdepth\" 2\nLookAt 0 -6 4  0 0 0  0 0 1\nCamera \"perspective\" \"float fov\" 50\n"
+      "Integrator \"path\" \"integer maxdepth\" 2\nLookAt 0 -6 4  0 0 0  0 0 1\nCamera "
+      "\"perspective\" \"float fov\" 50\n"
       "Film \"rgb\" \"integer xresolution\" 32 \"integer yresolution\" 32\nWorldBegin\n" +
       world);
   RenderOptions options;

@@ -32,7 +32,8 @@ const LoweredScene& model() {
 }
 
 bool same(const Film& a, const Film& b) {
-  return a.layout() == b.layout() && a.parts() == b.parts() && std::ranges::equal(a.words(), b.words());
+  return a.layout() == b.layout() && a.parts() == b.parts() &&
+         std::ranges::equal(a.words(), b.words());
 }
 
 /// All samples in one pass over the whole window.
@@ -65,7 +66,9 @@ std::vector<FilmPart> random_parts(std::mt19937& random) {
   for (const auto& [x, width] : cuts(window.width, 1 + static_cast<int>(random() % 3), random))
     for (const auto& [y, height] : cuts(window.height, 1 + static_cast<int>(random() % 3), random))
       for (const auto& [begin, count] : cuts(samples, 1 + static_cast<int>(random() % 4), random))
-        parts.push_back({{x, y, width, height}, static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(count)});
+        parts.push_back({{x, y, width, height},
+                         static_cast<std::uint32_t>(begin),
+                         static_cast<std::uint32_t>(count)});
   std::ranges::shuffle(parts, random);
   return parts;
 }
@@ -76,7 +79,8 @@ TEST(FilmSplit, WindowsAndSamplesInAnyOrder) {
   std::mt19937 random(1);
   for (int i = 0; i < 6; ++i) {
     renderer.reset(model().view);
-    for (const FilmPart& part : random_parts(random)) renderer.pass(part.window, part.sample_begin, part.sample_count);
+    for (const FilmPart& part : random_parts(random))
+      renderer.pass(part.window, part.sample_begin, part.sample_count);
     EXPECT_TRUE(std::ranges::equal(renderer.film().read().words(), whole().words())) << i;
   }
 }
@@ -89,7 +93,8 @@ TEST(FilmSplit, NumbersAreThoseOfTheFirstSample) {
   std::size_t seen = 0;
   for (std::size_t pixel = 0; pixel < first.layout().window.pixels(); ++pixel) {
     EXPECT_EQ(whole().number(Layer::object, pixel), first.number(Layer::object, pixel)) << pixel;
-    EXPECT_EQ(whole().number(Layer::primitive, pixel), first.number(Layer::primitive, pixel)) << pixel;
+    EXPECT_EQ(whole().number(Layer::primitive, pixel), first.number(Layer::primitive, pixel))
+        << pixel;
     seen += first.number(Layer::object, pixel) != CAPLET_NONE ? 1 : 0;
   }
   EXPECT_GT(seen, 0u);
@@ -130,7 +135,8 @@ TEST(FilmSplit, PassesOfTheSameSamplesAreRefused) {
 
 TEST(FilmSplit, DevicesShareTheSamples) {
   const std::size_t units = test_device().info().compute_units;
-  if (!test_device().is_pocl() || units < 2) GTEST_SKIP() << "needs PoCL on two or more processors, to be divided";
+  if (!test_device().is_pocl() || units < 2)
+    GTEST_SKIP() << "needs PoCL on two or more processors, to be divided";
   for (std::size_t parts = 1; parts <= std::min<std::size_t>(units, 4); ++parts) {
     std::vector<Device> devices;
     try {
@@ -139,7 +145,8 @@ TEST(FilmSplit, DevicesShareTheSamples) {
       GTEST_SKIP() << refusal.what();
     }
     ASSERT_EQ(devices.size(), parts);
-    Session session(model().flat, model().view, devices, {.layers = Layers::all(), .pass_samples = 5});
+    Session session(model().flat, model().view, devices,
+                    {.layers = Layers::all(), .pass_samples = 5});
     for (const std::uint32_t count : {samples / 4, samples - samples / 4}) {
       std::uint32_t told = 0;
       double fraction = 0;
@@ -160,7 +167,8 @@ TEST(FilmSplit, DevicesShareTheSamples) {
 }
 
 TEST(FilmSplit, CancelledSessionsKeepWhatIsFinished) {
-  Session session(model().flat, model().view, {test_device()}, {.layers = Layers::all(), .pass_samples = 4});
+  Session session(model().flat, model().view, {test_device()},
+                  {.layers = Layers::all(), .pass_samples = 4});
   const auto cancel_at_8 = [&](const SessionProgress& progress) {
     if (progress.samples_done >= 8) session.cancel();
   };
@@ -182,7 +190,8 @@ TEST(FilmSplit, CancelledSessionsKeepWhatIsFinished) {
 }
 
 TEST(FilmSplit, WhatProgressThrowsEndsTheRenderAfterABatch) {
-  Session session(model().flat, model().view, {test_device()}, {.layers = Layers::all(), .batch_paths = 1u << 8});
+  Session session(model().flat, model().view, {test_device()},
+                  {.layers = Layers::all(), .batch_paths = 1u << 8});
   int told = 0;
   EXPECT_THROW(session.render(samples,
                               [&](const SessionProgress&) {
@@ -197,16 +206,19 @@ TEST(FilmSplit, WhatProgressThrowsEndsTheRenderAfterABatch) {
 }
 
 TEST(FilmSplit, SessionsEndAtTheirTimeLimitAfterOnePass) {
-  Session session(model().flat, model().view, {test_device()}, {.layers = Layers::none(), .pass_samples = 4});
+  Session session(model().flat, model().view, {test_device()},
+                  {.layers = Layers::none(), .pass_samples = 4});
   EXPECT_EQ(session.render(samples, {}, 1e-9), 4u);
-  EXPECT_THAT(session.film().parts(), testing::ElementsAre(FilmPart{session.film().layout().window, 0, 4}));
+  EXPECT_THAT(session.film().parts(),
+              testing::ElementsAre(FilmPart{session.film().layout().window, 0, 4}));
 }
 
 // A layer that is not asked for takes no room, and changes nothing of the others.
 TEST(FilmSplit, LayersDoNotSeeEachOther) {
   DeviceScene scene(test_device(), model().flat);
   const LayeredImage all = develop(whole(), model().scene, Layers::all());
-  for (const Layers layers : {Layers::none(), Layers::usual(), Layers::none().with(Layer::variance).with(Layer::object)}) {
+  for (const Layers layers : {Layers::none(), Layers::usual(),
+                              Layers::none().with(Layer::variance).with(Layer::object)}) {
     Renderer renderer(scene, model().view, {.layers = layers});
     renderer.pass(whole().layout().window, 0, samples);
     const Film film = renderer.film().read();

@@ -25,8 +25,9 @@ constexpr std::pair<Stage, const char*> stages[] = {
 
 // Stages of scenes with media carry what paths are within, and all that shading takes.
 bool is_of_media(Stage stage) {
-  return stage == Stage::camera_media || stage == Stage::recount_media || stage == Stage::sample_distance ||
-         stage == Stage::shade_media || stage == Stage::connect_media;
+  return stage == Stage::camera_media || stage == Stage::recount_media ||
+         stage == Stage::sample_distance || stage == Stage::shade_media ||
+         stage == Stage::connect_media;
 }
 
 TEST(Kernels, TakeWhatTheyUse) {
@@ -42,10 +43,12 @@ TEST(Kernels, TakeWhatTheyUse) {
   EXPECT_EQ(buffer_count(Stage::sort_prefix), 3u);  // the batch, keys and bins
 }
 
-// The driver's count of a kernel's arguments is the list's, and two: the number of items, and the counter of those there are.
+// The driver's count of a kernel's arguments is the list's, and two: the number of items, and the
+// counter of those there are.
 TEST(Kernels, HaveTheArgumentsOfTheirGroups) {
   for (const auto& [stage, name] : stages) {
-    const Program program = Program::from_source(test_device(), name, stage_source(stage), "-DCAPLET_REAL_WIDTH=1");
+    const Program program =
+        Program::from_source(test_device(), name, stage_source(stage), "-DCAPLET_REAL_WIDTH=1");
     EXPECT_EQ(program.kernel(name).getInfo<CL_KERNEL_NUM_ARGS>(), buffer_count(stage) + 2) << name;
   }
 }

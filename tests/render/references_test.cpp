@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Renders against Mitsuba 3 and pbrt-v4: a faster version of tests/validation and tools/pbrt_reference.py. Fewer samples widen
-// our own error: the allowances for means grow by three standard errors of the image mean, those of blocks by the expected noise
-// of a block (both from our own variance layer).
+// Renders against Mitsuba 3 and pbrt-v4: a faster version of tests/validation and
+// tools/pbrt_reference.py. Fewer samples widen our own error: the allowances for means grow by
+// three standard errors of the image mean, those of blocks by the expected noise of a block (both
+// from our own variance layer).
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -19,11 +20,14 @@
 namespace caplet::test {
 namespace {
 
-/// Renders `name` of reference/FOLDER as it is, with as many samples for each of its effort, and compares.
-void expect_agreement(const char* of, const ReferenceScene& scene, const std::function<void(Scene&)>& change) {
+/// Renders `name` of reference/FOLDER as it is, with as many samples for each of its effort, and
+/// compares.
+void expect_agreement(const char* of, const ReferenceScene& scene,
+                      const std::function<void(Scene&)>& change) {
   const auto folder = data_folder() / "reference" / of;
   const Rendered ours = render_file(folder / (scene.name + ".pbrt"), 64 * scene.samples, change);
-  const Picture a = picture_of(ours.image), b = picture_of(read_exr(folder / (scene.name + ".exr")));
+  const Picture a = picture_of(ours.image),
+                b = picture_of(read_exr(folder / (scene.name + ".exr")));
   const Figures figures = compare(a, b);
   double variance_of_sum = 0, block_noise = 0, sum = 0;
   for (std::size_t i = 0; i < a.variance.size(); ++i) {
@@ -36,8 +40,9 @@ void expect_agreement(const char* of, const ReferenceScene& scene, const std::fu
   for (std::size_t i = 0; i < a.variance.size(); ++i)
     block_noise += a.variance[i] / 64 / std::pow(std::max<double>(b.rgb[i], 0.02 * mean), 2);
   block_noise = std::sqrt(block_noise / static_cast<double>(a.variance.size()));
-  testing::Test::RecordProperty(
-      "figures", std::to_string(figures.mean) + " " + std::to_string(figures.blocks) + " " + std::to_string(figures.z_mean));
+  testing::Test::RecordProperty("figures", std::to_string(figures.mean) + " " +
+                                               std::to_string(figures.blocks) + " " +
+                                               std::to_string(figures.z_mean));
   EXPECT_LT(std::abs(figures.mean), scene.mean + 3 * mean_error);
   EXPECT_LT(figures.blocks, std::hypot(scene.blocks, 1.5 * block_noise));
   if (!scene.spectral) {
@@ -63,8 +68,8 @@ TEST_P(References, AgreesWithMitsuba) {
 
 INSTANTIATE_TEST_SUITE_P(Mitsuba, References, testing::ValuesIn(reference_scenes()), name_of);
 
-// The scenes that have rough metal, glass or coats, beside pbrt-v4's own pictures. With separable masking `glossy` is -0.5 %,
-// and 2.5 % in blocks.
+// The scenes that have rough metal, glass or coats, beside pbrt-v4's own pictures. With separable
+// masking `glossy` is -0.5 %, and 2.5 % in blocks.
 class PbrtReferences : public testing::TestWithParam<ReferenceScene> {};
 
 TEST_P(PbrtReferences, AgreesWithPbrt) {
@@ -72,32 +77,37 @@ TEST_P(PbrtReferences, AgreesWithPbrt) {
   expect_agreement("pbrt", GetParam(), {});
 }
 
-INSTANTIATE_TEST_SUITE_P(Pbrt, PbrtReferences,
-                         testing::Values(ReferenceScene{"glossy", false, 0.002, 0.006, 1, 4},
-                                         ReferenceScene{"coated", false, 0.005, 0.01, 1, 2},
-                                         ReferenceScene{"sheets", false, 0.005, 0.01, 1, 1},
-                                         ReferenceScene{"textures", false, 0.005, 0.01, 1, 1},
-                                         ReferenceScene{"orthographic", false, 0.005, 0.01, 1, 1},
-                                         ReferenceScene{"spherical-equalarea", false, 0.005, 0.01, 1, 1},
-                                         ReferenceScene{"spherical-equirectangular", false, 0.005, 0.01, 1, 1},
-                                         ReferenceScene{"alpha-normal", false, 0.005, 0.01, 1, 1}),
-                         name_of);
+INSTANTIATE_TEST_SUITE_P(
+    Pbrt, PbrtReferences,
+    testing::Values(ReferenceScene{"glossy", false, 0.002, 0.006, 1, 4},
+                    ReferenceScene{"coated", false, 0.005, 0.01, 1, 2},
+                    ReferenceScene{"sheets", false, 0.005, 0.01, 1, 1},
+                    ReferenceScene{"textures", false, 0.005, 0.01, 1, 1},
+                    ReferenceScene{"orthographic", false, 0.005, 0.01, 1, 1},
+                    ReferenceScene{"spherical-equalarea", false, 0.005, 0.01, 1, 1},
+                    ReferenceScene{"spherical-equirectangular", false, 0.005, 0.01, 1, 1},
+                    ReferenceScene{"alpha-normal", false, 0.005, 0.01, 1, 1}),
+    name_of);
 
-// Where the rows of a latitude-longitude image stand, and what that makes of the studio of the environment scene: the irradiance
-// of a plane under it, summed over 60,000 latitudes by a program of its own, is 13.89744 as pbrt places rows and 13.92989 as
-// Mitsuba does (reference_scenes.h): 0.233 % apart.
+// Where the rows of a latitude-longitude image stand, and what that makes of the studio of the
+// environment scene: the irradiance of a plane under it, summed over 60,000 latitudes by a program
+// of its own, is 13.89744 as pbrt places rows and 13.92989 as Mitsuba does (reference_scenes.h):
+// 0.233 % apart.
 TEST(References, RowsOfAnImageStandInTheMiddleOfTheirCells) {
   CAPLET_NEEDS_DATA();
   const auto file = temporary_folder() / "plane.pbrt";
-  std::ofstream(file)
-      << "Integrator \"path\" \"integer maxdepth\" 1\nLookAt 0 0 5  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" 10\n"
-         "PixelFilter \"box\"\nFilm \"rgb\" \"integer xresolution\" 16 \"integer yresolution\" 16\nWorldBegin\n"
-         "LightSource \"infinite\" \"string filename\" \""
-      << (data_folder() / "hdr" / "studio.hdr").string()
-      << "\"\nMaterial \"diffuse\" \"rgb reflectance\" [.5 .5 .5]\nShape \"disk\" \"float radius\" 3\n";
+  std::ofstream(file) << "Integrator \"path\" \"integer maxdepth\" 1\nLookAt 0 0 5  0 0 0  0 1 "
+                         "0\nCamera \"perspective\" \"float fov\" 10\n"
+                         "PixelFilter \"box\"\nFilm \"rgb\" \"integer xresolution\" 16 \"integer "
+                         "yresolution\" 16\nWorldBegin\n"
+                         "LightSource \"infinite\" \"string filename\" \""
+                      << (data_folder() / "hdr" / "studio.hdr").string()
+                      << "\"\nMaterial \"diffuse\" \"rgb reflectance\" [.5 .5 .5]\nShape \"disk\" "
+                         "\"float radius\" 3\n";
   const auto luminance = [&](const std::function<void(Scene&)>& change) {
     const Picture picture = picture_of(render_file(file, 8192, change).image);
-    const double weights[3] = {0.2126, 0.7152, 0.0722}, pixels = static_cast<double>(picture.rgb.size()) / 3;
+    const double weights[3] = {0.2126, 0.7152, 0.0722},
+                 pixels = static_cast<double>(picture.rgb.size()) / 3;
     double mean = 0, error[3] = {0, 0, 0};
     for (std::size_t i = 0; i < picture.rgb.size(); ++i) {
       mean += weights[i % 3] * picture.rgb[i] / pixels;
@@ -110,9 +120,11 @@ TEST(References, RowsOfAnImageStandInTheMiddleOfTheirCells) {
   };
   constexpr double pi = std::numbers::pi;
   for (const auto& [expected, change] :
-       {std::pair<double, std::function<void(Scene&)>>{13.89744, {}}, {13.92989, place_rows_as_mitsuba}}) {
+       {std::pair<double, std::function<void(Scene&)>>{13.89744, {}},
+        {13.92989, place_rows_as_mitsuba}}) {
     const auto [mean, error] = luminance(change);
-    RecordProperty(change ? "placed" : "own", std::to_string(mean * 2 * pi) + " " + std::to_string(error * 2 * pi));
+    RecordProperty(change ? "placed" : "own",
+                   std::to_string(mean * 2 * pi) + " " + std::to_string(error * 2 * pi));
     // The variance is that of independent samples, an upper bound.
     EXPECT_NEAR(mean, 0.5 / pi * expected, 2 * error);
     EXPECT_LT(error, 5e-4 * mean);

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Renders a scene and prints the device's compute units and a hash of the film's bits; run in its own process by
-// determinism_test, since PoCL reads its number of threads once. render_digest SCENE SAMPLES
+// Renders a scene and prints the device's compute units and a hash of the film's bits; run in its
+// own process by determinism_test, since PoCL reads its number of threads once. render_digest SCENE
+// SAMPLES
 #include <cstdlib>
 #include <cstring>
 #include <iostream>

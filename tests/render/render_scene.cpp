@@ -24,8 +24,8 @@ Rendered render_model(const Scene& scene, int samples_per_pixel, RenderOptions o
   return out;
 }
 
-Rendered render_file(const std::filesystem::path& file, int samples_per_pixel, const std::function<void(Scene&)>& change,
-                     RenderOptions options) {
+Rendered render_file(const std::filesystem::path& file, int samples_per_pixel,
+                     const std::function<void(Scene&)>& change, RenderOptions options) {
   Scene scene = import_scene(file, FileImageReader());
   if (change) change(scene);
   return render_model(scene, samples_per_pixel, options);
@@ -33,7 +33,8 @@ Rendered render_file(const std::filesystem::path& file, int samples_per_pixel, c
 
 LoweredScene lowered_everything(int width, int height) {
   LoweredScene out;
-  out.scene = import_scene(source_folder() / "tests" / "render" / "everything.pbrt", FileImageReader());
+  out.scene =
+      import_scene(source_folder() / "tests" / "render" / "everything.pbrt", FileImageReader());
   out.scene.film.width = width;
   out.scene.film.height = height;
   out.flat = lower(out.scene);
@@ -46,7 +47,8 @@ void add_cloud(Scene& scene) {
   std::mt19937 random(1);
   const auto draw = [&] { return static_cast<float>(random() >> 8) * 0x1p-24f * 2 - 1; };
   for (int i = 0; i < 60000; ++i) {
-    const glm::vec3 middle{3 * draw(), 3 * draw(), 3 * draw()}, half{0.05f * draw(), 0.05f * draw(), 0.05f * draw()};
+    const glm::vec3 middle{3 * draw(), 3 * draw(), 3 * draw()},
+        half{0.05f * draw(), 0.05f * draw(), 0.05f * draw()};
     many.p0.push_back(middle - half);
     many.p1.push_back(middle + half);
     many.radius0.push_back(0.02f);
@@ -69,7 +71,8 @@ Scene scene_of_text(const std::string& text) {
 }
 
 Mean mean_of(const LayeredImage& image, const std::string& name) {
-  const std::vector<float>&values = channel(image, name).floats, &variances = channel(image, "variance." + name).floats;
+  const std::vector<float>&values = channel(image, name).floats,
+        &variances = channel(image, "variance." + name).floats;
   const auto pixels = static_cast<double>(values.size());
   Mean out;
   for (std::size_t i = 0; i < values.size(); ++i) {
@@ -84,7 +87,8 @@ Picture picture_of(const LayeredImage& image) {
   Picture out;
   out.width = image.data_width;
   out.height = image.data_height;
-  const std::size_t pixels = static_cast<std::size_t>(out.width) * static_cast<std::size_t>(out.height);
+  const std::size_t pixels =
+      static_cast<std::size_t>(out.width) * static_cast<std::size_t>(out.height);
   const auto interleave = [&](const std::string& prefix) {
     std::vector<float> values(3 * pixels);
     for (std::size_t c = 0; c < 3; ++c) {

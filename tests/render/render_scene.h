@@ -22,8 +22,8 @@ struct Rendered {
 };
 
 /// `change` may edit the scene before it is lowered. The variance layer is always there.
-Rendered render_file(const std::filesystem::path& file, int samples_per_pixel, const std::function<void(Scene&)>& change = {},
-                     RenderOptions options = {});
+Rendered render_file(const std::filesystem::path& file, int samples_per_pixel,
+                     const std::function<void(Scene&)>& change = {}, RenderOptions options = {});
 Rendered render_model(const Scene& scene, int samples_per_pixel, RenderOptions options = {});
 
 /// A scene as devices take it, and as it is.

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// What an importer made of a robot's file, as JSON for tools/beside_mujoco.py: list_geoms FILE [OPTION=VALUE]...
+// What an importer made of a robot's file, as JSON for tools/beside_mujoco.py: list_geoms FILE
+// [OPTION=VALUE]...
 #include <cstdio>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -25,7 +26,8 @@ int main(int count, char** words) {
     for (const Shape& shape : scene.shapes) {
       nlohmann::json one{{"name", shape.name}, {"backdrop", shape.is_backdrop}};
       for (int row = 0; row < 3; ++row)
-        for (int column = 0; column < 4; ++column) one["world"].push_back(shape.world_from_object[column][row]);
+        for (int column = 0; column < 4; ++column)
+          one["world"].push_back(shape.world_from_object[column][row]);
       if (const auto* sphere = std::get_if<SphereShape>(&shape.geometry))
         one.update({{"type", "sphere"}, {"size", {sphere->radius}}});
       if (const auto* box = std::get_if<BoxShape>(&shape.geometry))
@@ -35,7 +37,9 @@ int main(int count, char** words) {
       if (const auto* capsules = std::get_if<CapsulesShape>(&shape.geometry))
         one.update({{"type", "capsule"}, {"size", {capsules->radius0[0], capsules->p1[0].z}}});
       if (const auto* mesh = std::get_if<TriangleMeshShape>(&shape.geometry)) {
-        one.update({{"type", "mesh"}, {"triangles", mesh->triangles.size()}, {"points", nlohmann::json::array()}});
+        one.update({{"type", "mesh"},
+                    {"triangles", mesh->triangles.size()},
+                    {"points", nlohmann::json::array()}});
         for (const glm::vec3& p : mesh->positions)
           for (int k = 0; k < 3; ++k) one["points"].push_back(p[k]);
       }

@@ -21,19 +21,25 @@ using testing::HasSubstr;
 
 /// A body at the origin, and one at (1, 0, 2) turned by 90 degrees about z.
 const std::string kBodies =
-    "<worldbody><geom size='0.1'/><body name='a'/><body name='b' pos='1 0 2' euler='0 0 90'/></worldbody>";
+    "<worldbody><geom size='0.1'/><body name='a'/><body name='b' pos='1 0 2' euler='0 0 "
+    "90'/></worldbody>";
 
 Scene scene_of(const std::string& assets, const std::string& bodies = kBodies) {
-  return import_scene(test::write_file("s.xml", "<mujoco>\n<asset>" + assets + "</asset>\n" + bodies + "</mujoco>"),
-                      test::NoImages(), {{{"up", "y"}}});
+  return import_scene(
+      test::write_file("s.xml", "<mujoco>\n<asset>" + assets + "</asset>\n" + bodies + "</mujoco>"),
+      test::NoImages(), {{{"up", "y"}}});
 }
-const TriangleMeshShape& mesh_of(const Scene& scene) { return std::get<TriangleMeshShape>(scene.shapes.back().geometry); }
+const TriangleMeshShape& mesh_of(const Scene& scene) {
+  return std::get<TriangleMeshShape>(scene.shapes.back().geometry);
+}
 glm::dvec3 vertex(const Scene& scene, std::size_t i) {
-  return glm::dvec3(scene.shapes.back().world_from_object * glm::dvec4(glm::dvec3(mesh_of(scene).positions.at(i)), 1));
+  return glm::dvec3(scene.shapes.back().world_from_object *
+                    glm::dvec4(glm::dvec3(mesh_of(scene).positions.at(i)), 1));
 }
 
-// The second bone was bound at (1, 0, 0), unturned: (2, 0, 0) is one before it along x, and comes to stand one before the body
-// along y. The third vertex goes with both, three parts of four with the first.
+// The second bone was bound at (1, 0, 0), unturned: (2, 0, 0) is one before it along x, and comes
+// to stand one before the body along y. The third vertex goes with both, three parts of four with
+// the first.
 const std::string kSkin =
     "<skin name='coat' rgba='1 0 0 1' vertex='0 0 0  2 0 0  1 1 0' face='0 1 2'>"
     "<bone body='a' bindpos='0 0 0' bindquat='1 0 0 0' vertid='0 2' vertweight='5 3'/>"
@@ -50,11 +56,13 @@ TEST(MjcfSkins, VerticesGoWithTheirBodies) {
   near(vertex(scene, 1), {1, 1, 2});
   // By the first it stays at (1, 1, 0), by the second it comes to (1 - 1, 0, 2).
   near(vertex(scene, 2), {0.75, 0.75, 0.5});
-  const auto& material = std::get<DiffuseMaterial>(scene.materials[scene.shapes.back().material].model);
+  const auto& material =
+      std::get<DiffuseMaterial>(scene.materials[scene.shapes.back().material].model);
   EXPECT_EQ(std::get<RgbSpectrum>(material.reflectance).rgb, glm::dvec3(1, 0, 0));
   // As it was bound, a turned bone moves nothing of a body that is turned likewise.
   std::string bound = kSkin;
-  bound.replace(bound.find("bindpos='1 0 0' bindquat='2 0 0 0'"), 34, "bindpos='1 0 2' bindquat='1 0 0 1'");
+  bound.replace(bound.find("bindpos='1 0 0' bindquat='2 0 0 0'"), 34,
+                "bindpos='1 0 2' bindquat='1 0 0 1'");
   near(vertex(scene_of(bound), 1), {2, 0, 0});
 }
 
@@ -70,7 +78,8 @@ std::string file_bytes() {
   const auto add = [&out](const auto& values) {
     out.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(values[0]));
   };
-  const auto bone = [&](const char* name, std::vector<float> bind, std::vector<std::int32_t> ids, std::vector<float> weights) {
+  const auto bone = [&](const char* name, std::vector<float> bind, std::vector<std::int32_t> ids,
+                        std::vector<float> weights) {
     std::string letters(40, '\0');
     std::memcpy(letters.data(), name, std::strlen(name));
     out += letters;
@@ -88,15 +97,16 @@ std::string file_bytes() {
   return out;
 }
 Scene scene_of_file(const std::string& bytes) {
-  const std::filesystem::path path =
-      test::write_file("s.xml", "<mujoco>\n<asset><skin file='s.skn'/></asset>\n" + kBodies + "</mujoco>");
+  const std::filesystem::path path = test::write_file(
+      "s.xml", "<mujoco>\n<asset><skin file='s.skn'/></asset>\n" + kBodies + "</mujoco>");
   std::ofstream(path.parent_path() / "s.skn", std::ios::binary) << bytes;
   return import_scene(path, test::NoImages(), {{{"up", "y"}}});
 }
 
 TEST(MjcfSkins, FilesSayTheSame) {
   const Scene written = scene_of(kSkin), read = scene_of_file(file_bytes());
-  for (std::size_t i = 0; i < 3; ++i) EXPECT_LT(glm::length(vertex(written, i) - vertex(read, i)), 1e-6);
+  for (std::size_t i = 0; i < 3; ++i)
+    EXPECT_LT(glm::length(vertex(written, i) - vertex(read, i)), 1e-6);
   EXPECT_EQ(mesh_of(read).triangles, mesh_of(written).triangles);
   EXPECT_EQ(mesh_of(read).uvs.at(1), glm::vec2(1, 0.75F));  // rows of the image from the top
 }
@@ -104,11 +114,14 @@ TEST(MjcfSkins, FilesSayTheSame) {
 TEST(MjcfSkins, BadInput) {
   const std::string bytes = file_bytes();
   for (std::size_t i = 0; i < bytes.size(); ++i)
-    EXPECT_THAT(complaint([&] { scene_of_file(bytes.substr(0, i)); }), HasSubstr("s.skn: the skin: ")) << i;
+    EXPECT_THAT(complaint([&] { scene_of_file(bytes.substr(0, i)); }),
+                HasSubstr("s.skn: the skin: "))
+        << i;
   EXPECT_THAT(complaint([&] { scene_of_file(bytes + "x"); }), HasSubstr("1 bytes follow"));
   std::string many = bytes;
   std::memcpy(many.data(), "\xff\xff\xff\x7f", 4);
-  EXPECT_THAT(complaint([&] { scene_of_file(many); }), HasSubstr("2147483647 times 12 bytes are announced"));
+  EXPECT_THAT(complaint([&] { scene_of_file(many); }),
+              HasSubstr("2147483647 times 12 bytes are announced"));
   std::memcpy(many.data(), "\xff\xff\xff\xff", 4);
   EXPECT_THAT(complaint([&] { scene_of_file(many); }), HasSubstr("a count is negative"));
   const auto with = [&](const std::string& from, const std::string& to) {
@@ -123,8 +136,10 @@ TEST(MjcfSkins, BadInput) {
   EXPECT_THAT(with("vertid='1 2'", "vertid='1 7'"), HasSubstr("bone b: 7 is no vertex, of 3"));
   EXPECT_THAT(with("vertid='1 2'", "vertid='1 1.5'"), HasSubstr("1.5 is no vertex"));
   EXPECT_THAT(with("vertweight='0.5 1'", "vertweight='0.5'"), HasSubstr("1 weights of 2 vertices"));
-  EXPECT_THAT(with("vertweight='0.5 1'", "vertweight='0 1'"), HasSubstr("vertex 1 of the skin goes with no bone"));
-  EXPECT_THAT(with("bindquat='2 0 0 0'", "bindquat='0 0 0 0'"), HasSubstr("bindquat has no length"));
+  EXPECT_THAT(with("vertweight='0.5 1'", "vertweight='0 1'"),
+              HasSubstr("vertex 1 of the skin goes with no bone"));
+  EXPECT_THAT(with("bindquat='2 0 0 0'", "bindquat='0 0 0 0'"),
+              HasSubstr("bindquat has no length"));
   EXPECT_THAT(with("<bone body='a'", "<bones body='a'"), HasSubstr("s.xml"));
 }
 

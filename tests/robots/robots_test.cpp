@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Robots: the conventions of docs/formats/robots.md by hand, counts of the shared files, and bad input.
+// Robots: the conventions of docs/formats/robots.md by hand, counts of the shared files, and bad
+// input.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -21,12 +22,15 @@ Scene scene_of(const std::filesystem::path& path, const ImportOptions& options =
 Scene scene_of_text(const std::string& text, const ImportOptions& options = {}) {
   return scene_of(test::write_file("robot.urdf", text), options);
 }
-glm::dvec3 at(const Shape& shape, glm::dvec3 p) { return glm::dvec3(shape.world_from_object * glm::dvec4(p, 1)); }
+glm::dvec3 at(const Shape& shape, glm::dvec3 p) {
+  return glm::dvec3(shape.world_from_object * glm::dvec4(p, 1));
+}
 void expect_near(glm::dvec3 a, glm::dvec3 b) {
   for (int k = 0; k < 3; ++k) EXPECT_NEAR(a[k], b[k], 1e-9) << k;
 }
 
-const std::string arm = R"(<robot name="r"><link name="a"><visual><geometry><box size="2 4 6"/></geometry></visual></link>
+const std::string arm =
+    R"(<robot name="r"><link name="a"><visual><geometry><box size="2 4 6"/></geometry></visual></link>
 <link name="b"><visual><origin xyz="1 0 0"/><geometry><sphere radius="0.5"/></geometry></visual>
 <collision><geometry><capsule radius="0.1" length="2"/></geometry></collision></link>
 <joint name="j" type="revolute"><parent link="a"/><child link="b"/><origin xyz="0 0 3" rpy="1.5707963267948966 0 1.5707963267948966"/>
@@ -45,22 +49,30 @@ TEST(Urdf, LinksLieWhereJointsPutThem) {
 TEST(Urdf, JointsTurnAboutTheirAxis) {
   const Scene scene = scene_of_text(arm, {{{"up", "y"}, {"pose", "j=1.5707963267948966"}}});
   expect_near(at(scene.shapes[1], {0, 0, 0}), {0, 0, 4});
-  EXPECT_THAT(complaint([] { scene_of_text(arm, {{{"pose", "k=1"}}}); }), HasSubstr("no joint 'k'"));
+  EXPECT_THAT(complaint([] {
+                scene_of_text(arm, {{{"pose", "k=1"}}});
+              }),
+              HasSubstr("no joint 'k'"));
   EXPECT_THAT(complaint([] { scene_of_text(arm, {{{"pose", "j"}}}); }), HasSubstr("JOINT=VALUE"));
 }
 
-// A chain of slides along x: b is moved itself, c follows b, and d follows c (wiki.ros.org/urdf/XML/joint: multiplier times the
-// other's value plus offset).
+// A chain of slides along x: b is moved itself, c follows b, and d follows c
+// (wiki.ros.org/urdf/XML/joint: multiplier times the other's value plus offset).
 TEST(Urdf, MimicJointsFollowOthers) {
   const auto slide = [](const std::string& name, const std::string& child, const std::string& mimic,
                         const std::string& type = "prismatic") {
-    return "<joint name='" + name + "' type='" + type + "'><parent link='a'/><child link='" + child + "'/>" + mimic + "</joint>";
+    return "<joint name='" + name + "' type='" + type + "'><parent link='a'/><child link='" +
+           child + "'/>" + mimic + "</joint>";
   };
-  const auto robot = [&](const std::string& of_c, const std::string& of_d, const std::string& type = "prismatic") {
-    std::string text = "<robot><link name='a'><visual><geometry><box size='1 1 1'/></geometry></visual></link>";
+  const auto robot = [&](const std::string& of_c, const std::string& of_d,
+                         const std::string& type = "prismatic") {
+    std::string text =
+        "<robot><link name='a'><visual><geometry><box size='1 1 1'/></geometry></visual></link>";
     for (const char* name : {"b", "c", "d"})
-      text += std::string("<link name='") + name + "'><visual><geometry><sphere radius='.1'/></geometry></visual></link>";
-    return text + slide("jb", "b", "") + slide("jc", "c", of_c) + slide("jd", "d", of_d, type) + "</robot>";
+      text += std::string("<link name='") + name +
+              "'><visual><geometry><sphere radius='.1'/></geometry></visual></link>";
+    return text + slide("jb", "b", "") + slide("jc", "c", of_c) + slide("jd", "d", of_d, type) +
+           "</robot>";
   };
   const auto places = [&](const std::string& text, const std::string& pose) {
     ImportOptions options{{{"up", "y"}}};
@@ -72,13 +84,16 @@ TEST(Urdf, MimicJointsFollowOthers) {
         if (shape.name == name) out.push_back(at(shape, {0, 0, 0}).x);
     return out;
   };
-  const std::string half = "<mimic joint='jb' multiplier='-0.5' offset='0.25'/>", same = "<mimic joint='jc'/>";
+  const std::string half = "<mimic joint='jb' multiplier='-0.5' offset='0.25'/>",
+                    same = "<mimic joint='jc'/>";
   using Places = std::vector<double>;
   EXPECT_EQ(places(robot(half, same), "jb=3"), (Places{3, -1.25, -1.25}));
   // The joint that is followed stands at 0, but the offset is there.
   EXPECT_EQ(places(robot(half, same), ""), (Places{0, 0.25, 0.25}));
-  EXPECT_EQ(places(robot(half, same), "jc=2"), (Places{0, 2, 2}));  // posed itself: it follows no more
-  EXPECT_EQ(places(robot("<mimic joint='jb'/>", "<mimic joint='jc' multiplier='3'/>"), "jb=1"), (Places{1, 1, 3}));
+  EXPECT_EQ(places(robot(half, same), "jc=2"),
+            (Places{0, 2, 2}));  // posed itself: it follows no more
+  EXPECT_EQ(places(robot("<mimic joint='jb'/>", "<mimic joint='jc' multiplier='3'/>"), "jb=1"),
+            (Places{1, 1, 3}));
   const auto said = [&](const std::string& text) { return complaint([&] { places(text, ""); }); };
   EXPECT_THAT(said(robot("<mimic joint='nobody'/>", same)),
               testing::AllOf(HasSubstr("robot.urdf:1:"), HasSubstr("follows 'nobody'")));
@@ -99,10 +114,12 @@ TEST(Urdf, BadFilesAreRefusedWithTheirPlace) {
   EXPECT_THAT(said("<mujoco/>"), HasSubstr("not <robot>"));
   EXPECT_THAT(said("<robot>\n\n<joint name='j'><parent link='a'/></joint><link name='b'/></robot>"),
               HasSubstr("robot.urdf:3:2: "));
-  EXPECT_THAT(said("<robot><link name='a'/><link name='b'/><joint><parent link='a'/><child link='b'/></joint>"
+  EXPECT_THAT(said("<robot><link name='a'/><link name='b'/><joint><parent link='a'/><child "
+                   "link='b'/></joint>"
                    "<joint><parent link='b'/><child link='a'/></joint></robot>"),
               HasSubstr("cycle"));
-  EXPECT_THAT(said("<robot><link name='a'><visual><geometry><sphere radius='nan'/></geometry></visual></link></robot>"),
+  EXPECT_THAT(said("<robot><link name='a'><visual><geometry><sphere "
+                   "radius='nan'/></geometry></visual></link></robot>"),
               HasSubstr("not finite"));
   EXPECT_EQ(said(arm + std::string(1, '\0')), "");
 }
@@ -115,27 +132,33 @@ TEST(Urdf, WhatCollidesIsDrawnWhereNothingIsToBeSeen) {
                 scene_of_text(begin + solid + end, {{{"groups", "visual"}}});
               }),
               HasSubstr("no geometry of the groups"));
-  // Where one thing is to be seen it alone is; a ball of no size is nothing, and one of less an error.
+  // Where one thing is to be seen it alone is; a ball of no size is nothing, and one of less an
+  // error.
   const std::string seen = "<visual><geometry><box size='1 1 1'/></geometry></visual>";
   EXPECT_EQ(scene_of_text(begin + solid + seen + end).shapes.size(), 1U);
   const std::string point = "<visual><geometry><sphere radius='0'/></geometry></visual>";
   EXPECT_EQ(scene_of_text(begin + point + seen + end).shapes.size(), 1U);
-  EXPECT_THAT(complaint([&] { scene_of_text(begin + "<visual><geometry><sphere radius='-1'/></geometry></visual>" + end); }),
-              HasSubstr("radius is not positive"));
+  EXPECT_THAT(
+      complaint([&] {
+        scene_of_text(begin + "<visual><geometry><sphere radius='-1'/></geometry></visual>" + end);
+      }),
+      HasSubstr("radius is not positive"));
 }
 
 TEST(Urdf, SharedFilesHaveTheirGeometry) {
   CAPLET_NEEDS_DATA();
-  // Boxes, cylinders and spheres within <visual> and <collision>, as Python's ElementTree counts them; the DAE meshes are not
-  // there.
+  // Boxes, cylinders and spheres within <visual> and <collision>, as Python's ElementTree counts
+  // them; the DAE meshes are not there.
   struct Counts {
     const char* name;
     std::size_t visual, all;
   };
   for (const Counts& file :
-       {Counts{"01-myfirst", 1, 1}, Counts{"02-multipleshapes", 2, 2}, Counts{"03-origins", 2, 2}, Counts{"04-materials", 3, 3},
-        Counts{"05-visual", 12, 12}, Counts{"06-flexible", 12, 12}, Counts{"07-physics", 12, 24}}) {
-    const auto path = test::data_folder() / "urdf/ros_urdf_tutorial" / (std::string(file.name) + ".urdf");
+       {Counts{"01-myfirst", 1, 1}, Counts{"02-multipleshapes", 2, 2}, Counts{"03-origins", 2, 2},
+        Counts{"04-materials", 3, 3}, Counts{"05-visual", 12, 12}, Counts{"06-flexible", 12, 12},
+        Counts{"07-physics", 12, 24}}) {
+    const auto path =
+        test::data_folder() / "urdf/ros_urdf_tutorial" / (std::string(file.name) + ".urdf");
     EXPECT_EQ(scene_of(path).shapes.size(), file.visual) << file.name;
     EXPECT_EQ(scene_of(path, {{{"groups", "all"}}}).shapes.size(), file.all) << file.name;
   }
@@ -143,7 +166,8 @@ TEST(Urdf, SharedFilesHaveTheirGeometry) {
 
 TEST(Urdf, SharedFileLiesWhereMujocoPutsIt) {
   CAPLET_NEEDS_DATA();
-  const Scene scene = scene_of(test::data_folder() / "urdf/ros_urdf_tutorial/04-materials.urdf", {{{"up", "y"}}});
+  const Scene scene =
+      scene_of(test::data_folder() / "urdf/ros_urdf_tutorial/04-materials.urdf", {{{"up", "y"}}});
   std::vector<glm::dvec3> legs;
   for (const Shape& shape : scene.shapes)
     if (const auto* box = std::get_if<BoxShape>(&shape.geometry)) {

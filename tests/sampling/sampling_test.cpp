@@ -92,7 +92,8 @@ struct Numbers {
   std::vector<double> singles;
 };
 /// Returns numbers of pixel `pixel` of an image that is 256 pixels wide.
-Numbers numbers(std::uint32_t pixel, std::uint32_t pair, std::uint32_t count, const SamplerSettings& sampler = {}) {
+Numbers numbers(std::uint32_t pixel, std::uint32_t pair, std::uint32_t count,
+                const SamplerSettings& sampler = {}) {
   Scene scene;
   scene.film.width = scene.film.height = 256;
   scene.sampler = sampler;
@@ -125,7 +126,8 @@ std::vector<std::uint32_t> hashed(const char* name, std::uint32_t count) {
   return out.read();
 }
 
-double correlation(const std::vector<glm::dvec2>& a, const std::vector<glm::dvec2>& b, int i, int j) {
+double correlation(const std::vector<glm::dvec2>& a, const std::vector<glm::dvec2>& b, int i,
+                   int j) {
   double sum = 0;
   for (std::size_t k = 0; k < a.size(); ++k) sum += (a[k][i] - 0.5) * (b[k][j] - 0.5);
   return 12 * sum / static_cast<double>(a.size());
@@ -194,7 +196,8 @@ TEST(Sampler, EveryPowerOfTwoPrefixIsANet) {
         EXPECT_EQ(boxes.size(), std::size_t{1} << m) << "seed " << seed << " m " << m << " k " << k;
       }
       std::set<int> strata;
-      for (int i = 0; i < 1 << m; ++i) strata.insert(static_cast<int>(all.singles[static_cast<std::size_t>(i)] * (1 << m)));
+      for (int i = 0; i < 1 << m; ++i)
+        strata.insert(static_cast<int>(all.singles[static_cast<std::size_t>(i)] * (1 << m)));
       EXPECT_EQ(strata.size(), std::size_t{1} << m);
     }
   }
@@ -203,8 +206,8 @@ TEST(Sampler, EveryPowerOfTwoPrefixIsANet) {
 TEST(Sampler, NumbersAreInTheHalfOpenUnitInterval) {
   const Numbers all = numbers(5, 3, 1u << 20);
   for (std::size_t i = 0; i < all.pairs.size(); ++i) {
-    const bool inside = all.pairs[i].x >= 0 && all.pairs[i].x < 1 && all.pairs[i].y >= 0 && all.pairs[i].y < 1 &&
-                        all.singles[i] >= 0 && all.singles[i] < 1;
+    const bool inside = all.pairs[i].x >= 0 && all.pairs[i].x < 1 && all.pairs[i].y >= 0 &&
+                        all.pairs[i].y < 1 && all.singles[i] >= 0 && all.singles[i] < 1;
     ASSERT_TRUE(inside) << i;
   }
   Buffer<float> ends(bench().device, 2);
@@ -232,11 +235,13 @@ TEST(Sampler, PixelsAndPairsAreUncorrelated) {
     for (std::size_t b = 0; b < a; ++b)
       for (int i = 0; i < 2; ++i)
         for (int j = 0; j < 2; ++j)
-          EXPECT_LT(std::abs(correlation(sets[a], sets[b], i, j)), 4 / std::sqrt(n)) << a << ' ' << b << ' ' << i << ' ' << j;
+          EXPECT_LT(std::abs(correlation(sets[a], sets[b], i, j)), 4 / std::sqrt(n))
+              << a << ' ' << b << ' ' << i << ' ' << j;
 }
 
 TEST(Sampler, FirstSamplesOfPixelsAreUniform) {
-  // Across pixels the first sample is a hash: mean 1/2 with standard error 1 / sqrt(12 n), and no correlation of the coordinates.
+  // Across pixels the first sample is a hash: mean 1/2 with standard error 1 / sqrt(12 n), and no
+  // correlation of the coordinates.
   const std::vector<std::uint32_t> seeds = hashed("seeds", 512);
   EXPECT_EQ(std::set<std::uint32_t>(seeds.begin(), seeds.end()).size(), seeds.size());
   std::vector<glm::dvec2> firsts;
@@ -292,8 +297,11 @@ glm::dvec3 direction_of(const RayRecord& ray) { return {ray.dx, ray.dy, ray.dz};
 // Rows run from +y to -y, and columns from +x by +z.
 TEST(SphericalCamera, LooksByLongitudeAndLatitude) {
   const Scene scene = spherical_scene(SphericalProjection::Mapping::equirectangular);
-  const std::pair<glm::vec2, glm::dvec3> all[] = {
-      {{0, 100}, {1, 0, 0}}, {{100, 100}, {0, 0, 1}}, {{200, 100}, {-1, 0, 0}}, {{50, 0}, {0, 1, 0}}, {{50, 200}, {0, -1, 0}}};
+  const std::pair<glm::vec2, glm::dvec3> all[] = {{{0, 100}, {1, 0, 0}},
+                                                  {{100, 100}, {0, 0, 1}},
+                                                  {{200, 100}, {-1, 0, 0}},
+                                                  {{50, 0}, {0, 1, 0}},
+                                                  {{50, 200}, {0, -1, 0}}};
   for (const auto& [raster, direction] : all)
     EXPECT_LT(glm::length(direction_of(camera_ray(scene, raster, {0.5f, 0.5f})) - direction), 1e-6)
         << raster.x << ' ' << raster.y;
@@ -302,12 +310,16 @@ TEST(SphericalCamera, LooksByLongitudeAndLatitude) {
 // The middle of the square is +y, its corners are -y, and the middles of its sides the horizon.
 TEST(SphericalCamera, LooksByTheOctahedralMap) {
   const Scene scene = spherical_scene(SphericalProjection::Mapping::equal_area);
-  const std::pair<glm::vec2, glm::dvec3> all[] = {
-      {{200, 100}, {0, 1, 0}}, {{0, 0}, {0, -1, 0}}, {{400, 200}, {0, -1, 0}}, {{400, 100}, {1, 0, 0}}, {{200, 200}, {0, 0, 1}}};
+  const std::pair<glm::vec2, glm::dvec3> all[] = {{{200, 100}, {0, 1, 0}},
+                                                  {{0, 0}, {0, -1, 0}},
+                                                  {{400, 200}, {0, -1, 0}},
+                                                  {{400, 100}, {1, 0, 0}},
+                                                  {{200, 200}, {0, 0, 1}}};
   for (const auto& [raster, direction] : all)
     EXPECT_LT(glm::length(direction_of(camera_ray(scene, raster, {0.5f, 0.5f})) - direction), 1e-6)
         << raster.x << ' ' << raster.y;
-  // Each of equal parts of the square has an equal share of the sphere: the mean of z^2 over it is 1/3.
+  // Each of equal parts of the square has an equal share of the sphere: the mean of z^2 over it is
+  // 1/3.
   double sum = 0;
   for (int y = 0; y < 40; ++y)
     for (int x = 0; x < 40; ++x) {
@@ -320,7 +332,9 @@ TEST(SphericalCamera, LooksByTheOctahedralMap) {
 // Over an edge lies the other half of the edge.
 TEST(SphericalCamera, GoesOnBeyondTheImage) {
   const Scene area = spherical_scene(SphericalProjection::Mapping::equal_area);
-  const auto at = [](const Scene& scene, float x, float y) { return direction_of(camera_ray(scene, {x, y}, {0.5f, 0.5f})); };
+  const auto at = [](const Scene& scene, float x, float y) {
+    return direction_of(camera_ray(scene, {x, y}, {0.5f, 0.5f}));
+  };
   EXPECT_LT(glm::length(at(area, -3, 40) - at(area, 3, 160)), 1e-6);
   EXPECT_LT(glm::length(at(area, 403, 40) - at(area, 397, 160)), 1e-6);
   EXPECT_LT(glm::length(at(area, 90, -2) - at(area, 310, 2)), 1e-6);
@@ -359,7 +373,8 @@ TEST(Projections, UndoEachOther) {
 
 // --- Other samplers ---
 
-SamplerSettings sampler_of(SamplerSettings::Kind kind, int samples, int x = 4, int y = 4, bool jitter = true) {
+SamplerSettings sampler_of(SamplerSettings::Kind kind, int samples, int x = 4, int y = 4,
+                           bool jitter = true) {
   SamplerSettings out;
   out.kind = kind;
   out.samples_per_pixel = samples;
@@ -380,11 +395,13 @@ std::vector<int> counts_of(const std::vector<glm::dvec2>& points, int x, int y) 
 TEST(Stratified, EachPartHasOneSampleInEachRound) {
   for (const auto& [x, y] : {std::pair{4, 4}, {5, 3}, {1, 7}, {1, 1}, {12, 8}}) {
     const int n = x * y;
-    const Numbers all =
-        numbers(300, 5, static_cast<std::uint32_t>(3 * n), sampler_of(SamplerSettings::Kind::stratified, n, x, y));
+    const Numbers all = numbers(300, 5, static_cast<std::uint32_t>(3 * n),
+                                sampler_of(SamplerSettings::Kind::stratified, n, x, y));
     for (int round = 0; round < 3; ++round) {
       const auto begin = all.pairs.begin() + round * n;
-      EXPECT_EQ(counts_of({begin, begin + n}, x, y), std::vector<int>(static_cast<std::size_t>(n), 1)) << x << ' ' << y;
+      EXPECT_EQ(counts_of({begin, begin + n}, x, y),
+                std::vector<int>(static_cast<std::size_t>(n), 1))
+          << x << ' ' << y;
       std::set<int> parts;
       for (int i = round * n; i < (round + 1) * n; ++i)
         parts.insert(static_cast<int>(all.singles[static_cast<std::size_t>(i)] * n));
@@ -393,7 +410,8 @@ TEST(Stratified, EachPartHasOneSampleInEachRound) {
   }
 }
 
-// The place within a part is uniform, and the order of the parts is another in each pixel and dimension.
+// The place within a part is uniform, and the order of the parts is another in each pixel and
+// dimension.
 TEST(Stratified, IsUniformWithinPartsAndInItsOrder) {
   constexpr int n = 6;
   const SamplerSettings settings = sampler_of(SamplerSettings::Kind::stratified, n, 3, 2);
@@ -415,9 +433,11 @@ TEST(Stratified, IsUniformWithinPartsAndInItsOrder) {
 
 TEST(Stratified, WithoutJitterSamplesLieInTheMiddles) {
   std::set<std::pair<double, double>> places;
-  for (const glm::dvec2& p : numbers(9, 1, 6, sampler_of(SamplerSettings::Kind::stratified, 6, 3, 2, false)).pairs)
+  for (const glm::dvec2& p :
+       numbers(9, 1, 6, sampler_of(SamplerSettings::Kind::stratified, 6, 3, 2, false)).pairs)
     places.emplace(std::round(p.x * 6e5) / 1e5, std::round(p.y * 4e5) / 1e5);
-  EXPECT_EQ(places, (std::set<std::pair<double, double>>{{1, 1}, {3, 1}, {5, 1}, {1, 3}, {3, 3}, {5, 3}}));
+  EXPECT_EQ(places,
+            (std::set<std::pair<double, double>>{{1, 1}, {3, 1}, {5, 1}, {1, 3}, {3, 3}, {5, 3}}));
 }
 
 // As pbrt-v4 divides another number of samples: the nearest to a square.
@@ -432,13 +452,16 @@ TEST(Independent, CountsAreThoseOfChance) {
   constexpr std::uint32_t n = 1u << 16;
   const Numbers all = numbers(40, 2, n, sampler_of(SamplerSettings::Kind::independent, 16));
   double chi_squared = 0;
-  for (const int count : counts_of(all.pairs, 16, 16)) chi_squared += std::pow(count - n / 256.0, 2) / (n / 256.0);
-  // 255 degrees of freedom: mean 255, standard deviation sqrt(510). Stratified points would give almost 0.
+  for (const int count : counts_of(all.pairs, 16, 16))
+    chi_squared += std::pow(count - n / 256.0, 2) / (n / 256.0);
+  // 255 degrees of freedom: mean 255, standard deviation sqrt(510). Stratified points would give
+  // almost 0.
   EXPECT_NEAR(chi_squared, 255, 5 * std::sqrt(510.0));
   EXPECT_LT(std::abs(correlation(all.pairs, all.pairs, 0, 1)), 4 / std::sqrt(n));
 }
 
-// The samples of an aligned block of 2^k by 2^k pixels are a net together, as are those of one pixel.
+// The samples of an aligned block of 2^k by 2^k pixels are a net together, as are those of one
+// pixel.
 TEST(Zsobol, BlocksOfPixelsAreNets) {
   for (const int samples : {1, 2, 4, 8}) {
     const SamplerSettings settings = sampler_of(SamplerSettings::Kind::zsobol, samples);
@@ -447,12 +470,14 @@ TEST(Zsobol, BlocksOfPixelsAreNets) {
         std::vector<glm::dvec2> points;
         for (std::uint32_t y = 0; y < size; ++y)
           for (std::uint32_t x = 0; x < size; ++x) {
-            const Numbers of = numbers(corner + 256 * y + x, 3, static_cast<std::uint32_t>(samples), settings);
+            const Numbers of =
+                numbers(corner + 256 * y + x, 3, static_cast<std::uint32_t>(samples), settings);
             points.insert(points.end(), of.pairs.begin(), of.pairs.end());
           }
         const int n = static_cast<int>(points.size());
         for (int x = 1; x <= n; x *= 2)
-          EXPECT_EQ(counts_of(points, x, n / x), std::vector<int>(points.size(), 1)) << samples << ' ' << size << ' ' << x;
+          EXPECT_EQ(counts_of(points, x, n / x), std::vector<int>(points.size(), 1))
+              << samples << ' ' << size << ' ' << x;
       }
   }
 }
@@ -475,7 +500,8 @@ std::vector<PixelFilter> filters() {
   add({.kind = PixelFilter::Kind::box});
   add({.kind = PixelFilter::Kind::triangle});
   add({.kind = PixelFilter::Kind::gaussian});
-  add({.kind = PixelFilter::Kind::gaussian, .sigma = 1.1});  // far from 0 at the radius: the shift matters
+  add({.kind = PixelFilter::Kind::gaussian,
+       .sigma = 1.1});  // far from 0 at the radius: the shift matters
   add({.kind = PixelFilter::Kind::mitchell});
   add({.kind = PixelFilter::Kind::mitchell, .b = 0, .c = 1});
   add({.kind = PixelFilter::Kind::sinc});
@@ -486,7 +512,8 @@ std::vector<PixelFilter> filters() {
 // The moments come from the filters' integrals in closed form (support/filters.h).
 TEST(Filter, SamplesHaveTheMomentsOfTheFilter) {
   for (const PixelFilter& filter : filters()) {
-    const bool negative = filter.kind == PixelFilter::Kind::mitchell || filter.kind == PixelFilter::Kind::sinc;
+    const bool negative =
+        filter.kind == PixelFilter::Kind::mitchell || filter.kind == PixelFilter::Kind::sinc;
     const FilterSamples samples = filter_samples(filter, 400000);
     double of_both_axes = 1, heaviest_of_all = 0;
     for (int axis = 0; axis < 2; ++axis) {
@@ -494,7 +521,8 @@ TEST(Filter, SamplesHaveTheMomentsOfTheFilter) {
       double second = 0, magnitude = 0;
       constexpr int steps = 4000;
       for (int i = 0; i < steps; ++i) {
-        const double begin = radius * (2.0 * i / steps - 1), end = radius * (2.0 * (i + 1) / steps - 1), x = (begin + end) / 2;
+        const double begin = radius * (2.0 * i / steps - 1),
+                     end = radius * (2.0 * (i + 1) / steps - 1), x = (begin + end) / 2;
         const double part = filter_share(filter, end, radius) - filter_share(filter, begin, radius);
         second += part * x * x;
         magnitude += std::abs(part);
@@ -509,8 +537,8 @@ TEST(Filter, SamplesHaveTheMomentsOfTheFilter) {
         farthest = std::max(farthest, std::abs(x));
         heaviest = std::max(heaviest, std::abs(samples.weights[i]));
       }
-      // Standard errors of bounded variables (offsets within the radius) from n samples; the table is linear between 128 nodes:
-      // 1e-3 of the maximum.
+      // Standard errors of bounded variables (offsets within the radius) from n samples; the table
+      // is linear between 128 nodes: 1e-3 of the maximum.
       const double slack = 4 * heaviest * radius / std::sqrt(n) + 1e-3 * radius;
       EXPECT_NEAR(weight, 1, negative ? slack : 1e-6);
       EXPECT_NEAR(first, 0, slack);
@@ -538,8 +566,10 @@ TEST(Filter, HistogramFollowsTheFilter) {
         heaviest = std::max(heaviest, std::abs(samples.weights[i]));
       }
       for (std::size_t i = 0; i < bins; ++i) {
-        const double begin = radius * (2.0 * static_cast<double>(i) / bins - 1), end = begin + 2 * radius / bins;
-        const double share = filter_share(filter, end, radius) - filter_share(filter, begin, radius);
+        const double begin = radius * (2.0 * static_cast<double>(i) / bins - 1),
+                     end = begin + 2 * radius / bins;
+        const double share =
+            filter_share(filter, end, radius) - filter_share(filter, begin, radius);
         // The tolerance for samples that weigh w is five standard deviations of their number, and
         // the table's linear interpolation (1e-3 of the maximum, which is at most 3 / (2 radius)).
         // The other axis's signs make more of them where the filter is small.
@@ -570,8 +600,9 @@ TEST(Camera, FieldOfViewIsThatOfTheShorterSide) {
   EXPECT_NEAR(tall.dy / tall.dz, 2, 1e-5);
 }
 
-// pbrt-v4's perspective camera: the screen is [-aspect, aspect] x [-1, 1], or for aspects below 1 [-1, 1] x [-1/aspect,
-// 1/aspect], times tan(fov / 2); the aspect is the film's unless the file gives one.
+// pbrt-v4's perspective camera: the screen is [-aspect, aspect] x [-1, 1], or for aspects below 1
+// [-1, 1] x [-1/aspect, 1/aspect], times tan(fov / 2); the aspect is the film's unless the file
+// gives one.
 TEST(Camera, FrameAspectRatioStretchesTheScreen) {
   Scene scene;
   scene.camera.projection = PerspectiveProjection{2 * std::atan(0.5)};
@@ -622,7 +653,8 @@ TEST(Camera, RaysOfTheLensMeetInTheFocalPlane) {
 __extension__ typedef __int128 Whole;
 std::vector<std::uint64_t> words_of(Whole sum, std::size_t words) {
   std::vector<std::uint64_t> out;
-  for (std::size_t w = 0; w < words; ++w) out.push_back(static_cast<std::uint64_t>(sum >> std::min<std::size_t>(64 * w, 127)));
+  for (std::size_t w = 0; w < words; ++w)
+    out.push_back(static_cast<std::uint64_t>(sum >> std::min<std::size_t>(64 * w, 127)));
   return out;
 }
 
@@ -649,20 +681,23 @@ std::vector<std::uint64_t> expected_sums(Whole sum) {
 
 TEST(Film, SumsAreExactInAnyOrder) {
   std::mt19937 engine(5);
-  // Units from those that most values are below to those that all are many of; the sums stay below 2^63 units.
+  // Units from those that most values are below to those that all are many of; the sums stay below
+  // 2^63 units.
   for (const int unit : {-30, -20, -3, 0, 7}) {
     std::vector<float> values;
     Whole exact = 0;
     for (int i = 0; i < 5000; ++i) {
       const int exponent = static_cast<int>(engine() % 40) - 20;
       const auto value =
-          static_cast<float>(std::ldexp(static_cast<double>(engine() >> 8), exponent - 24)) * (i % 3 == 0 ? -1 : 1);
+          static_cast<float>(std::ldexp(static_cast<double>(engine() >> 8), exponent - 24)) *
+          (i % 3 == 0 ? -1 : 1);
       if (std::abs(double{value}) * std::ldexp(1.0, -unit) > 0x1p37) continue;
       values.push_back(value);
       exact += static_cast<Whole>(std::trunc(std::ldexp(double{value}, -unit)));
     }
     values.insert(values.end(), {0.0f, -0.0f, 1e-45f, -1e-45f});
-    const std::array expected{expected_sums(exact), expected_sums(-exact), expected_sums(0), expected_sums(exact)};
+    const std::array expected{expected_sums(exact), expected_sums(-exact), expected_sums(0),
+                              expected_sums(exact)};
     EXPECT_EQ(device_sums(values, unit), expected) << unit;
     std::ranges::shuffle(values, engine);
     EXPECT_EQ(device_sums(values, unit), expected) << unit;

@@ -29,7 +29,8 @@ State& state() {
 bool goes_wrong(cl_command_queue queue, Fault fails, Fault hangs) {
   State& s = state();
   std::unique_lock lock(s.mutex);
-  if (queue != s.queue || (s.fault != fails && s.fault != hangs) || s.calls++ < s.first) return false;
+  if (queue != s.queue || (s.fault != fails && s.fault != hangs) || s.calls++ < s.first)
+    return false;
   if (s.fault == hangs) {
     ++s.hanging;
     s.released.wait(lock, [&] { return s.queue != queue; });
@@ -70,19 +71,25 @@ int BrokenDriver::calls() const {
 
 }  // namespace caplet::test
 
-extern "C" cl_int clEnqueueNDRangeKernel(cl_command_queue queue, cl_kernel kernel, cl_uint dimensions, const size_t* offset,
-                                         const size_t* global, const size_t* local, cl_uint waits, const cl_event* wait_list,
-                                         cl_event* event) {
+extern "C" cl_int clEnqueueNDRangeKernel(cl_command_queue queue, cl_kernel kernel,
+                                         cl_uint dimensions, const size_t* offset,
+                                         const size_t* global, const size_t* local, cl_uint waits,
+                                         const cl_event* wait_list, cl_event* event) {
   using caplet::test::Fault;
-  if (caplet::test::goes_wrong(queue, Fault::launch_fails, Fault::launch_hangs)) return CL_OUT_OF_RESOURCES;
-  static auto* const real = caplet::test::next<decltype(clEnqueueNDRangeKernel)>("clEnqueueNDRangeKernel");
+  if (caplet::test::goes_wrong(queue, Fault::launch_fails, Fault::launch_hangs))
+    return CL_OUT_OF_RESOURCES;
+  static auto* const real =
+      caplet::test::next<decltype(clEnqueueNDRangeKernel)>("clEnqueueNDRangeKernel");
   return real(queue, kernel, dimensions, offset, global, local, waits, wait_list, event);
 }
 
-extern "C" cl_int clEnqueueReadBuffer(cl_command_queue queue, cl_mem buffer, cl_bool blocking, size_t offset, size_t bytes,
-                                      void* to, cl_uint waits, const cl_event* wait_list, cl_event* event) {
+extern "C" cl_int clEnqueueReadBuffer(cl_command_queue queue, cl_mem buffer, cl_bool blocking,
+                                      size_t offset, size_t bytes, void* to, cl_uint waits,
+                                      const cl_event* wait_list, cl_event* event) {
   using caplet::test::Fault;
-  if (caplet::test::goes_wrong(queue, Fault::read_fails, Fault::read_hangs)) return CL_OUT_OF_RESOURCES;
-  static auto* const real = caplet::test::next<decltype(clEnqueueReadBuffer)>("clEnqueueReadBuffer");
+  if (caplet::test::goes_wrong(queue, Fault::read_fails, Fault::read_hangs))
+    return CL_OUT_OF_RESOURCES;
+  static auto* const real =
+      caplet::test::next<decltype(clEnqueueReadBuffer)>("clEnqueueReadBuffer");
   return real(queue, buffer, blocking, offset, bytes, to, waits, wait_list, event);
 }

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// A driver that goes wrong: the program's own OpenCL calls go through functions here, which pass them on.
+// A driver that goes wrong: the program's own OpenCL calls go through functions here, which pass
+// them on.
 #pragma once
 
 #include "device/device.h"
@@ -15,8 +16,8 @@ enum class Fault {
   read_hangs,
 };
 
-/// As long as it lives, calls of the fault's kind to one device go wrong, from number `first` on (0: at once). What hangs comes
-/// back, with an error, when this ends.
+/// As long as it lives, calls of the fault's kind to one device go wrong, from number `first` on
+/// (0: at once). What hangs comes back, with an error, when this ends.
 class BrokenDriver {
  public:
   BrokenDriver(const Device& device, Fault fault, int first);

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Devices that fail or hang while they render one picture with others: nothing is lost, and the bits are those of one device.
+// Devices that fail or hang while they render one picture with others: nothing is lost, and the
+// bits are those of one device.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -39,7 +40,8 @@ const Film& by_one() {
 }
 
 bool same(const Film& a, const Film& b) {
-  return a.layout() == b.layout() && a.parts() == b.parts() && std::ranges::equal(a.words(), b.words());
+  return a.layout() == b.layout() && a.parts() == b.parts() &&
+         std::ranges::equal(a.words(), b.words());
 }
 
 constexpr SessionOptions options{.layers = Layers::all(), .pass_samples = 3, .patience = 0.5};
@@ -54,7 +56,8 @@ class LostDevices : public testing::Test {
   }
   /// Threads that were given up have come back.
   static void wait_for_all() {
-    for (int i = 0; i < 500 && any_thread_given_up(); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    for (int i = 0; i < 500 && any_thread_given_up(); ++i)
+      std::this_thread::sleep_for(std::chrono::milliseconds(20));
     EXPECT_FALSE(any_thread_given_up());
   }
   std::vector<Device> devices;
@@ -128,7 +131,8 @@ TEST_F(LostDevices, TheLastOnesFailureIsTheSessions) {
 }
 
 TEST_F(LostDevices, ProgressThatThrowsEndsTheRender) {
-  EXPECT_THROW(session->render(samples, [](const SessionProgress&) { throw InputError("enough"); }), InputError);
+  EXPECT_THROW(session->render(samples, [](const SessionProgress&) { throw InputError("enough"); }),
+               InputError);
   EXPECT_EQ(session->device_count(), 2u);
   EXPECT_EQ(session->render(samples), samples);
   EXPECT_TRUE(same(session->film(), by_one()));
@@ -143,7 +147,8 @@ TEST_F(LostDevices, CancelledRendersFinishWhatIsBegunForEveryPixel) {
   EXPECT_GT(done, 0u);
   const Film film = session->film();
   EXPECT_THAT(film.parts(), testing::ElementsAre(FilmPart{film.layout().window, 0, done}));
-  for (std::size_t pixel = 0; pixel < film.layout().window.pixels(); ++pixel) ASSERT_EQ(film.samples(pixel), done);
+  for (std::size_t pixel = 0; pixel < film.layout().window.pixels(); ++pixel)
+    ASSERT_EQ(film.samples(pixel), done);
   EXPECT_EQ(session->render(samples - done), samples - done);
   EXPECT_TRUE(same(session->film(), by_one()));
 }

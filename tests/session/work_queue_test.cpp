@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Who renders what, without devices: every path once, by speed, done at the same time, and again where a worker is lost.
+// Who renders what, without devices: every path once, by speed, done at the same time, and again
+// where a worker is lost.
 #include "render/detail/work_queue.h"
 
 #include <gmock/gmock.h>
@@ -52,12 +53,14 @@ class Count {
 /// Workers of given speeds in a time of their own.
 class Simulation {
  public:
-  Simulation(WorkQueue& shares, std::vector<double> speeds) : shares_(shares), speeds_(std::move(speeds)), busy_(speeds_.size()) {
+  Simulation(WorkQueue& shares, std::vector<double> speeds)
+      : shares_(shares), speeds_(std::move(speeds)), busy_(speeds_.size()) {
     films_.resize(speeds_.size());
     lost_.resize(speeds_.size());
   }
 
-  /// Until all is done; the worker `loses` is lost at time `at`. Returns when the first and the last one ran out of work.
+  /// Until all is done; the worker `loses` is lost at time `at`. Returns when the first and the
+  /// last one ran out of work.
   std::pair<double, double> run(std::size_t loses = SIZE_MAX, double at = 0) {
     double time = 0, idle_since = 0;
     while (true) {
@@ -77,7 +80,8 @@ class Simulation {
       if (any_idle && idle_since == 1e30) idle_since = time;
       std::size_t next = SIZE_MAX;
       for (std::size_t i = 0; i < busy_.size(); ++i)
-        if (!lost_[i] && busy_[i].part && (next == SIZE_MAX || busy_[i].until < busy_[next].until)) next = i;
+        if (!lost_[i] && busy_[i].part && (next == SIZE_MAX || busy_[i].until < busy_[next].until))
+          next = i;
       if (loses < lost_.size() && !lost_[loses] && (next == SIZE_MAX || busy_[next].until >= at)) {
         time = at;
         lost_[loses] = true;
@@ -100,7 +104,9 @@ class Simulation {
   int parts = 0;
 
  private:
-  static double paths_of(const FilmPart& part) { return static_cast<double>(part.window.pixels()) * part.sample_count; }
+  static double paths_of(const FilmPart& part) {
+    return static_cast<double>(part.window.pixels()) * part.sample_count;
+  }
   struct Busy {
     std::optional<FilmPart> part;
     double seconds = 0, until = 0;
@@ -118,11 +124,13 @@ TEST(WorkQueue, PartsAreCutInSamplesOrRowsOfTiles) {
   EXPECT_EQ(cut_part(all, 18500, 100, rest), (FilmPart{{0, 0, 100, 60}, 4, 3}));
   EXPECT_THAT(rest, ElementsAre(FilmPart{{0, 0, 100, 60}, 7, 7}));
   rest.clear();
-  EXPECT_EQ(cut_part(all, 1e9, 4, rest), (FilmPart{{0, 0, 100, 60}, 4, 4}));  // no more samples than a batch takes
+  EXPECT_EQ(cut_part(all, 1e9, 4, rest),
+            (FilmPart{{0, 0, 100, 60}, 4, 4}));  // no more samples than a batch takes
   rest.clear();
   EXPECT_EQ(cut_part(all, 1e9, 100, rest), all);
   EXPECT_THAT(rest, IsEmpty());
-  EXPECT_EQ(cut_part(all, 1950, 100, rest), (FilmPart{{0, 0, 100, 16}, 4, 1}));  // 19 rows: two rows of tiles
+  EXPECT_EQ(cut_part(all, 1950, 100, rest),
+            (FilmPart{{0, 0, 100, 16}, 4, 1}));  // 19 rows: two rows of tiles
   EXPECT_THAT(rest, ElementsAre(FilmPart{{0, 16, 100, 44}, 4, 1}, FilmPart{{0, 0, 100, 60}, 5, 9}));
   rest.clear();
   EXPECT_EQ(cut_part(all, 350, 100, rest), (FilmPart{{0, 0, 100, 3}, 4, 1}));
@@ -169,10 +177,15 @@ TEST(WorkQueue, AWorkerAloneTakesWholePasses) {
 
 // Workers of any speeds finish together, and each has done what its speed makes of the whole.
 TEST(WorkQueue, AreBySpeedAndEndTogether) {
-  for (const std::vector<double>& speeds : std::vector<std::vector<double>>{
-           {1e5, 1e5}, {1e5, 3e5}, {2e4, 1e6}, {1e5, 1e5, 1e5, 1e5}, {3e5, 1e5, 2e5}, {1e3, 1e6, 2e6}}) {
+  for (const std::vector<double>& speeds : std::vector<std::vector<double>>{{1e5, 1e5},
+                                                                            {1e5, 3e5},
+                                                                            {2e4, 1e6},
+                                                                            {1e5, 1e5, 1e5, 1e5},
+                                                                            {3e5, 1e5, 2e5},
+                                                                            {1e3, 1e6, 2e6}}) {
     constexpr std::uint32_t samples = 4000;
-    WorkQueue shares(picture, 3, samples, {}, std::vector<WorkQueue::Worker>(speeds.size(), worker()));
+    WorkQueue shares(picture, 3, samples, {},
+                     std::vector<WorkQueue::Worker>(speeds.size(), worker()));
     Simulation simulation(shares, speeds);
     const auto [first, last] = simulation.run();
     EXPECT_TRUE(shares.complete());
@@ -180,12 +193,14 @@ TEST(WorkQueue, AreBySpeedAndEndTogether) {
     double all = 0;
     for (const double speed : speeds) all += speed;
     const double whole = static_cast<double>(picture.pixels()) * samples;
-    // A worker may begin its last part, of a fiftieth of a second or a row, just before the others have none; and the first
-    // parts, before speeds are known, are a batch.
+    // A worker may begin its last part, of a fiftieth of a second or a row, just before the others
+    // have none; and the first parts, before speeds are known, are a batch.
     const double slowest = *std::ranges::min_element(speeds);
-    EXPECT_LT(last - first, std::max(0.02, picture.width / slowest) + 1e-9) << testing::PrintToString(speeds);
+    EXPECT_LT(last - first, std::max(0.02, picture.width / slowest) + 1e-9)
+        << testing::PrintToString(speeds);
     EXPECT_LT(last, whole / all * 1.02 + 0.05) << testing::PrintToString(speeds);
-    EXPECT_LT(simulation.parts, 40 * static_cast<int>(speeds.size()) + 2 * last * static_cast<double>(speeds.size()));
+    EXPECT_LT(simulation.parts,
+              40 * static_cast<int>(speeds.size()) + 2 * last * static_cast<double>(speeds.size()));
   }
 }
 
@@ -206,7 +221,8 @@ TEST(WorkQueue, WhatALostWorkerHadIsDoneAgain) {
   }
 }
 
-// Samples of earlier renders, which a lost worker's film had, come back as well; they do not count as this render's.
+// Samples of earlier renders, which a lost worker's film had, come back as well; they do not count
+// as this render's.
 TEST(WorkQueue, WhatIsToBeDoneAgainComesFirst) {
   WorkQueue shares(picture, 20, 1, {{picture, 3, 2}}, {worker(), worker()});
   Simulation simulation(shares, {1e5, 1e5});
@@ -248,7 +264,8 @@ TEST(WorkQueue, ClosedOnesFinishWhatIsBegun) {
   EXPECT_EQ(none.samples(), 0u);
 }
 
-// One that needs longer for a row than the others for everything leaves it to them, until they are lost.
+// One that needs longer for a row than the others for everything leaves it to them, until they are
+// lost.
 TEST(WorkQueue, TheSlowLeaveTheEndToOthers) {
   WorkQueue::Worker slow = worker(), fast = worker();
   slow.speed.measured(10, 1);

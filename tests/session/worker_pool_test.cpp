@@ -27,10 +27,12 @@ struct Seen {
 };
 
 std::shared_ptr<WorkerPool> pool_of(std::size_t members, const std::shared_ptr<Seen>& seen) {
-  return std::make_shared<WorkerPool>(members, WorkerPool::Calls{[seen](std::size_t member) { return member == 0 ? seen->beats.load() : 0; },
-                                                     [seen](std::size_t member, std::exception_ptr failure) {
-                                                       (failure ? seen->failed : seen->hung).push_back(static_cast<int>(member));
-                                                     }});
+  return std::make_shared<WorkerPool>(
+      members,
+      WorkerPool::Calls{[seen](std::size_t member) { return member == 0 ? seen->beats.load() : 0; },
+                        [seen](std::size_t member, std::exception_ptr failure) {
+                          (failure ? seen->failed : seen->hung).push_back(static_cast<int>(member));
+                        }});
 }
 
 TEST(WorkerPool, FailuresAreToldOfAndTheOthersGoOn) {
@@ -56,7 +58,8 @@ TEST(WorkerPool, OneAloneWorksOnTheCallersThread) {
   EXPECT_EQ(on, std::this_thread::get_id());
 }
 
-// One that hangs is given up; the other, which then is silent for as long, is the last, and is waited for.
+// One that hangs is given up; the other, which then is silent for as long, is the last, and is
+// waited for.
 TEST(WorkerPool, WhoHangsIsGivenUpButNotTheLast) {
   const auto seen = std::make_shared<Seen>();
   const auto pool = pool_of(2, seen);
@@ -80,7 +83,8 @@ TEST(WorkerPool, WhoHangsIsGivenUpButNotTheLast) {
   }
   EXPECT_TRUE(WorkerPool::any_given_up());
   seen->release.set_value();
-  for (int i = 0; i < 200 && WorkerPool::any_given_up(); ++i) std::this_thread::sleep_for(milliseconds(20));
+  for (int i = 0; i < 200 && WorkerPool::any_given_up(); ++i)
+    std::this_thread::sleep_for(milliseconds(20));
   EXPECT_FALSE(WorkerPool::any_given_up());
   const std::lock_guard lock(pool->mutex());
   EXPECT_EQ(seen->done.size(), 1u);  // who comes back finds itself gone

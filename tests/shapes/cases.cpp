@@ -38,11 +38,13 @@ dvec3 any_perpendicular(const dvec3& n) {
 }  // namespace
 
 void CaseSet::renew_references() {
-  for (std::size_t i = 0; i < primitives.size(); ++i) references[i] = reference_of(primitives[i], leaves);
+  for (std::size_t i = 0; i < primitives.size(); ++i)
+    references[i] = reference_of(primitives[i], leaves);
 }
 
 dvec3 CaseMaker::direction() {
-  const double z = uniform(-1, 1), phi = uniform(0, full_turn), r = std::sqrt(std::max(0.0, 1 - z * z));
+  const double z = uniform(-1, 1), phi = uniform(0, full_turn),
+               r = std::sqrt(std::max(0.0, 1 - z * z));
   return {r * std::cos(phi), r * std::sin(phi), z};
 }
 
@@ -61,7 +63,8 @@ CaseMaker::Frame CaseMaker::frame(bool hard) {
 }
 
 FlatPrimitive CaseMaker::basic(int shape, bool hard, const Frame& at) {
-  const auto p0 = floats(at.center - 0.5 * at.length * at.axis), p1 = floats(at.center + 0.5 * at.length * at.axis);
+  const auto p0 = floats(at.center - 0.5 * at.length * at.axis),
+             p1 = floats(at.center + 0.5 * at.length * at.axis);
   const auto radius = static_cast<float>(at.r);
   switch (shape) {
     case shape_sphere:
@@ -75,7 +78,8 @@ FlatPrimitive CaseMaker::basic(int shape, bool hard, const Frame& at) {
     case shape_triangle: {
       const double thin = hard ? std::pow(10.0, uniform(-3, 0)) : 1;
       const dvec3 side = any_perpendicular(at.axis), c = at.center;
-      return make_triangle(floats(c), floats(c + at.r * direction()), floats(c + at.r * thin * (side + 0.3 * direction())));
+      return make_triangle(floats(c), floats(c + at.r * direction()),
+                           floats(c + at.r * thin * (side + 0.3 * direction())));
     }
     default:
       return make_disk(floats(at.center), floats(at.axis), radius);
@@ -83,13 +87,18 @@ FlatPrimitive CaseMaker::basic(int shape, bool hard, const Frame& at) {
 }
 
 FlatPrimitive CaseMaker::solid(int shape, bool, const Frame& at) {
-  auto p0 = floats(at.center - 0.5 * at.length * at.axis), p1 = floats(at.center + 0.5 * at.length * at.axis);
+  auto p0 = floats(at.center - 0.5 * at.length * at.axis),
+       p1 = floats(at.center + 0.5 * at.length * at.axis);
   const auto radius = static_cast<float>(at.r);
-  if (p0 == p1) p1[0] += std::max(radius, 1e-6f * std::abs(p1[0]));  // lost in rounding: an axis has to be
-  const auto cap = [&] { return below(2) == 0 ? CAPLET_CAP_FLAT : below(2) == 0 ? CAPLET_CAP_ROUND : CAPLET_CAP_OPEN; };
+  if (p0 == p1)
+    p1[0] += std::max(radius, 1e-6f * std::abs(p1[0]));  // lost in rounding: an axis has to be
+  const auto cap = [&] {
+    return below(2) == 0 ? CAPLET_CAP_FLAT : below(2) == 0 ? CAPLET_CAP_ROUND : CAPLET_CAP_OPEN;
+  };
   if (shape == shape_cylinder) return make_cylinder(p0, p1, radius, cap(), cap());
   const auto r1 = static_cast<float>(at.r * (below(5) == 0 ? 0.0 : uniform(0, 1)));
-  return below(2) == 0 ? make_cone(p0, p1, radius, r1, cap(), cap()) : make_cone(p0, p1, r1, radius, cap(), cap());
+  return below(2) == 0 ? make_cone(p0, p1, radius, r1, cap(), cap())
+                       : make_cone(p0, p1, r1, radius, cap(), cap());
 }
 
 namespace {
@@ -97,7 +106,8 @@ namespace {
 /// Fields for a place and size.
 class FrameFields : public Fields {
  public:
-  FrameFields(CaseMaker& random, bool hard, const CaseMaker::Frame& at) : random_(random), hard_(hard), at_(at) {}
+  FrameFields(CaseMaker& random, bool hard, const CaseMaker::Frame& at)
+      : random_(random), hard_(hard), at_(at) {}
   void corners(const char*, const char*, dvec3& p0, dvec3& p1) override {
     for (int k = 0; k < 3; ++k) {
       const double half = size();
@@ -109,7 +119,9 @@ class FrameFields : public Fields {
   void positive(const char*, double& value) override { value = static_cast<float>(size()); }
 
  private:
-  double size() { return at_.r * (hard_ ? std::pow(10.0, random_.uniform(-3, 0)) : random_.uniform(0.1, 1)); }
+  double size() {
+    return at_.r * (hard_ ? std::pow(10.0, random_.uniform(-3, 0)) : random_.uniform(0.1, 1));
+  }
   CaseMaker& random_;
   bool hard_;
   const CaseMaker::Frame& at_;
@@ -136,9 +148,11 @@ FlatPrimitive CaseMaker::open(int shape, bool hard, const Frame& at) {
   const auto phi_max = static_cast<float>(below(3) == 0 ? full_turn : uniform(0.1, full_turn));
   switch (shape) {
     case shape_partial_sphere: {
-      double low = below(3) == 0 ? -1 : uniform(-1, 0.9), high = below(3) == 0 ? 1 : uniform(-0.9, 1);
+      double low = below(3) == 0 ? -1 : uniform(-1, 0.9),
+             high = below(3) == 0 ? 1 : uniform(-0.9, 1);
       if (low > high) std::swap(low, high);
-      return make_partial_sphere(radius, static_cast<float>(low * at.r), static_cast<float>(high * at.r), phi_max);
+      return make_partial_sphere(radius, static_cast<float>(low * at.r),
+                                 static_cast<float>(high * at.r), phi_max);
     }
     case shape_open_cylinder: {
       const double z = below(2) == 0 ? -0.5 * at.length : at.center.z;
@@ -148,20 +162,24 @@ FlatPrimitive CaseMaker::open(int shape, bool hard, const Frame& at) {
     }
     case shape_partial_disk: {
       const double inner = below(3) == 0 ? 0 : at.r * uniform(0.05, 0.95);
-      return make_partial_disk(below(3) == 0 ? 0 : static_cast<float>(at.center.z), radius, static_cast<float>(inner), phi_max);
+      return make_partial_disk(below(3) == 0 ? 0 : static_cast<float>(at.center.z), radius,
+                               static_cast<float>(inner), phi_max);
     }
     default: {
       const double thin = hard ? std::pow(10.0, uniform(-2, 0)) : 1;
-      const dvec3 u = at.r * direction(), v = at.r * thin * (any_perpendicular(at.axis) + 0.3 * direction());
+      const dvec3 u = at.r * direction(),
+                  v = at.r * thin * (any_perpendicular(at.axis) + 0.3 * direction());
       dvec3 p11 = u + v;
       if (below(4) != 0) p11 += at.r * thin * uniform(0, 1) * direction();
       if (below(12) == 0) p11 = u;  // a triangle
-      return make_bilinear(floats(at.center), floats(at.center + u), floats(at.center + v), floats(at.center + p11));
+      return make_bilinear(floats(at.center), floats(at.center + u), floats(at.center + v),
+                           floats(at.center + p11));
     }
   }
 }
 
-FlatPrimitive CaseMaker::polyhedron(int planes, double stretch, const Frame& at, std::vector<float>& leaves) {
+FlatPrimitive CaseMaker::polyhedron(int planes, double stretch, const Frame& at,
+                                    std::vector<float>& leaves) {
   for (;;) {
     PolyhedronShape shape;
     for (int i = 0; i < planes; ++i) {
@@ -175,14 +193,17 @@ FlatPrimitive CaseMaker::polyhedron(int planes, double stretch, const Frame& at,
     const std::size_t before = leaves.size();
     const FlatPrimitive p = flat_primitive(shape, glm::dmat4(1), leaves);
     const auto reference = std::get<reference::Polyhedron>(reference_of(p, leaves));
-    bool bounded = !reference.corners.empty() && reference.ball_radius < 30 * at.r * std::max(stretch, 1.0);
+    bool bounded =
+        !reference.corners.empty() && reference.ball_radius < 30 * at.r * std::max(stretch, 1.0);
     for (int i = 0; i < 50 && bounded; ++i) {
       const dvec3 far = reference.ball_center + 1e3 * reference.ball_radius * direction();
       bounded = reference::value(reference, far) > 0;
     }
     for (const dvec3& corner : reference.corners)
       for (int i = 0; i < 4 && bounded; ++i)
-        bounded = reference::value(reference, corner + 0.1 * at.r * glm::normalize(corner - reference.ball_center)) > 0;
+        bounded = reference::value(
+                      reference,
+                      corner + 0.1 * at.r * glm::normalize(corner - reference.ball_center)) > 0;
     if (bounded) return p;
     leaves.resize(before);
   }
@@ -200,25 +221,36 @@ Shape CaseMaker::csg_shape(int depth) {
         operand.geometry = SphereShape{r};
         break;
       case 1:
-        operand.geometry = CapsulesShape{{{0, 0, 0}}, {glm::vec3(direction())}, {static_cast<float>(r)}, {}, {}};
+        operand.geometry =
+            CapsulesShape{{{0, 0, 0}}, {glm::vec3(direction())}, {static_cast<float>(r)}, {}, {}};
         break;
       case 2:
-        operand.geometry =
-            CapsulesShape{{{0, 0, 0}}, {glm::vec3(direction())}, {static_cast<float>(r)}, {static_cast<float>(0.5 * r)}, {}};
+        operand.geometry = CapsulesShape{{{0, 0, 0}},
+                                         {glm::vec3(direction())},
+                                         {static_cast<float>(r)},
+                                         {static_cast<float>(0.5 * r)},
+                                         {}};
         break;
       case 3:
-        operand.geometry =
-            CylinderShape{-uniform(0.1, 1) * direction(), uniform(0.5, 2) * dvec3(0, 0, 1), r, {Cap::flat, Cap::flat}};
+        operand.geometry = CylinderShape{-uniform(0.1, 1) * direction(),
+                                         uniform(0.5, 2) * dvec3(0, 0, 1),
+                                         r,
+                                         {Cap::flat, Cap::flat}};
         break;
       case 4:
-        operand.geometry = ConeShape{{0, 0, -r}, {0, 0, r}, {r, 0.5 * r}, {Cap::flat, below(2) == 0 ? Cap::flat : Cap::round}};
+        operand.geometry = ConeShape{{0, 0, -r},
+                                     {0, 0, r},
+                                     {r, 0.5 * r},
+                                     {Cap::flat, below(2) == 0 ? Cap::flat : Cap::round}};
         break;
       case 5:
-        operand.geometry = PolyhedronShape{{dvec3(0), dvec3(0), dvec3(0), dvec3(r)},
-                                           {dvec3(-1, 0, 0), dvec3(0, -1, 0), dvec3(0, 0, -1), dvec3(1, 1, 1)}};
+        operand.geometry =
+            PolyhedronShape{{dvec3(0), dvec3(0), dvec3(0), dvec3(r)},
+                            {dvec3(-1, 0, 0), dvec3(0, -1, 0), dvec3(0, 0, -1), dvec3(1, 1, 1)}};
         break;
       case 6:
-        operand.geometry = BoxShape{dvec3(-r), dvec3(uniform(0.2, 1), uniform(0.2, 1), uniform(0.2, 1))};
+        operand.geometry =
+            BoxShape{dvec3(-r), dvec3(uniform(0.2, 1), uniform(0.2, 1), uniform(0.2, 1))};
         break;
       default:
         operand = csg_shape(depth - 1);
@@ -227,7 +259,8 @@ Shape CaseMaker::csg_shape(int depth) {
     if (below(3) != 0) m = glm::translate(m, 0.7 * direction());
     if (below(2) == 0) m = glm::rotate(m, uniform(0, full_turn), direction());
     if (below(2) == 0)
-      m = glm::scale(m, dvec3(uniform(0.5, 1.5), uniform(0.5, 1.5), uniform(0.5, 1.5) * (below(2) == 0 ? 1 : -1)));
+      m = glm::scale(m, dvec3(uniform(0.5, 1.5), uniform(0.5, 1.5),
+                              uniform(0.5, 1.5) * (below(2) == 0 ? 1 : -1)));
     operand.world_from_object = m;
     csg.operands.push_back(std::make_shared<const Shape>(operand));
   }
@@ -280,7 +313,9 @@ void CaseMaker::add_primitive(int shape, bool hard, CaseSet& out) {
       const reference::Ball ball = reference::bounding_ball(reference);
       bool something = false;
       for (int i = 0; i < 30 && !something; ++i)
-        something = !reference::crossings(reference, {ball.center + 0.5 * ball.radius * direction(), direction()}).empty();
+        something = !reference::crossings(
+                         reference, {ball.center + 0.5 * ball.radius * direction(), direction()})
+                         .empty();
       if (!something) continue;
       out.primitives.push_back(flat_primitive(placed, glm::dmat4(1), out.leaves));
       out.references.push_back(reference);
@@ -299,12 +334,16 @@ void CaseMaker::add_primitive(int shape, bool hard, CaseSet& out) {
 
 namespace {
 
-double columns(const glm::dmat4& m) { return glm::length(dvec3(m[0])) + glm::length(dvec3(m[1])) + glm::length(dvec3(m[2])); }
+double columns(const glm::dmat4& m) {
+  return glm::length(dvec3(m[0])) + glm::length(dvec3(m[1])) + glm::length(dvec3(m[2]));
+}
 
-// docs/numerics.md, "CSG": 16 eps (R + 3 e) an operand, R and e at most what stands here. Where its data cannot hold its
-// transform (boxes that are turned, affine maps) R and e are those of its own space, 8 eps R are added, and the result is taken
-// to the space that the shape is stored in by the largest stretch.
-double operands_bound(const reference::Csg& csg, const glm::dmat4& csg_from_outer, const dvec3& center, double radius) {
+// docs/numerics.md, "CSG": 16 eps (R + 3 e) an operand, R and e at most what stands here. Where its
+// data cannot hold its transform (boxes that are turned, affine maps) R and e are those of its own
+// space, 8 eps R are added, and the result is taken to the space that the shape is stored in by the
+// largest stretch.
+double operands_bound(const reference::Csg& csg, const glm::dmat4& csg_from_outer,
+                      const dvec3& center, double radius) {
   double out = 0;
   for (const reference::CsgOperand& operand : csg.body->operands) {
     const glm::dmat4 inward = operand.operand_from_csg * csg_from_outer;
@@ -314,14 +353,18 @@ double operands_bound(const reference::Csg& csg, const glm::dmat4& csg_from_oute
     }
     const glm::dmat4 outward = glm::inverse(inward);
     const reference::Ball ball = reference::bounding_ball(operand.primitive);
-    if (const double scale = similarity_scale(outward); scale > 0 && !std::holds_alternative<reference::Box>(operand.primitive)) {
+    if (const double scale = similarity_scale(outward);
+        scale > 0 && !std::holds_alternative<reference::Box>(operand.primitive)) {
       const dvec3 middle(outward * glm::dvec4(ball.center, 1));
-      out = std::max(out, 16 * eps * (radius + 3 * (glm::length(middle - center) + std::sqrt(3.0) * scale * ball.radius)));
+      out = std::max(out, 16 * eps *
+                              (radius + 3 * (glm::length(middle - center) +
+                                             std::sqrt(3.0) * scale * ball.radius)));
       continue;
     }
     const double extent = glm::length(ball.center) + std::sqrt(3.0) * ball.radius;
     const double away = glm::length(center - dvec3(outward[3]));
-    out = std::max(out, 24 * eps * columns(outward) * (columns(inward) * (radius + away) + 3 * extent));
+    out = std::max(out,
+                   24 * eps * columns(outward) * (columns(inward) * (radius + away) + 3 * extent));
   }
   return out;
 }
@@ -332,11 +375,13 @@ Extent extent_of(const FlatPrimitive& p, const reference::Primitive& reference) 
   const reference::Ball ball = reference::bounding_ball(reference);
   double reach = 2 * ball.radius;
   if (p.shape == shape_triangle)
-    reach = glm::length(point(p.data + 3) - point(p.data)) + glm::length(point(p.data + 6) - point(p.data));
+    reach = glm::length(point(p.data + 3) - point(p.data)) +
+            glm::length(point(p.data + 6) - point(p.data));
   return {ball.center, ball.radius, reach};
 }
 
-double surface_bound(const FlatPrimitive& p, const reference::Primitive& reference, const RayRecord& ray) {
+double surface_bound(const FlatPrimitive& p, const reference::Primitive& reference,
+                     const RayRecord& ray) {
   const float* d = p.data;
   const dvec3 o(ray.ox, ray.oy, ray.oz);
   const auto from = [&](const dvec3& c) { return glm::length(o - c); };
@@ -352,7 +397,8 @@ double surface_bound(const FlatPrimitive& p, const reference::Primitive& referen
       return 16 * eps * (from(point(d)) + axis + double(d[6]) + double(d[7]));
     case shape_triangle:
       return 16 * eps *
-             (from(point(d)) + std::max({axis, glm::length(point(d + 6) - point(d)), glm::length(point(d + 6) - point(d + 3))}));
+             (from(point(d)) + std::max({axis, glm::length(point(d + 6) - point(d)),
+                                         glm::length(point(d + 6) - point(d + 3))}));
     case shape_disk:
       return 16 * eps * (from(point(d)) + double(d[6]));
     case shape_box:
@@ -360,24 +406,29 @@ double surface_bound(const FlatPrimitive& p, const reference::Primitive& referen
     case shape_polyhedron: {
       const auto& polyhedron = std::get<reference::Polyhedron>(reference);
       double radius = 0;
-      for (const dvec3& corner : polyhedron.corners) radius = std::max(radius, glm::length(corner - polyhedron.center));
+      for (const dvec3& corner : polyhedron.corners)
+        radius = std::max(radius, glm::length(corner - polyhedron.center));
       return 16 * eps * (from(polyhedron.center) + radius);
     }
     case shape_partial_sphere:
       return 16 * eps * (from(dvec3(0)) + double(d[0]));
     case shape_open_cylinder:
-      return 16 * eps * (from({0, 0, 0.5 * (double(d[1]) + double(d[2]))}) + double(d[0]) + double(d[2]) - double(d[1]));
+      return 16 * eps *
+             (from({0, 0, 0.5 * (double(d[1]) + double(d[2]))}) + double(d[0]) + double(d[2]) -
+              double(d[1]));
     case shape_partial_disk:
       return 16 * eps * (from({0, 0, d[0]}) + double(d[1]));
     case shape_bilinear: {
       double diameter = 0;
       for (int i = 0; i < 4; ++i)
-        for (int k = 0; k < i; ++k) diameter = std::max(diameter, glm::length(point(d + 3 * i) - point(d + 3 * k)));
+        for (int k = 0; k < i; ++k)
+          diameter = std::max(diameter, glm::length(point(d + 3 * i) - point(d + 3 * k)));
       return 24 * eps * (from(point(d)) + diameter);
     }
     case shape_csg: {
       const reference::Ball ball = reference::bounding_ball(reference);
-      return operands_bound(std::get<reference::Csg>(reference), glm::dmat4(1), ball.center, ball.radius) +
+      return operands_bound(std::get<reference::Csg>(reference), glm::dmat4(1), ball.center,
+                            ball.radius) +
              3 * eps * from(ball.center);
     }
     default: {
@@ -455,12 +506,18 @@ dvec3 CaseMaker::point_of(const reference::Solid<Model>& solid, dvec3* normal) {
 
 dvec3 CaseMaker::point_of(const reference::Polyhedron& p, dvec3* normal) {
   // Corners of one plane span its face; two of them may be an edge.
-  const auto corner = [&] { return p.corners[static_cast<std::size_t>(below(static_cast<int>(p.corners.size())))]; };
+  const auto corner = [&] {
+    return p.corners[static_cast<std::size_t>(below(static_cast<int>(p.corners.size())))];
+  };
   const auto plane = static_cast<std::size_t>(reference::surface_at(p, corner()).surface);
   std::vector<dvec3> face;
   for (const dvec3& c : p.corners)
-    if (std::abs(glm::dot(p.normals[plane], c - p.center) - p.offsets[plane]) < 1e-9 * p.ball_radius) face.push_back(c);
-  const auto of_face = [&] { return face[static_cast<std::size_t>(below(static_cast<int>(face.size())))]; };
+    if (std::abs(glm::dot(p.normals[plane], c - p.center) - p.offsets[plane]) <
+        1e-9 * p.ball_radius)
+      face.push_back(c);
+  const auto of_face = [&] {
+    return face[static_cast<std::size_t>(below(static_cast<int>(face.size())))];
+  };
   *normal = p.normals[plane];
   const dvec3 a = of_face(), b = of_face(), c = of_face();
   const dvec3 on_edge = a + between(0, 1) * (b - a);
@@ -492,14 +549,16 @@ dvec3 CaseMaker::point_of(const reference::OpenCylinder& c, dvec3* normal) {
 }
 
 dvec3 CaseMaker::point_of(const reference::PartialDisk& d, dvec3* normal) {
-  const double phi = angle_within(d.phi_max, uniform(0, 1), uniform(0, 1)), r = between(d.inner_radius, d.radius);
+  const double phi = angle_within(d.phi_max, uniform(0, 1), uniform(0, 1)),
+               r = between(d.inner_radius, d.radius);
   *normal = {0, 0, 1};
   return {r * std::cos(phi), r * std::sin(phi), d.height};
 }
 
 dvec3 CaseMaker::point_of(const reference::Bilinear& b, dvec3* normal) {
   const double u = between(0, 1), v = between(0, 1);
-  const dvec3 du = b.p10 - b.p00 + v * (b.p11 - b.p01 - b.p10 + b.p00), dv = b.p01 - b.p00 + u * (b.p11 - b.p01 - b.p10 + b.p00);
+  const dvec3 du = b.p10 - b.p00 + v * (b.p11 - b.p01 - b.p10 + b.p00),
+              dv = b.p01 - b.p00 + u * (b.p11 - b.p01 - b.p10 + b.p00);
   const dvec3 n = glm::cross(du, dv);
   *normal = glm::length(n) > 0 ? glm::normalize(n) : dvec3(0, 0, 1);
   return b.p00 + u * (b.p10 - b.p00) + v * dv;
@@ -509,10 +568,13 @@ dvec3 CaseMaker::point_of(const reference::Csg& csg, dvec3* normal) {
   const reference::Primitive whole = csg;
   const reference::Ball ball = reference::bounding_ball(whole);
   for (int i = 0; i < 20; ++i) {
-    const reference::Ray line{ball.center + ball.radius * uniform(0, 0.9) * direction(), direction(), -HUGE_VAL, HUGE_VAL};
+    const reference::Ray line{ball.center + ball.radius * uniform(0, 0.9) * direction(),
+                              direction(), -HUGE_VAL, HUGE_VAL};
     const auto found = reference::crossings(whole, line);
     if (found.empty()) continue;
-    const dvec3 x = line.origin + found[static_cast<std::size_t>(below(static_cast<int>(found.size())))].t * line.direction;
+    const dvec3 x =
+        line.origin +
+        found[static_cast<std::size_t>(below(static_cast<int>(found.size())))].t * line.direction;
     *normal = reference::normal_at(whole, x, 1e-6 * ball.radius);
     if (std::isfinite(normal->x)) return x;
   }
@@ -520,7 +582,8 @@ dvec3 CaseMaker::point_of(const reference::Csg& csg, dvec3* normal) {
   return ball.center;
 }
 
-dvec3 CaseMaker::surface_point(const FlatPrimitive& p, const reference::Primitive& reference, dvec3* normal) {
+dvec3 CaseMaker::surface_point(const FlatPrimitive& p, const reference::Primitive& reference,
+                               dvec3* normal) {
   const float* d = p.data;
   if (p.shape > shape_disk)
     return std::visit(
@@ -547,11 +610,13 @@ dvec3 CaseMaker::surface_point(const FlatPrimitive& p, const reference::Primitiv
     case shape_disk: {
       *normal = glm::normalize(point(d + 3));
       const dvec3 u = any_perpendicular(*normal), v = glm::cross(*normal, u);
-      const double phi = uniform(0, full_turn), r = double(d[6]) * (below(3) == 0 ? 1 : std::sqrt(uniform(0, 1)));
+      const double phi = uniform(0, full_turn),
+                   r = double(d[6]) * (below(3) == 0 ? 1 : std::sqrt(uniform(0, 1)));
       return point(d) + r * (std::cos(phi) * u + std::sin(phi) * v);
     }
     default: {
-      // A ball of the hull touches it where its normal has the tangent cone's angle; at the ends anywhere beyond.
+      // A ball of the hull touches it where its normal has the tangent cone's angle; at the ends
+      // anywhere beyond.
       const double r0 = d[6], r1 = p.shape == shape_capsule ? r0 : double(d[7]);
       const dvec3 axis = point(d + 3) - point(d);
       const double length = glm::length(axis), k = length > 0 ? (r0 - r1) / length : 2;
@@ -599,7 +664,8 @@ RayRecord CaseMaker::ray(const FlatPrimitive& p, const reference::Primitive& ref
   const dvec3 on = surface_point(p, reference, &n);
   const double size = std::max(extent.radius, 1e-30);
   // Shapes are thin: aim near a surface point, within the local radius or so.
-  const dvec3 aim = on + (below(2) == 0 ? 0.0 : std::pow(10.0, uniform(-6, 0))) * 0.3 * size * direction();
+  const dvec3 aim =
+      on + (below(2) == 0 ? 0.0 : std::pow(10.0, uniform(-6, 0))) * 0.3 * size * direction();
   dvec3 o, d;
   switch (below(9)) {
     case 0:  // from outside
@@ -629,7 +695,8 @@ RayRecord CaseMaker::ray(const FlatPrimitive& p, const reference::Primitive& ref
     case 5: {  // touching, or nearly
       const dvec3 across = glm::normalize(glm::cross(n, direction()));
       d = across;
-      const double off = below(3) == 0 ? 0 : std::pow(10.0, uniform(-8, -1)) * (below(2) == 0 ? 1 : -1);
+      const double off =
+          below(3) == 0 ? 0 : std::pow(10.0, uniform(-8, -1)) * (below(2) == 0 ? 1 : -1);
       o = on + off * size * n - uniform(0.1, 4) * size * across;
       break;
     }
@@ -668,10 +735,11 @@ PlacedCases placed_cases(CaseSet cases, std::uint32_t seed) {
   PlacedCases out{std::move(cases), {}, {}};
   CaseMaker random(seed);
   for (const FlatPrimitive& p : out.cases.primitives) {
-    glm::dmat4 m = glm::translate(glm::dmat4(1), std::pow(10.0, random.uniform(-1, 3)) * random.direction());
+    glm::dmat4 m =
+        glm::translate(glm::dmat4(1), std::pow(10.0, random.uniform(-1, 3)) * random.direction());
     m = glm::rotate(m, random.uniform(0, full_turn), random.direction());
-    m = glm::scale(
-        m, dvec3(random.uniform(0.2, 3), random.uniform(0.2, 3), random.uniform(0.2, 3) * (random.uniform(0, 1) < 0.5 ? -1 : 1)));
+    m = glm::scale(m, dvec3(random.uniform(0.2, 3), random.uniform(0.2, 3),
+                            random.uniform(0.2, 3) * (random.uniform(0, 1) < 0.5 ? -1 : 1)));
     m = glm::rotate(m, random.uniform(0, full_turn), random.direction());
     const glm::dmat4 inverse = glm::inverse(m);
     PlacedPrimitive placed{p, true, {}, {}};
@@ -689,7 +757,8 @@ PlacedCases placed_cases(CaseSet cases, std::uint32_t seed) {
   for (std::size_t i = 0; i < out.cases.rays.size(); ++i) {
     RayRecord& r = out.cases.rays[i];
     const glm::dmat4& m = out.world_from_object[out.cases.which[i]];
-    r = make_ray(dvec3(m * glm::dvec4(r.ox, r.oy, r.oz, 1)), dvec3(m * glm::dvec4(r.dx, r.dy, r.dz, 0)));
+    r = make_ray(dvec3(m * glm::dvec4(r.ox, r.oy, r.oz, 1)),
+                 dvec3(m * glm::dvec4(r.dx, r.dy, r.dz, 0)));
   }
   return out;
 }

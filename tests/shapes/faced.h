@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Convex solids that the model tells by their surfaces and fields (scene/shapes/family.h), on trial without a word of their own.
-// What kernels read of them are the fields in order.
+// Convex solids that the model tells by their surfaces and fields (scene/shapes/family.h), on trial
+// without a word of their own. What kernels read of them are the fields in order.
 #pragma once
 
 #include <cmath>
@@ -41,7 +41,8 @@ struct FromData : Fields {
   const float* at;
 };
 
-/// How many of the data are points' coordinates, before the first that is none, and how many there are.
+/// How many of the data are points' coordinates, before the first that is none, and how many there
+/// are.
 struct CountFields : Fields {
   void corners(const char*, const char*, glm::dvec3&, glm::dvec3&) override {
     if (coordinates == all) coordinates += 6;
@@ -68,7 +69,8 @@ reference::Primitive faced_reference(const float* data) {
 
 /// The point of the surface that lies on the ray from a point inside.
 template <class Type>
-glm::dvec3 surface_beyond(const Type& solid, const glm::dvec3& inside, const glm::dvec3& along, int* surface) {
+glm::dvec3 surface_beyond(const Type& solid, const glm::dvec3& inside, const glm::dvec3& along,
+                          int* surface) {
   double low = 0, high = 1;
   while (beyond(solid, inside + high * along).most < 0) high *= 2;
   for (int i = 0; i < 200; ++i) {

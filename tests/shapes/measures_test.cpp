@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// What the host works out about solids: faces and corners of polyhedra, planes to blame, areas. No device.
+// What the host works out about solids: faces and corners of polyhedra, planes to blame, areas. No
+// device.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -53,13 +54,15 @@ TEST(Polyhedra, ACubeHasEightCornersAndFacesSeenCounterClockwise) {
   for (std::size_t i = 0; i < 6; ++i) {
     ASSERT_EQ(faces[i].size(), 4u);
     for (std::size_t k = 0; k < 4; ++k) {
-      const dvec3 turn = glm::cross(faces[i][(k + 1) % 4] - faces[i][k], faces[i][(k + 2) % 4] - faces[i][(k + 1) % 4]);
+      const dvec3 turn = glm::cross(faces[i][(k + 1) % 4] - faces[i][k],
+                                    faces[i][(k + 2) % 4] - faces[i][(k + 1) % 4]);
       EXPECT_NEAR(glm::dot(turn, glm::normalize(cube().normals[i])), 1, 1e-12);
     }
   }
 }
 
-// Planes that touch a ball at random: three faces meet at every corner, so there are 2 n - 4 of them (Euler).
+// Planes that touch a ball at random: three faces meet at every corner, so there are 2 n - 4 of
+// them (Euler).
 TEST(Polyhedra, HundredsOfPlanesAroundABall) {
   std::mt19937 engine(1);
   for (const std::size_t n : {20u, 100u, 400u}) {
@@ -151,8 +154,10 @@ double area(const Shape& shape) {
   return std::visit(
       [&](const auto& geometry) -> double {
         using Geometry = std::decay_t<decltype(geometry)>;
-        if constexpr (std::is_same_v<Geometry, CapsulesShape> || std::is_same_v<Geometry, TriangleMeshShape> ||
-                      std::is_same_v<Geometry, BilinearMeshShape> || std::is_same_v<Geometry, CsgShape>) {
+        if constexpr (std::is_same_v<Geometry, CapsulesShape> ||
+                      std::is_same_v<Geometry, TriangleMeshShape> ||
+                      std::is_same_v<Geometry, BilinearMeshShape> ||
+                      std::is_same_v<Geometry, CsgShape>) {
           return -1;
         } else {
           const FlatPrimitive p = flat_primitive(geometry, shape.world_from_object, leaves);
@@ -174,23 +179,27 @@ TEST(Areas, SpheresAndCapsules) {
   EXPECT_NEAR(area(SphereShape{0.5}, glm::scale(glm::dmat4(1), dvec3(3))), 4 * pi * 2.25, 1e-5);
   const FlatPrimitive capsule{shape_capsule, 0, {1, 2, 3, 1, 2, 5, 0.5f}};
   EXPECT_NEAR(primitive_area(capsule, {}), 2 * pi * 0.5 * 2 + 4 * pi * 0.25, 1e-12);
-  // The joining cone's half angle has the sine 3/5 and the cosine 4/5; its generator is 4 long, between circles of 4/5 of the
-  // radii.
+  // The joining cone's half angle has the sine 3/5 and the cosine 4/5; its generator is 4 long,
+  // between circles of 4/5 of the radii.
   const FlatPrimitive tapered{shape_tapered_capsule, 0, {0, 0, 0, 0, 0, 5, 4, 1}};
-  EXPECT_NEAR(primitive_area(tapered, {}), 2 * pi * (16 * 1.6 + 1 * 0.4) + pi * (4 + 1) * 0.8 * 4, 1e-12);
+  EXPECT_NEAR(primitive_area(tapered, {}), 2 * pi * (16 * 1.6 + 1 * 0.4) + pi * (4 + 1) * 0.8 * 4,
+              1e-12);
 }
 
 TEST(Areas, ABoxIsThePolyhedronOfItsPlanes) {
   EXPECT_NEAR(area(BoxShape{{1, 2, 3}, {2, 5, 7}}), 2 * (3 + 12 + 4), 1e-6);
   EXPECT_NEAR(area(cube()), 6, 1e-6);
   const glm::dmat4 m =
-      glm::rotate(glm::scale(glm::translate(glm::dmat4(1), dvec3(9, 8, 7)), dvec3(1, 3, 4)), 0.5, dvec3(0, 0, 1));
+      glm::rotate(glm::scale(glm::translate(glm::dmat4(1), dvec3(9, 8, 7)), dvec3(1, 3, 4)), 0.5,
+                  dvec3(0, 0, 1));
   // The square of the x and y axes is stretched to 3; sides by the lengths of the rotated axes.
-  const double x = std::hypot(std::cos(0.5), 3 * std::sin(0.5)), y = std::hypot(std::sin(0.5), 3 * std::cos(0.5));
+  const double x = std::hypot(std::cos(0.5), 3 * std::sin(0.5)),
+               y = std::hypot(std::sin(0.5), 3 * std::cos(0.5));
   EXPECT_NEAR(area(cube(), m), 2 * (3 + 4 * x + 4 * y), 1e-4);
 }
 
-/// The area of the hull of two ends by turning the hull of their profile, found point by point, around the axis.
+/// The area of the hull of two ends by turning the hull of their profile, found point by point,
+/// around the axis.
 double turned_hull(double length, double r0, Cap cap0, double r1, Cap cap1) {
   struct Point {
     double z, rho;
@@ -199,14 +208,17 @@ double turned_hull(double length, double r0, Cap cap0, double r1, Cap cap1) {
   const auto add_end = [&](double z, double r, Cap cap) {
     constexpr int n = 20000;
     if (cap == Cap::round)
-      for (int i = 0; i <= n; ++i) points.push_back({z - r * std::cos(pi * i / n), r * std::sin(pi * i / n)});
+      for (int i = 0; i <= n; ++i)
+        points.push_back({z - r * std::cos(pi * i / n), r * std::sin(pi * i / n)});
     else
       points.insert(points.end(), {{z, 0}, {z, r}});
   };
   add_end(0, r0, cap0);
   add_end(length, r1, cap1);
   // Lowest and highest z at the axis, and above it the upper hull (Andrew's monotone chain).
-  std::ranges::sort(points, [](const Point& a, const Point& b) { return a.z < b.z || (a.z == b.z && a.rho < b.rho); });
+  std::ranges::sort(points, [](const Point& a, const Point& b) {
+    return a.z < b.z || (a.z == b.z && a.rho < b.rho);
+  });
   std::vector<Point> hull;
   for (const Point& p : points) {
     while (hull.size() >= 2) {
@@ -220,7 +232,8 @@ double turned_hull(double length, double r0, Cap cap0, double r1, Cap cap1) {
   hull.push_back({hull.back().z, 0});
   double sum = 0;
   for (std::size_t i = 1; i < hull.size(); ++i)
-    sum += pi * (hull[i - 1].rho + hull[i].rho) * std::hypot(hull[i].z - hull[i - 1].z, hull[i].rho - hull[i - 1].rho);
+    sum += pi * (hull[i - 1].rho + hull[i].rho) *
+           std::hypot(hull[i].z - hull[i - 1].z, hull[i].rho - hull[i - 1].rho);
   return sum;
 }
 
@@ -229,19 +242,25 @@ TEST(Areas, CylindersAndConesAreHullsOfTheirEnds) {
   for (const Cap cap0 : caps)
     for (const Cap cap1 : caps) {
       for (const double r : {0.25, 2.0})
-        EXPECT_NEAR(area(CylinderShape{{1, 2, 3}, {1, 2, 6}, r, {cap0, cap1}}) / turned_hull(3, r, cap0, r, cap1), 1, 2e-6);
-      for (const auto& [r0, r1] :
-           {std::pair(1.0, 0.25), std::pair(0.25, 1.0), std::pair(2.0, 0.0), std::pair(4.0, 0.5), std::pair(0.5, 4.0)})
-        EXPECT_NEAR(area(ConeShape{{1, 2, 3}, {1, 2, 6}, {r0, r1}, {cap0, cap1}}) / turned_hull(3, r0, cap0, r1, cap1), 1, 2e-6)
+        EXPECT_NEAR(area(CylinderShape{{1, 2, 3}, {1, 2, 6}, r, {cap0, cap1}}) /
+                        turned_hull(3, r, cap0, r, cap1),
+                    1, 2e-6);
+      for (const auto& [r0, r1] : {std::pair(1.0, 0.25), std::pair(0.25, 1.0), std::pair(2.0, 0.0),
+                                   std::pair(4.0, 0.5), std::pair(0.5, 4.0)})
+        EXPECT_NEAR(area(ConeShape{{1, 2, 3}, {1, 2, 6}, {r0, r1}, {cap0, cap1}}) /
+                        turned_hull(3, r0, cap0, r1, cap1),
+                    1, 2e-6)
             << r0 << " " << r1 << " " << int(cap0) << int(cap1);
     }
   // A flat disk within a ball behind which the ball comes out again.
-  EXPECT_NEAR(
-      area(ConeShape{{0, 0, 0}, {0, 0, 0.5}, {2, 1}, {Cap::flat, Cap::round}}) / turned_hull(0.5, 2, Cap::flat, 1, Cap::round), 1,
-      2e-6);
+  EXPECT_NEAR(area(ConeShape{{0, 0, 0}, {0, 0, 0.5}, {2, 1}, {Cap::flat, Cap::round}}) /
+                  turned_hull(0.5, 2, Cap::flat, 1, Cap::round),
+              1, 2e-6);
   // Open ends have no cap.
-  EXPECT_NEAR(area(CylinderShape{{0, 0, 0}, {0, 0, 3}, 0.5, {Cap::open, Cap::open}}), 2 * pi * 0.5 * 3, 1e-6);
-  EXPECT_NEAR(area(ConeShape{{0, 0, 0}, {0, 0, 4}, {3, 0}, {Cap::open, Cap::flat}}), pi * 3 * 5, 1e-5);
+  EXPECT_NEAR(area(CylinderShape{{0, 0, 0}, {0, 0, 3}, 0.5, {Cap::open, Cap::open}}),
+              2 * pi * 0.5 * 3, 1e-6);
+  EXPECT_NEAR(area(ConeShape{{0, 0, 0}, {0, 0, 4}, {3, 0}, {Cap::open, Cap::flat}}), pi * 3 * 5,
+              1e-5);
 }
 
 TEST(Areas, PartsOfQuadrics) {
@@ -259,7 +278,8 @@ double patch_area(const std::array<dvec3, 4>& p) {
 TEST(Areas, BilinearPatches) {
   EXPECT_NEAR(patch_area({dvec3(0), dvec3(2, 0, 0), dvec3(1, 3, 0), dvec3(3, 3, 0)}), 6, 1e-6);
   EXPECT_NEAR(patch_area({dvec3(0), dvec3(2, 0, 0), dvec3(0, 1, 0), dvec3(1, 1, 0)}), 1.5, 1e-6);
-  // z = x y over the unit square: the integral of sqrt(1 + x^2 + y^2), the inner one in closed form, the outer by 10^5 midpoints.
+  // z = x y over the unit square: the integral of sqrt(1 + x^2 + y^2), the inner one in closed
+  // form, the outer by 10^5 midpoints.
   double sum = 0;
   constexpr int n = 100000;
   for (int i = 0; i < n; ++i) {
@@ -267,7 +287,8 @@ TEST(Areas, BilinearPatches) {
     sum += 0.5 * (std::sqrt(a2 + 1) + a2 * std::asinh(1 / a)) / n;
   }
   EXPECT_NEAR(patch_area({dvec3(0), dvec3(1, 0, 0), dvec3(0, 1, 0), dvec3(1, 1, 1)}), sum, 1e-8);
-  // A corner beyond the opposite edge's line: u and v turn over, and the part that is covered twice counts twice.
+  // A corner beyond the opposite edge's line: u and v turn over, and the part that is covered twice
+  // counts twice.
   const double dart = patch_area({dvec3(0), dvec3(1, 0, 0), dvec3(0, 1, 0), dvec3(0.25, 0.25, 0)});
   EXPECT_GT(dart, 0.25);
   EXPECT_LT(dart, 0.5);

@@ -24,11 +24,12 @@ __kernel void offsets(__global const float* in, __global float* out, uint count)
 }
 )";
 
-// Every component is as far from p as error * n is, or further, on the side of the direction; and no more than a few roundings
-// further.
+// Every component is as far from p as error * n is, or further, on the side of the direction; and
+// no more than a few roundings further.
 TEST(OffsetOrigin, NeverLandsShort) {
   const Device& device = test_device();
-  const Program program = Program::from_source(device, "offset_test", flatten_kernels(kernel_text), "");
+  const Program program =
+      Program::from_source(device, "offset_test", flatten_kernels(kernel_text), "");
   constexpr std::uint32_t count = 20000;
   std::mt19937 engine(9);
   std::normal_distribution<double> normal;
@@ -39,7 +40,8 @@ TEST(OffsetOrigin, NeverLandsShort) {
     if (i % 7 == 0) n[i % 3] = 0;
     const double length = std::sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
     const double scale = std::exp2(uniform(engine));
-    for (unsigned k = 0; k < 3; ++k) in.push_back(i % 11 == k ? 0.0f : static_cast<float>(scale * normal(engine)));
+    for (unsigned k = 0; k < 3; ++k)
+      in.push_back(i % 11 == k ? 0.0f : static_cast<float>(scale * normal(engine)));
     for (const double x : n) in.push_back(static_cast<float>(x / length));
     // From far below the last place of the point to much more.
     in.push_back(static_cast<float>(scale * std::exp2(uniform(engine) - 10)));
@@ -64,9 +66,12 @@ TEST(OffsetOrigin, NeverLandsShort) {
         continue;
       }
       ASSERT_GE(step > 0 ? moved : -moved, std::abs(double(step))) << i << " " << k;
-      // Rounded to nearest, then once further: 3/2 units of the last place, each 2 eps at most; FLT_MIN where the sum is zero.
-      const double largest = std::max(std::abs(double(p[k])), std::abs(double(out[3 * i + std::uint32_t(k)])));
-      ASSERT_LE(std::abs(moved), std::abs(double(step)) + 4 * 0x1p-24 * largest + 0x1p-126) << i << " " << k;
+      // Rounded to nearest, then once further: 3/2 units of the last place, each 2 eps at most;
+      // FLT_MIN where the sum is zero.
+      const double largest =
+          std::max(std::abs(double(p[k])), std::abs(double(out[3 * i + std::uint32_t(k)])));
+      ASSERT_LE(std::abs(moved), std::abs(double(step)) + 4 * 0x1p-24 * largest + 0x1p-126)
+          << i << " " << k;
     }
   }
 }

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Boxes, polyhedra, pbrt's partial shapes and bilinear patches: how they relate to each other and to their closed forms.
+// Boxes, polyhedra, pbrt's partial shapes and bilinear patches: how they relate to each other and
+// to their closed forms.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -27,7 +28,9 @@ constexpr double eps = 0x1p-24;
 class Random {
  public:
   explicit Random(std::uint32_t seed) : engine_(seed) {}
-  double operator()(double low, double high) { return std::uniform_real_distribution<double>(low, high)(engine_); }
+  double operator()(double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(engine_);
+  }
   int below(int n) { return std::uniform_int_distribution<int>(0, n - 1)(engine_); }
   dvec3 point() { return {(*this)(-1, 1), (*this)(-1, 1), (*this)(-1, 1)}; }
   dvec3 direction() {
@@ -47,7 +50,8 @@ dvec3 to_float(const dvec3& x) {
 
 PolyhedronShape planes_of(const BoxShape& box) {
   const dvec3 low = glm::min(box.p0, box.p1), high = glm::max(box.p0, box.p1);
-  return {{low, high, low, high, low, high}, {{-1, 0, 0}, {2, 0, 0}, {0, -1, 0}, {0, 3, 0}, {0, 0, -1}, {0, 0, 1}}};
+  return {{low, high, low, high, low, high},
+          {{-1, 0, 0}, {2, 0, 0}, {0, -1, 0}, {0, 3, 0}, {0, 0, -1}, {0, 0, 1}}};
 }
 
 RayRecord from_to(const dvec3& o, const dvec3& aim) { return make_ray(o, aim - to_float(o)); }
@@ -79,11 +83,13 @@ TEST_P(Widths, ABoxIsThePolyhedronOfItsPlanes) {
   int hits = 0, rim = 0;
   for (int i = 0; i < 60; ++i) {
     const dvec3 center = std::pow(10, random(-1, 3)) * random.point();
-    const dvec3 half(std::pow(10, random(-1, 1)), std::pow(10, random(-1, 1)), std::pow(10, random(-1, 1)));
+    const dvec3 half(std::pow(10, random(-1, 1)), std::pow(10, random(-1, 1)),
+                     std::pow(10, random(-1, 1)));
     const BoxShape box{to_float(center - half), to_float(center + half)};
     const double size = glm::length(half);
     std::vector<RayRecord> rays;
-    for (int j = 0; j < 500; ++j) rays.push_back(ray_at(center + 1.2 * half * random.point(), size, random));
+    for (int j = 0; j < 500; ++j)
+      rays.push_back(ray_at(center + 1.2 * half * random.point(), size, random));
     const auto a = trace(lower_shapes({shape_of(box)}), rays, GetParam());
     const auto b = trace(lower_shapes({shape_of(planes_of(box))}), rays, GetParam());
     for (std::size_t j = 0; j < rays.size(); ++j) {
@@ -125,13 +131,15 @@ TEST_P(Widths, ABoxIsThePolyhedronOfItsPlanes) {
         EXPECT_NEAR(x[axis], plane, bound);
         EXPECT_NEAR(y[axis], plane, bound);
         EXPECT_EQ(vec(a[j].ng), vec(b[j].ng));
-        EXPECT_LE(glm::length(vec(a[j].p) - vec(b[j].p)), 2 * bound + 2 * double(a[j].error) + 2 * double(b[j].error) +
-                                                              std::abs(double(a[j].t) - double(b[j].t)) * glm::length(d));
+        EXPECT_LE(glm::length(vec(a[j].p) - vec(b[j].p)),
+                  2 * bound + 2 * double(a[j].error) + 2 * double(b[j].error) +
+                      std::abs(double(a[j].t) - double(b[j].t)) * glm::length(d));
       } else {
         ++rim;
         for (const dvec3& at : {x, y}) {
           int near = 0;
-          for (int k = 0; k < 3; ++k) near += std::min(std::abs(at[k] - box.p0[k]), std::abs(at[k] - box.p1[k])) <= 2 * bound;
+          for (int k = 0; k < 3; ++k)
+            near += std::min(std::abs(at[k] - box.p0[k]), std::abs(at[k] - box.p1[k])) <= 2 * bound;
           EXPECT_GE(near, 2) << i << " " << j;
         }
       }
@@ -158,8 +166,10 @@ TEST_P(Widths, FacesOfBoxesAreSeenFromBothSidesAtTheirPlaces) {
     ASSERT_EQ(hits[i].found, 1u);
     EXPECT_EQ(hits[i].surface, face);
     EXPECT_EQ(hits[i].leaving, i % 2);
-    EXPECT_EQ(vec(hits[i].p)[int(face) / 2], face % 2 == 0 ? box.p0[int(face) / 2] : box.p1[int(face) / 2]);
-    EXPECT_EQ(glm::cross(glm::normalize(vec(hits[i].dpdu)), glm::normalize(vec(hits[i].dpdv))), vec(hits[i].ng));
+    EXPECT_EQ(vec(hits[i].p)[int(face) / 2],
+              face % 2 == 0 ? box.p0[int(face) / 2] : box.p1[int(face) / 2]);
+    EXPECT_EQ(glm::cross(glm::normalize(vec(hits[i].dpdu)), glm::normalize(vec(hits[i].dpdv))),
+              vec(hits[i].ng));
     EXPECT_NEAR(hits[i].u, 0.5, 1e-6);
     EXPECT_NEAR(hits[i].v, 0.5, 1e-6);
   }
@@ -179,7 +189,8 @@ TEST_P(Widths, RaysInAFaceHitTheBox) {
       rays.push_back(ray);
     }
   const auto inside = rays.size();
-  for (const double y : {std::nextafter(2.f, 0.f), std::nextafter(6.f, 9.f)}) rays.push_back(make_ray({-3, y, 5}, {1, 0, 0}));
+  for (const double y : {std::nextafter(2.f, 0.f), std::nextafter(6.f, 9.f)})
+    rays.push_back(make_ray({-3, y, 5}, {1, 0, 0}));
   const auto hits = trace(scene, rays, GetParam());
   for (std::size_t i = 0; i < rays.size(); ++i) {
     EXPECT_EQ(hits[i].found, i < inside) << i;
@@ -195,7 +206,8 @@ TEST_P(Widths, TouchingBoxesAreLeftAndEnteredAtTheSameT) {
   for (int i = 0; i < 40; ++i) {
     const dvec3 o = to_float(std::pow(10, random(0, 4)) * random.point());
     const double between = o.x + 1 / 3.0;
-    const BoxShape left{o - dvec3(1), {between, o.y + 1, o.z + 1}}, right{{between, o.y - 1, o.z - 1}, o + dvec3(1)};
+    const BoxShape left{o - dvec3(1), {between, o.y + 1, o.z + 1}},
+        right{{between, o.y - 1, o.z - 1}, o + dvec3(1)};
     std::vector<RayRecord> rays;
     for (int j = 0; j < 300; ++j) {
       const dvec3 d = random.direction();
@@ -234,7 +246,8 @@ PolyhedronShape icosahedron(const dvec3& center, double radius) {
   return out;
 }
 
-// Aimed at edges and corners from outside and from inside, displaced inward by more than the bound, far from the origin.
+// Aimed at edges and corners from outside and from inside, displaced inward by more than the bound,
+// far from the origin.
 TEST_P(Widths, NothingSlipsThroughEdgesFarFromTheOrigin) {
   const dvec3 place(148376, 1234, -223423);
   Random random(3);
@@ -247,12 +260,15 @@ TEST_P(Widths, NothingSlipsThroughEdgesFarFromTheOrigin) {
     const FlatScene scene = lower_shapes({is_box ? shape_of(box) : shape_of(solid)});
     std::vector<RayRecord> rays;
     for (int i = 0; i < 40000; ++i) {
-      const auto& face = faces[static_cast<std::size_t>(random.below(static_cast<int>(faces.size())))];
+      const auto& face =
+          faces[static_cast<std::size_t>(random.below(static_cast<int>(faces.size())))];
       const auto at = static_cast<std::size_t>(random.below(static_cast<int>(face.size())));
-      const dvec3 edge = glm::mix(face[at], face[(at + 1) % face.size()], random.below(4) == 0 ? 0.0 : random(0, 1));
+      const dvec3 edge = glm::mix(face[at], face[(at + 1) % face.size()],
+                                  random.below(4) == 0 ? 0.0 : random(0, 1));
       const bool inside = i % 2 == 0;
       const dvec3 o = to_float(place + (inside ? 1.0 : random(10, 100)) * random.direction());
-      // The solid as stored: planes 0.5 ulp of the coordinates (0.008) off. Then the bound 16 eps (|o - c| + size).
+      // The solid as stored: planes 0.5 ulp of the coordinates (0.008) off. Then the bound 16 eps
+      // (|o - c| + size).
       const double depth = 0.03 + 16 * eps * (glm::length(o - place) + 8);
       const dvec3 aim = edge + depth * 3.0 * glm::normalize(place - edge);
       rays.push_back(from_to(o, aim));
@@ -276,13 +292,17 @@ TEST_P(Widths, AWallOfBoxesHasNoCracks) {
   constexpr int n = 6;
   const auto corner = [&](int i, int j, int k) { return place + dvec3(i / 3.0, j / 3.0, k / 3.0); };
   for (int i = 0; i < n; ++i)
-    for (int j = 0; j < n; ++j) shapes.push_back(shape_of(BoxShape{corner(i, j, 0), corner(i + 1, j + 1, 1)}));
+    for (int j = 0; j < n; ++j)
+      shapes.push_back(shape_of(BoxShape{corner(i, j, 0), corner(i + 1, j + 1, 1)}));
   std::vector<RayRecord> rays;
   for (int i = 0; i < 60000; ++i) {
-    dvec3 aim = place + dvec3(random(0.1, n / 3.0 - 0.1), random(0.1, n / 3.0 - 0.1), random(0, 0.3));
+    dvec3 aim =
+        place + dvec3(random(0.1, n / 3.0 - 0.1), random(0.1, n / 3.0 - 0.1), random(0, 0.3));
     const int k = random.below(3);
-    if (k < 2) aim[k] = double(float(corner(1 + random.below(n - 1), 1 + random.below(n - 1), 0)[k]));
-    rays.push_back(from_to(aim + dvec3(random(-0.05, 0.05), random(-0.05, 0.05), random(2, 20)), aim));
+    if (k < 2)
+      aim[k] = double(float(corner(1 + random.below(n - 1), 1 + random.below(n - 1), 0)[k]));
+    rays.push_back(
+        from_to(aim + dvec3(random(-0.05, 0.05), random(-0.05, 0.05), random(2, 20)), aim));
   }
   const auto hits = trace(lower_shapes(shapes), rays, GetParam());
   int lost = 0;
@@ -290,8 +310,8 @@ TEST_P(Widths, AWallOfBoxesHasNoCracks) {
   EXPECT_EQ(lost, 0);
 }
 
-// Scales along the axes are part of the box; anything else places it as an instance. All are the polyhedron under the same
-// matrix.
+// Scales along the axes are part of the box; anything else places it as an instance. All are the
+// polyhedron under the same matrix.
 TEST_P(Widths, BoxesUnderTransforms) {
   Random random(5);
   const BoxShape box{{-1, -2, -0.5}, {2, 1, 3}};
@@ -306,12 +326,14 @@ TEST_P(Widths, BoxesUnderTransforms) {
                         {glm::rotate(glm::translate(identity, shift), 1.0, dvec3(1, 2, 3)), false},
                         {glm::rotate(glm::scale(identity, scale), 0.7, dvec3(0, 0, 1)), false}};
   for (const Case& one : cases) {
-    const FlatScene placed = lower_shapes({shape_of(box, one.m)}), planes = lower_shapes({shape_of(planes_of(box), one.m)});
+    const FlatScene placed = lower_shapes({shape_of(box, one.m)}),
+                    planes = lower_shapes({shape_of(planes_of(box), one.m)});
     EXPECT_EQ(placed.instances.size(), one.baked ? 0u : 1u);
     EXPECT_EQ(planes.instances.size(), 0u);
     std::vector<RayRecord> rays;
     for (int i = 0; i < 3000; ++i)
-      rays.push_back(ray_at(dvec3(one.m * glm::dvec4(dvec3(0.5, -0.5, 1.25) + 2.0 * random.point(), 1)), 5, random));
+      rays.push_back(ray_at(
+          dvec3(one.m * glm::dvec4(dvec3(0.5, -0.5, 1.25) + 2.0 * random.point(), 1)), 5, random));
     const auto a = trace(placed, rays, GetParam()), b = trace(planes, rays, GetParam());
     int hits = 0, differ = 0;
     for (std::size_t i = 0; i < rays.size(); ++i) {
@@ -360,13 +382,17 @@ double within(const Clips& c, double radius, const dvec3& x) {
   return room;
 }
 
-const Clips clips[] = {{-2, 2, 2 * pi},    {-0.7, 1.1, 2 * pi},  {-2, 0.3, 0.25 * pi}, {-0.2, 2, 0.5 * pi},  {-2, 2, pi},
-                       {-1, 1, 1.25 * pi}, {0.1, 0.2, 1.9 * pi}, {-1.5, -1.2, 0.01},   {-0.5, 1.5, 1.5 * pi}};
+const Clips clips[] = {{-2, 2, 2 * pi},      {-0.7, 1.1, 2 * pi}, {-2, 0.3, 0.25 * pi},
+                       {-0.2, 2, 0.5 * pi},  {-2, 2, pi},         {-1, 1, 1.25 * pi},
+                       {0.1, 0.2, 1.9 * pi}, {-1.5, -1.2, 0.01},  {-0.5, 1.5, 1.5 * pi}};
 
-// Rays and what must be hit, from the closed form in double; rays that pass a clip within the bound are not judged.
-void expect_clipped(const FlatScene& scene, int width, const std::vector<RayRecord>& rays, double size,
+// Rays and what must be hit, from the closed form in double; rays that pass a clip within the bound
+// are not judged.
+void expect_clipped(const FlatScene& scene, int width, const std::vector<RayRecord>& rays,
+                    double size,
                     const std::function<std::vector<double>(const dvec3&, const dvec3&)>& crossings,
-                    const std::function<double(const dvec3&)>& room, const std::function<dvec3(const dvec3&)>& normal) {
+                    const std::function<double(const dvec3&)>& room,
+                    const std::function<dvec3(const dvec3&)>& normal) {
   const auto hits = trace(scene, rays, width);
   int found = 0, missed = 0, second = 0;
   for (std::size_t i = 0; i < rays.size(); ++i) {
@@ -380,7 +406,8 @@ void expect_clipped(const FlatScene& scene, int width, const std::vector<RayReco
       ++order;
       // Along the surface the ray may be `bound` over the slope of the ray to it away.
       const double slope = std::abs(glm::dot(normal(x), d)) / glm::length(d);
-      judged &= std::abs(room(x)) > bound / slope && slope > 1e-3 && std::abs(t) * glm::length(d) > bound / slope;
+      judged &= std::abs(room(x)) > bound / slope && slope > 1e-3 &&
+                std::abs(t) * glm::length(d) > bound / slope;
       if (room(x) > 0 && t > 0 && t < expected) {
         expected = t;
         which = order;
@@ -424,12 +451,15 @@ TEST_P(Widths, PartialSpheres) {
   Random random(6);
   for (const Clips& clip : clips) {
     const double r = 1.5;
-    const Clips c{double(float(std::max(clip.z_min, -r))), double(float(std::min(clip.z_max, r))), double(float(clip.phi_max))};
-    const FlatScene scene = lower_shapes({shape_of(PartialSphereShape{r, c.z_min, c.z_max, c.phi_max})});
+    const Clips c{double(float(std::max(clip.z_min, -r))), double(float(std::min(clip.z_max, r))),
+                  double(float(clip.phi_max))};
+    const FlatScene scene =
+        lower_shapes({shape_of(PartialSphereShape{r, c.z_min, c.z_max, c.phi_max})});
     expect_clipped(
         scene, GetParam(), rays_around(2, c.phi_max < 0.1 ? 200000 : 3000, random), r,
         [&](const dvec3& o, const dvec3& d) { return sphere_crossings(r, o, d); },
-        [&](const dvec3& x) { return within(c, r, x); }, [&](const dvec3& x) { return glm::normalize(x); });
+        [&](const dvec3& x) { return within(c, r, x); },
+        [&](const dvec3& x) { return glm::normalize(x); });
   }
 }
 
@@ -437,8 +467,10 @@ TEST_P(Widths, OpenCylinders) {
   Random random(7);
   for (const Clips& clip : clips) {
     const double r = 0.75;
-    const Clips c{double(float(clip.z_min)), double(float(clip.z_max)), double(float(clip.phi_max))};
-    const FlatScene scene = lower_shapes({shape_of(OpenCylinderShape{r, c.z_min, c.z_max, c.phi_max})});
+    const Clips c{double(float(clip.z_min)), double(float(clip.z_max)),
+                  double(float(clip.phi_max))};
+    const FlatScene scene =
+        lower_shapes({shape_of(OpenCylinderShape{r, c.z_min, c.z_max, c.phi_max})});
     expect_clipped(
         scene, GetParam(), rays_around(2, c.phi_max < 0.1 ? 200000 : 3000, random), 2.2,
         [&](const dvec3& o, const dvec3& d) {
@@ -465,13 +497,15 @@ TEST_P(Widths, PartialDisks) {
           },
           [&](const dvec3& x) {
             const double rho = std::hypot(x.x, x.y);
-            return std::min({within(c, 0.1, {x.x, x.y, 0}), r - rho, inner > 0 ? rho - inner : HUGE_VAL});
+            return std::min(
+                {within(c, 0.1, {x.x, x.y, 0}), r - rho, inner > 0 ? rho - inner : HUGE_VAL});
           },
           [&](const dvec3&) { return dvec3(0, 0, 1); });
     }
 }
 
-// p(u, v) of pbrt's parametrisations gives the point back; dpdu and dpdv are its differences, and span the tangent plane outward.
+// p(u, v) of pbrt's parametrisations gives the point back; dpdu and dpdv are its differences, and
+// span the tangent plane outward.
 TEST_P(Widths, PartialShapesHavePbrtsParameters) {
   Random random(9);
   const double r = 1.5, z0 = -0.75, z1 = 1.25, phi = double(float(4.2)), inner = 0.25;
@@ -480,18 +514,21 @@ TEST_P(Widths, PartialShapesHavePbrtsParameters) {
     Shape shape;
     std::function<dvec3(double, double)> at;
   };
-  const Case cases[] = {
-      {shape_of(PartialSphereShape{r, z0, z1, phi}),
-       [&](double u, double v) {
-         const double theta = theta0 + v * (theta1 - theta0);
-         return r * dvec3(std::sin(theta) * std::cos(u * phi), std::sin(theta) * std::sin(u * phi), std::cos(theta));
-       }},
-      {shape_of(OpenCylinderShape{r, z0, z1, phi}),
-       [&](double u, double v) { return dvec3(r * std::cos(u * phi), r * std::sin(u * phi), z0 + v * (z1 - z0)); }},
-      {shape_of(DiskShape{0.5, r, inner, phi}), [&](double u, double v) {
-         const double rho = r - v * (r - inner);
-         return dvec3(rho * std::cos(u * phi), rho * std::sin(u * phi), 0.5);
-       }}};
+  const Case cases[] = {{shape_of(PartialSphereShape{r, z0, z1, phi}),
+                         [&](double u, double v) {
+                           const double theta = theta0 + v * (theta1 - theta0);
+                           return r * dvec3(std::sin(theta) * std::cos(u * phi),
+                                            std::sin(theta) * std::sin(u * phi), std::cos(theta));
+                         }},
+                        {shape_of(OpenCylinderShape{r, z0, z1, phi}),
+                         [&](double u, double v) {
+                           return dvec3(r * std::cos(u * phi), r * std::sin(u * phi),
+                                        z0 + v * (z1 - z0));
+                         }},
+                        {shape_of(DiskShape{0.5, r, inner, phi}), [&](double u, double v) {
+                           const double rho = r - v * (r - inner);
+                           return dvec3(rho * std::cos(u * phi), rho * std::sin(u * phi), 0.5);
+                         }}};
   for (const Case& one : cases) {
     const auto hits = trace(lower_shapes({one.shape}), rays_around(2, 2000, random), GetParam());
     int found = 0;
@@ -501,7 +538,8 @@ TEST_P(Widths, PartialShapesHavePbrtsParameters) {
       const double u = hit.u, v = hit.v, h = 1e-5;
       ASSERT_TRUE(u >= 0 && u <= 1 && v >= 0 && v <= 1);
       EXPECT_LE(glm::length(one.at(u, v) - vec(hit.p)), 3e-6);
-      const dvec3 du = (one.at(u + h, v) - one.at(u - h, v)) / (2 * h), dv = (one.at(u, v + h) - one.at(u, v - h)) / (2 * h);
+      const dvec3 du = (one.at(u + h, v) - one.at(u - h, v)) / (2 * h),
+                  dv = (one.at(u, v + h) - one.at(u, v - h)) / (2 * h);
       EXPECT_LE(glm::length(du - vec(hit.dpdu)), 2e-5);
       EXPECT_LE(glm::length(dv - vec(hit.dpdv)), 2e-5);
       EXPECT_LE(glm::length(glm::normalize(glm::cross(du, dv)) - vec(hit.ng)), 2e-6);
@@ -514,37 +552,46 @@ TEST_P(Widths, PartialShapesHavePbrtsParameters) {
 
 struct Patch {
   dvec3 p00, p10, p01, p11;
-  dvec3 at(double u, double v) const { return (1 - u) * (1 - v) * p00 + u * (1 - v) * p10 + (1 - u) * v * p01 + u * v * p11; }
+  dvec3 at(double u, double v) const {
+    return (1 - u) * (1 - v) * p00 + u * (1 - v) * p10 + (1 - u) * v * p01 + u * v * p11;
+  }
   dvec3 du(double v) const { return (1 - v) * (p10 - p00) + v * (p11 - p01); }
   dvec3 dv(double u) const { return (1 - u) * (p01 - p00) + u * (p11 - p10); }
   // The patch's point nearest to x, started from (u, v) near it: Gauss and Newton's steps.
   std::pair<double, double> nearest(double u, double v, const dvec3& x) const {
     for (int i = 0; i < 20; ++i) {
       const dvec3 r = x - at(u, v), a = du(v), b = dv(u);
-      const double aa = glm::dot(a, a), ab = glm::dot(a, b), bb = glm::dot(b, b), det = aa * bb - ab * ab;
+      const double aa = glm::dot(a, a), ab = glm::dot(a, b), bb = glm::dot(b, b),
+                   det = aa * bb - ab * ab;
       if (!(det > 1e-12 * aa * bb)) break;
       u = std::clamp(u + (bb * glm::dot(r, a) - ab * glm::dot(r, b)) / det, 0.0, 1.0);
       v = std::clamp(v + (aa * glm::dot(r, b) - ab * glm::dot(r, a)) / det, 0.0, 1.0);
     }
     return {u, v};
   }
-  // How far the line through (u, v) along d must be moved to touch the patch instead: slope^2 / 2 over the normal curvature along
-  // it.
+  // How far the line through (u, v) along d must be moved to touch the patch instead: slope^2 / 2
+  // over the normal curvature along it.
   double to_fold(double u, double v, const dvec3& d) const {
-    const dvec3 a = du(v), b = dv(u), n = glm::normalize(glm::cross(a, b)), along = glm::normalize(d);
+    const dvec3 a = du(v), b = dv(u), n = glm::normalize(glm::cross(a, b)),
+                along = glm::normalize(d);
     const double slope = glm::dot(n, along);
     const dvec3 w = along - slope * n;
-    const double aa = glm::dot(a, a), ab = glm::dot(a, b), bb = glm::dot(b, b), det = aa * bb - ab * ab;
-    const double s = (bb * glm::dot(w, a) - ab * glm::dot(w, b)) / det, t = (aa * glm::dot(w, b) - ab * glm::dot(w, a)) / det;
+    const double aa = glm::dot(a, a), ab = glm::dot(a, b), bb = glm::dot(b, b),
+                 det = aa * bb - ab * ab;
+    const double s = (bb * glm::dot(w, a) - ab * glm::dot(w, b)) / det,
+                 t = (aa * glm::dot(w, b) - ab * glm::dot(w, a)) / det;
     return slope * slope / (4 * std::abs(s * t * glm::dot(p11 - p10 - p01 + p00, n)));
   }
   double size() const { return std::max(glm::length(p11 - p00), glm::length(p10 - p01)); }
   BilinearMeshShape mesh() const {
-    return {{glm::vec3(p00), glm::vec3(p10), glm::vec3(p01), glm::vec3(p11)}, {{0, 1, 2, 3}}, {}, {}};
+    return {
+        {glm::vec3(p00), glm::vec3(p10), glm::vec3(p01), glm::vec3(p11)}, {{0, 1, 2, 3}}, {}, {}};
   }
 };
 
-double off_bound(const Patch& p, const dvec3& o) { return 24 * eps * (glm::length(o - p.p00) + 2 * p.size()); }
+double off_bound(const Patch& p, const dvec3& o) {
+  return 24 * eps * (glm::length(o - p.p00) + 2 * p.size());
+}
 
 TEST_P(Widths, FlatPatchesAreTwoTriangles) {
   Random random(10);
@@ -556,14 +603,16 @@ TEST_P(Widths, FlatPatchesAreTwoTriangles) {
     const double width = random(0.1, 5), height = random(0.1, 5);
     const auto corner = [&](double x, double y) {
       const double wobble = i % 3 == 0 ? 0 : 0.24;
-      return to_float(o + width * (x + random(-wobble, wobble)) * s + height * (y + random(-wobble, wobble)) * t);
+      return to_float(o + width * (x + random(-wobble, wobble)) * s +
+                      height * (y + random(-wobble, wobble)) * t);
     };
     const Patch patch{corner(0, 0), corner(1, 0), corner(0, 1), corner(1, 1)};
     TriangleMeshShape mesh;
     mesh.positions = patch.mesh().positions;
     mesh.triangles = {{0, 1, 3}, {0, 3, 2}};
     std::vector<RayRecord> rays;
-    for (int j = 0; j < 400; ++j) rays.push_back(ray_at(patch.at(random(-0.2, 1.2), random(-0.2, 1.2)), patch.size(), random));
+    for (int j = 0; j < 400; ++j)
+      rays.push_back(ray_at(patch.at(random(-0.2, 1.2), random(-0.2, 1.2)), patch.size(), random));
     const auto a = trace(lower_shapes({shape_of(patch.mesh())}), rays, GetParam());
     const auto b = trace(lower_shapes({shape_of(mesh)}), rays, GetParam());
     for (std::size_t j = 0; j < rays.size(); ++j) {
@@ -590,7 +639,8 @@ TEST_P(Widths, FlatPatchesAreTwoTriangles) {
       }
       if (a[j].found == 0) continue;
       ++hits;
-      EXPECT_LE(std::abs(double(a[j].t) - double(b[j].t)) * glm::length(d) * slope, bound) << i << " " << j;
+      EXPECT_LE(std::abs(double(a[j].t) - double(b[j].t)) * glm::length(d) * slope, bound)
+          << i << " " << j;
       EXPECT_EQ(a[j].leaving, b[j].leaving);
     }
   }
@@ -598,8 +648,8 @@ TEST_P(Widths, FlatPatchesAreTwoTriangles) {
   EXPECT_LT(differ, hits / 50);
 }
 
-// Twisted patches: a ray aimed at a point of the patch meets it there or before; what it meets is on the patch, seen from the
-// right side; and there are no more crossings than the quadratic has.
+// Twisted patches: a ray aimed at a point of the patch meets it there or before; what it meets is
+// on the patch, seen from the right side; and there are no more crossings than the quadratic has.
 TEST_P(Widths, TwistedPatches) {
   Random random(11);
   double worst = 0;
@@ -607,7 +657,9 @@ TEST_P(Widths, TwistedPatches) {
   for (int i = 0; i < 150; ++i) {
     const dvec3 o = std::pow(10, random(-1, 3)) * random.point();
     const double scale = std::pow(10, random(-2, 2));
-    const auto corner = [&](double x, double y) { return to_float(o + scale * (dvec3(x, y, 0) + 0.8 * random.point())); };
+    const auto corner = [&](double x, double y) {
+      return to_float(o + scale * (dvec3(x, y, 0) + 0.8 * random.point()));
+    };
     const Patch patch{corner(0, 0), corner(1, 0), corner(0, 1), corner(1, 1)};
     const FlatScene scene = lower_shapes({shape_of(patch.mesh())});
     std::vector<RayRecord> rays;
@@ -616,7 +668,8 @@ TEST_P(Widths, TwistedPatches) {
       const double u = random(0.01, 0.99), v = random(0.01, 0.99);
       const dvec3 aim = patch.at(u, v);
       aims.emplace_back(u, v);
-      rays.push_back(from_to(aim + patch.size() * std::pow(10, random(-1, 3)) * random.direction(), aim));
+      rays.push_back(
+          from_to(aim + patch.size() * std::pow(10, random(-1, 3)) * random.direction(), aim));
     }
     const auto first = trace(scene, rays, GetParam());
     std::vector<RayRecord> on = rays;
@@ -631,9 +684,11 @@ TEST_P(Widths, TwistedPatches) {
         continue;
       }
       ++hits;
-      ASSERT_LE(glm::length(patch.at(first[j].u, first[j].v) - vec(first[j].p)), double(first[j].error));
+      ASSERT_LE(glm::length(patch.at(first[j].u, first[j].v) - vec(first[j].p)),
+                double(first[j].error));
       const auto [u, v] = patch.nearest(first[j].u, first[j].v, from + double(first[j].t) * d);
-      const dvec3 x = from + double(first[j].t) * d, p = patch.at(u, v), n = glm::cross(patch.du(v), patch.dv(u));
+      const dvec3 x = from + double(first[j].t) * d, p = patch.at(u, v),
+                  n = glm::cross(patch.du(v), patch.dv(u));
       const double distance = glm::length(p - x);
       worst = std::max(worst, distance / bound);
       EXPECT_LE(distance, bound) << i << " " << j;
@@ -643,11 +698,14 @@ TEST_P(Widths, TwistedPatches) {
         EXPECT_EQ(first[j].leaving, slope > 0) << i << " " << j;
         EXPECT_LE(first[j].t, 1 + bound / std::abs(slope) / glm::length(d));
         // The surface's own point may have slid along by the rounding of o + t d.
-        EXPECT_LE(glm::length(p - vec(first[j].p)), (8 * eps * glm::length(x) + bound) / std::abs(slope)) << i << " " << j;
+        EXPECT_LE(glm::length(p - vec(first[j].p)),
+                  (8 * eps * glm::length(x) + bound) / std::abs(slope))
+            << i << " " << j;
       }
       const dvec3 own = glm::cross(patch.du(first[j].v), patch.dv(first[j].u));
       // The edges at (u, v) are off by a few eps of the size.
-      EXPECT_LE(glm::length(glm::normalize(own) - vec(first[j].ng)), 16 * eps * patch.size() * patch.size() / glm::length(own));
+      EXPECT_LE(glm::length(glm::normalize(own) - vec(first[j].ng)),
+                16 * eps * patch.size() * patch.size() / glm::length(own));
       on[j].t_min = std::nextafter(first[j].t, HUGE_VALF);
     }
     const auto second = trace(scene, on, GetParam());
@@ -675,23 +733,27 @@ TEST_P(Widths, ASheetOfPatchesHasNoCracks) {
     std::vector<dvec3> at;
     for (int j = 0; j <= n; ++j)
       for (int i = 0; i <= n; ++i) {
-        mesh.positions.emplace_back(place + dvec3(i, j, 0) + dvec3(random(-0.2, 0.2), random(-0.2, 0.2), random(-0.5, 0.5)));
+        mesh.positions.emplace_back(place + dvec3(i, j, 0) +
+                                    dvec3(random(-0.2, 0.2), random(-0.2, 0.2), random(-0.5, 0.5)));
         at.push_back(dvec3(mesh.positions.back()));
       }
     for (std::uint32_t j = 0; j < n; ++j)
       for (std::uint32_t i = 0; i < n; ++i) {
         const std::uint32_t a = j * (n + 1) + i, b = a + 1, c = a + n + 1, d = c + 1;
         // Parametrised from any corner, either way round.
-        const std::array<std::uint32_t, 4> turned[] = {{a, b, c, d}, {b, d, a, c}, {d, c, b, a}, {a, c, b, d}};
+        const std::array<std::uint32_t, 4> turned[] = {
+            {a, b, c, d}, {b, d, a, c}, {d, c, b, a}, {a, c, b, d}};
         mesh.patches.push_back(turned[random.below(4)]);
       }
     std::vector<RayRecord> rays;
     for (int k = 0; k < 60000; ++k) {
       const int i = 1 + random.below(n - 1), j = 1 + random.below(n - 1);
       const dvec3 a = at[static_cast<std::size_t>(j * (n + 1) + i)];
-      const dvec3 b = at[static_cast<std::size_t>(random.below(2) == 0 ? j * (n + 1) + i + 1 : (j + 1) * (n + 1) + i)];
+      const dvec3 b = at[static_cast<std::size_t>(random.below(2) == 0 ? j * (n + 1) + i + 1
+                                                                       : (j + 1) * (n + 1) + i)];
       const dvec3 aim = glm::mix(a, b, random.below(4) == 0 ? 0.0 : random(0, 0.9));
-      rays.push_back(from_to(aim + dvec3(random(-0.2, 0.2), random(-0.2, 0.2), random(1, 10)), aim));
+      rays.push_back(
+          from_to(aim + dvec3(random(-0.2, 0.2), random(-0.2, 0.2), random(1, 10)), aim));
     }
     const auto hits = trace(lower_shapes({shape_of(mesh)}), rays, GetParam());
     int lost = 0;
@@ -711,11 +773,13 @@ TEST_P(Widths, PatchesHaveTheirMeshsUvsAndNormals) {
     for (std::size_t k = 0; k < 4; ++k) sum += w[k] * glm::dvec2(mesh.uvs[k]);
     return sum;
   };
-  const auto plain_scene = lower_shapes({shape_of(patch.mesh())}), uv_scene = lower_shapes({shape_of(mesh)});
+  const auto plain_scene = lower_shapes({shape_of(patch.mesh())}),
+             uv_scene = lower_shapes({shape_of(mesh)});
   std::vector<RayRecord> rays;
   for (int i = 0; i < 300; ++i) {
     const dvec3 aim = patch.at(random(0.1, 0.9), random(0.1, 0.9));
-    rays.push_back(from_to(aim + dvec3(random(-1, 1), random(-1, 1), random.below(2) == 0 ? 3 : -3), aim));
+    rays.push_back(
+        from_to(aim + dvec3(random(-1, 1), random(-1, 1), random.below(2) == 0 ? 3 : -3), aim));
   }
   const auto plain = trace(plain_scene, rays, GetParam()), own = trace(uv_scene, rays, GetParam());
   for (std::size_t i = 0; i < rays.size(); ++i) {
@@ -730,14 +794,17 @@ TEST_P(Widths, PatchesHaveTheirMeshsUvsAndNormals) {
     for (const glm::dvec2 step : {glm::dvec2(h, 0), glm::dvec2(0, h)}) {
       const glm::dvec2 by = uv_at(u + step.x, v + step.y) - uv;
       const dvec3 moved = patch.at(u + step.x, v + step.y) - patch.at(u, v);
-      EXPECT_LE(glm::length(by.x * vec(own[i].dpdu) + by.y * vec(own[i].dpdv) - moved), 1e-4 * h + 1e-5 * h);
+      EXPECT_LE(glm::length(by.x * vec(own[i].dpdu) + by.y * vec(own[i].dpdv) - moved),
+                1e-4 * h + 1e-5 * h);
     }
   }
-  // Normals at the corners say which side is out and bend the shading normal; a mirror turns the winding and the normals with it.
+  // Normals at the corners say which side is out and bend the shading normal; a mirror turns the
+  // winding and the normals with it.
   for (const double side : {1.0, -1.0})
     for (const bool mirrored : {false, true}) {
       BilinearMeshShape bent = mesh;
-      bent.normals = {glm::vec3(0.3, 0, side), glm::vec3(-0.3, 0, side), glm::vec3(0, 0.3, side), glm::vec3(0, 0, side)};
+      bent.normals = {glm::vec3(0.3, 0, side), glm::vec3(-0.3, 0, side), glm::vec3(0, 0.3, side),
+                      glm::vec3(0, 0, side)};
       const glm::dmat4 m = glm::scale(glm::dmat4(1), dvec3(mirrored ? -1 : 1, 1, 1));
       std::vector<RayRecord> seen = rays;
       if (mirrored)
@@ -750,7 +817,8 @@ TEST_P(Widths, PatchesHaveTheirMeshsUvsAndNormals) {
         EXPECT_GT(hits[i].ns[2] * side, 0);
         EXPECT_NEAR(hits[i].u, own[i].u, 1e-5);
         EXPECT_NEAR(hits[i].v, own[i].v, 1e-5);
-        EXPECT_GT(bare[i].ng[2], 0);  // as pbrt: a mirroring transform turns the normal of the winding back
+        EXPECT_GT(bare[i].ng[2],
+                  0);  // as pbrt: a mirroring transform turns the normal of the winding back
         EXPECT_EQ(bare[i].leaving, plain[i].leaving != mirrored);
       }
     }

@@ -107,7 +107,9 @@ const Program& program_of(const Device& device, int width) {
   if (found == programs.end()) {
     const std::string options = "-DCAPLET_REAL_WIDTH=" + std::to_string(width);
     const std::string source = flatten_kernels(kernel_text);
-    found = programs.emplace(std::pair{device.context()(), width}, Program::from_source(device, "shape probe", source, options))
+    found = programs
+                .emplace(std::pair{device.context()(), width},
+                         Program::from_source(device, "shape probe", source, options))
                 .first;
   }
   return found->second;
@@ -144,7 +146,8 @@ reference::Primitive reference_of(const FlatPrimitive& p, const std::vector<floa
     case shape_cone:
       return reference::make_frustum(point(d), point(d + 3), end(d[6], d[8]), end(d[7], d[9]));
     case shape_polyhedron: {
-      const std::size_t begin = std::bit_cast<std::uint32_t>(d[0]), count = std::bit_cast<std::uint32_t>(leaves.at(begin + 3));
+      const std::size_t begin = std::bit_cast<std::uint32_t>(d[0]),
+                        count = std::bit_cast<std::uint32_t>(leaves.at(begin + 3));
       std::vector<glm::dvec3> normals;
       std::vector<double> offsets;
       for (std::size_t i = 0; i < count; ++i) {
@@ -163,7 +166,8 @@ reference::Primitive reference_of(const FlatPrimitive& p, const std::vector<floa
       return reference::Bilinear{point(d), point(d + 3), point(d + 6), point(d + 9)};
     default: {
       reference::Primitive out;
-      if (!for_faced(p.shape, [&]<class Type>(std::type_identity<Type>) { out = faced_reference<Type>(d); }))
+      if (!for_faced(p.shape,
+                     [&]<class Type>(std::type_identity<Type>) { out = faced_reference<Type>(d); }))
         throw std::logic_error("no reference of this shape from its data");
       return out;
     }
@@ -194,7 +198,8 @@ int length_count(const FlatPrimitive& p) {
       return 0;
     default: {
       int out = 0;
-      if (!for_faced(p.shape, [&]<class Type>(std::type_identity<Type>) { out = count_fields<Type>().all; }))
+      if (!for_faced(p.shape,
+                     [&]<class Type>(std::type_identity<Type>) { out = count_fields<Type>().all; }))
         throw std::logic_error("no count of lengths for this shape");
       return out;
     }
@@ -223,31 +228,38 @@ int coordinate_count(const FlatPrimitive& p) {
       return 0;
     default: {
       int out = 0;
-      if (!for_faced(p.shape, [&]<class Type>(std::type_identity<Type>) { out = count_fields<Type>().coordinates; }))
+      if (!for_faced(p.shape, [&]<class Type>(std::type_identity<Type>) {
+            out = count_fields<Type>().coordinates;
+          }))
         throw std::logic_error("no count of coordinates for this shape");
       return out;
     }
   }
 }
 
-FlatPrimitive make_sphere(std::array<float, 3> c, float r) { return make(shape_sphere, {c[0], c[1], c[2], r}); }
+FlatPrimitive make_sphere(std::array<float, 3> c, float r) {
+  return make(shape_sphere, {c[0], c[1], c[2], r});
+}
 FlatPrimitive make_capsule(std::array<float, 3> p0, std::array<float, 3> p1, float r) {
   return make(shape_capsule, {p0[0], p0[1], p0[2], p1[0], p1[1], p1[2], r});
 }
 FlatPrimitive make_tapered(std::array<float, 3> p0, std::array<float, 3> p1, float r0, float r1) {
   return make(shape_tapered_capsule, {p0[0], p0[1], p0[2], p1[0], p1[1], p1[2], r0, r1});
 }
-FlatPrimitive make_triangle(std::array<float, 3> v0, std::array<float, 3> v1, std::array<float, 3> v2) {
+FlatPrimitive make_triangle(std::array<float, 3> v0, std::array<float, 3> v1,
+                            std::array<float, 3> v2) {
   return make(shape_triangle, {v0[0], v0[1], v0[2], v1[0], v1[1], v1[2], v2[0], v2[1], v2[2]});
 }
 FlatPrimitive make_disk(std::array<float, 3> c, std::array<float, 3> n, float r) {
   return make(shape_disk, {c[0], c[1], c[2], n[0], n[1], n[2], r});
 }
 
-FlatPrimitive make_cylinder(std::array<float, 3> p0, std::array<float, 3> p1, float r, float cap0, float cap1) {
+FlatPrimitive make_cylinder(std::array<float, 3> p0, std::array<float, 3> p1, float r, float cap0,
+                            float cap1) {
   return make(shape_cylinder, {p0[0], p0[1], p0[2], p1[0], p1[1], p1[2], r, cap0, cap1});
 }
-FlatPrimitive make_cone(std::array<float, 3> p0, std::array<float, 3> p1, float r0, float r1, float cap0, float cap1) {
+FlatPrimitive make_cone(std::array<float, 3> p0, std::array<float, 3> p1, float r0, float r1,
+                        float cap0, float cap1) {
   return make(shape_cone, {p0[0], p0[1], p0[2], p1[0], p1[1], p1[2], r0, r1, cap0, cap1});
 }
 FlatPrimitive make_box(std::array<float, 3> min, std::array<float, 3> max) {
@@ -262,15 +274,18 @@ FlatPrimitive make_open_cylinder(float r, float z_min, float z_max, float phi_ma
 FlatPrimitive make_partial_disk(float height, float r, float inner, float phi_max) {
   return make(shape_partial_disk, {height, r, inner, phi_max});
 }
-FlatPrimitive make_bilinear(std::array<float, 3> p00, std::array<float, 3> p10, std::array<float, 3> p01,
-                            std::array<float, 3> p11) {
-  return make(shape_bilinear, {p00[0], p00[1], p00[2], p10[0], p10[1], p10[2], p01[0], p01[1], p01[2], p11[0], p11[1], p11[2]});
+FlatPrimitive make_bilinear(std::array<float, 3> p00, std::array<float, 3> p10,
+                            std::array<float, 3> p01, std::array<float, 3> p11) {
+  return make(shape_bilinear, {p00[0], p00[1], p00[2], p10[0], p10[1], p10[2], p01[0], p01[1],
+                               p01[2], p11[0], p11[1], p11[2]});
 }
 
-Probe::Probe(const Device& device, int width, const std::vector<FlatPrimitive>& primitives, const std::vector<float>& leaves)
+Probe::Probe(const Device& device, int width, const std::vector<FlatPrimitive>& primitives,
+             const std::vector<float>& leaves)
     : Probe(device, width, unplaced(primitives), leaves) {}
 
-Probe::Probe(const Device& device, int width, const std::vector<PlacedPrimitive>& primitives, const std::vector<float>& leaves)
+Probe::Probe(const Device& device, int width, const std::vector<PlacedPrimitive>& primitives,
+             const std::vector<float>& leaves)
     : device_(device), width_(width), leaves_(leaves) {
   const Program& program = program_of(device, width);
   trace_ = program.kernel("probe_trace");
@@ -285,60 +300,68 @@ Probe::Probe(const Device& device, int width, const std::vector<PlacedPrimitive>
     geometry.primitive_begin = i;
     geometry.light_offset = placed.placed ? 3 : i % 2 == 0 ? CAPLET_NONE : i;
     geometry.index_begin = 4 * i;
-    geometry.normal_begin = geometry.uv_begin = geometry.surface_begin = geometry.uv_space = CAPLET_NONE;
+    geometry.normal_begin = geometry.uv_begin = geometry.surface_begin = geometry.uv_space =
+        CAPLET_NONE;
     geometries_.push_back(geometry);
     primitive_geometry_.push_back(i);
     for (std::uint32_t k = 0; k < 4; ++k) mesh_indices_.push_back(4 * i + k);
     trees_.push_back(encode_tree(std::span(&p, 1), nodes_, leaves_));
     if (placed.placed) {
       InstanceRecord instance{};
-      std::copy(placed.object_from_world.begin(), placed.object_from_world.end(), instance.object_from_world);
-      std::copy(placed.world_from_object.begin(), placed.world_from_object.end(), instance.world_from_object);
+      std::copy(placed.object_from_world.begin(), placed.object_from_world.end(),
+                instance.object_from_world);
+      std::copy(placed.world_from_object.begin(), placed.world_from_object.end(),
+                instance.world_from_object);
       instance.root = trees_.back().root;
       instance.light_base = i % 2 == 0 ? CAPLET_NONE : 100 + i;
       instances_.push_back(instance);
       // A box that holds everything: what is tested is the primitive.
       constexpr float far = 1e30f;
-      const FlatPrimitive top{
-          shape_instance, static_cast<std::uint32_t>(instances_.size() - 1), {-far, -far, -far, far, far, far}};
+      const FlatPrimitive top{shape_instance,
+                              static_cast<std::uint32_t>(instances_.size() - 1),
+                              {-far, -far, -far, far, far, far}};
       trees_.back() = encode_tree(std::span(&top, 1), nodes_, leaves_);
     }
     roots_.push_back(trees_.back().root);
   }
 }
 
-std::vector<Probed> Probe::trace(const std::vector<std::uint32_t>& which, const std::vector<RayRecord>& rays) const {
+std::vector<Probed> Probe::trace(const std::vector<std::uint32_t>& which,
+                                 const std::vector<RayRecord>& rays) const {
   std::vector<std::uint32_t> roots;
   for (const std::uint32_t i : which) roots.push_back(roots_[i]);
   std::vector<GeometryRecord> geometries = geometries_;
   for (GeometryRecord& geometry : geometries) geometry.flags = flags;
   if (!mesh_uvs.empty())
     for (GeometryRecord& geometry : geometries) geometry.uv_begin = 0;
-  const auto nodes = upload(device_, width_ == 1 ? packed_nodes(nodes_) : nodes_), leaves = upload(device_, leaves_),
-             uvs = upload(device_, mesh_uvs);
+  const auto nodes = upload(device_, width_ == 1 ? packed_nodes(nodes_) : nodes_),
+             leaves = upload(device_, leaves_), uvs = upload(device_, mesh_uvs);
   const auto instances = upload(device_, instances_);
   const auto geometry_buffer = upload(device_, geometries);
-  const auto primitive_geometry = upload(device_, primitive_geometry_), indices = upload(device_, mesh_indices_),
-             root_buffer = upload(device_, roots);
+  const auto primitive_geometry = upload(device_, primitive_geometry_),
+             indices = upload(device_, mesh_indices_), root_buffer = upload(device_, roots);
   const auto ray_buffer = upload(device_, rays);
   const Buffer<HitRecord> hits(device_, rays.size());
   const Buffer<SurfaceOut> surfaces(device_, rays.size());
   cl::Kernel kernel = trace_;
-  set_arguments(device_, kernel, nodes, leaves, instances, geometry_buffer, primitive_geometry, indices, uvs, root_buffer,
-                ray_buffer, hits, surfaces, static_cast<cl_uint>(rays.size()));
+  set_arguments(device_, kernel, nodes, leaves, instances, geometry_buffer, primitive_geometry,
+                indices, uvs, root_buffer, ray_buffer, hits, surfaces,
+                static_cast<cl_uint>(rays.size()));
   launch(device_, kernel, rays.size(), local_size);
   const std::vector<HitRecord> hit_records = hits.read();
   const std::vector<SurfaceOut> surface_records = surfaces.read();
   std::vector<Probed> out;
-  for (std::size_t i = 0; i < rays.size(); ++i) out.push_back({hit_records[i], surface_records[i], surface_records[i].any != 0});
+  for (std::size_t i = 0; i < rays.size(); ++i)
+    out.push_back({hit_records[i], surface_records[i], surface_records[i].any != 0});
   return out;
 }
 
-std::vector<Listed> Probe::list(const std::vector<std::uint32_t>& which, const std::vector<RayRecord>& rays,
-                                std::uint32_t capacity) const {
+std::vector<Listed> Probe::list(const std::vector<std::uint32_t>& which,
+                                const std::vector<RayRecord>& rays, std::uint32_t capacity) const {
   std::vector<std::uint32_t> roots;
   for (const std::uint32_t i : which) roots.push_back(roots_[i]);
-  const auto nodes = upload(device_, width_ == 1 ? packed_nodes(nodes_) : nodes_), leaves = upload(device_, leaves_);
+  const auto nodes = upload(device_, width_ == 1 ? packed_nodes(nodes_) : nodes_),
+             leaves = upload(device_, leaves_);
   const auto instances = upload(device_, instances_);
   const auto root_buffer = upload(device_, roots);
   const auto ray_buffer = upload(device_, rays);
@@ -346,8 +369,8 @@ std::vector<Listed> Probe::list(const std::vector<std::uint32_t>& which, const s
   const Buffer<int> any(device_, rays.size());
   const Buffer<std::uint32_t> counts(device_, rays.size());
   cl::Kernel kernel = list_;
-  set_arguments(device_, kernel, nodes, leaves, instances, root_buffer, ray_buffer, hits, any, counts, sorted,
-                static_cast<cl_uint>(capacity), static_cast<cl_uint>(rays.size()));
+  set_arguments(device_, kernel, nodes, leaves, instances, root_buffer, ray_buffer, hits, any,
+                counts, sorted, static_cast<cl_uint>(capacity), static_cast<cl_uint>(rays.size()));
   launch(device_, kernel, rays.size(), local_size);
   const std::vector<HitRecord> nearest = hits.read(), all = sorted.read();
   const std::vector<int> any_values = any.read();
@@ -355,12 +378,16 @@ std::vector<Listed> Probe::list(const std::vector<std::uint32_t>& which, const s
   std::vector<Listed> out(rays.size());
   for (std::size_t i = 0; i < rays.size(); ++i) {
     const auto first = all.begin() + static_cast<std::ptrdiff_t>(i * capacity);
-    out[i] = {nearest[i], any_values[i] != 0, count_values[i], {first, first + std::min(count_values[i], capacity)}};
+    out[i] = {nearest[i],
+              any_values[i] != 0,
+              count_values[i],
+              {first, first + std::min(count_values[i], capacity)}};
   }
   return out;
 }
 
-std::vector<Left> Probe::leave(const std::vector<std::uint32_t>& which, const std::vector<Probed>& from,
+std::vector<Left> Probe::leave(const std::vector<std::uint32_t>& which,
+                               const std::vector<Probed>& from,
                                const std::vector<std::array<float, 3>>& directions) const {
   std::vector<std::uint32_t> roots;
   for (const std::uint32_t i : which) roots.push_back(roots_[i]);
@@ -368,25 +395,28 @@ std::vector<Left> Probe::leave(const std::vector<std::uint32_t>& which, const st
   for (const Probed& probed : from) surfaces.push_back(probed.surface);
   std::vector<float> flat;
   for (const auto& d : directions) flat.insert(flat.end(), d.begin(), d.end());
-  const auto nodes = upload(device_, width_ == 1 ? packed_nodes(nodes_) : nodes_), leaves = upload(device_, leaves_),
-             direction_buffer = upload(device_, flat);
+  const auto nodes = upload(device_, width_ == 1 ? packed_nodes(nodes_) : nodes_),
+             leaves = upload(device_, leaves_), direction_buffer = upload(device_, flat);
   const auto instances = upload(device_, instances_);
   const auto root_buffer = upload(device_, roots);
   const auto surface_buffer = upload(device_, surfaces);
   const Buffer<float> origins(device_, 3 * from.size());
   const Buffer<HitRecord> hits(device_, from.size());
   cl::Kernel kernel = leave_;
-  set_arguments(device_, kernel, nodes, leaves, instances, root_buffer, surface_buffer, direction_buffer, origins, hits,
-                static_cast<cl_uint>(from.size()));
+  set_arguments(device_, kernel, nodes, leaves, instances, root_buffer, surface_buffer,
+                direction_buffer, origins, hits, static_cast<cl_uint>(from.size()));
   launch(device_, kernel, from.size(), local_size);
   const std::vector<float> origin_values = origins.read();
   const std::vector<HitRecord> hit_records = hits.read();
   std::vector<Left> out;
   for (std::size_t i = 0; i < from.size(); ++i)
-    out.push_back({{origin_values[3 * i], origin_values[3 * i + 1], origin_values[3 * i + 2]}, hit_records[i]});
+    out.push_back({{origin_values[3 * i], origin_values[3 * i + 1], origin_values[3 * i + 2]},
+                   hit_records[i]});
   return out;
 }
 
-reference::Ray reference_ray(const RayRecord& r) { return {{r.ox, r.oy, r.oz}, {r.dx, r.dy, r.dz}, r.t_min, r.t_max}; }
+reference::Ray reference_ray(const RayRecord& r) {
+  return {{r.ox, r.oy, r.oz}, {r.dx, r.dy, r.dz}, r.t_min, r.t_max};
+}
 
 }  // namespace caplet::test

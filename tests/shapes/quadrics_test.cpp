@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Cylinders and cones: rims that no ray slips through, wherever the model is; ends that may be swapped; and shapes that are one
-// another.
+// Cylinders and cones: rims that no ray slips through, wherever the model is; ends that may be
+// swapped; and shapes that are one another.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <tbb/parallel_for.h>
@@ -27,7 +27,9 @@ constexpr float flat = CAPLET_CAP_FLAT, rounded = CAPLET_CAP_ROUND, open = CAPLE
 
 dvec3 point(const float* p) { return {p[0], p[1], p[2]}; }
 bool is_hit(const Probed& probed) { return probed.hit.slot != CAPLET_NONE; }
-std::uint32_t surface_number(const Probed& probed) { return probed.hit.surface & CAPLET_SURFACE_MASK; }
+std::uint32_t surface_number(const Probed& probed) {
+  return probed.hit.surface & CAPLET_SURFACE_MASK;
+}
 bool leaves(const Probed& probed) { return (probed.hit.surface & CAPLET_LEAVING) != 0; }
 
 // A cylinder or cone, with what its row holds.
@@ -59,7 +61,8 @@ FlatPrimitive quadric(int shape, const Ends& e) {
 
 reference::Primitive frustum_of(const FlatPrimitive& p) {
   const Ends e = ends_of(p);
-  return reference::make_frustum(e.p0, e.p1, {e.r0, e.cap0 == rounded, e.cap0 == open}, {e.r1, e.cap1 == rounded, e.cap1 == open});
+  return reference::make_frustum(e.p0, e.p1, {e.r0, e.cap0 == rounded, e.cap0 == open},
+                                 {e.r1, e.cap1 == rounded, e.cap1 == open});
 }
 
 // docs/numerics.md, "Traversal", and one rounding of t.
@@ -69,22 +72,26 @@ double bound_of(const FlatPrimitive& p, const RayRecord& ray) {
   return 17 * eps * (glm::length(dvec3(ray.ox, ray.oy, ray.oz) - e.p0) + size);
 }
 
-// Random ends around a place: lengths from a hundredth to a hundred radii, axes of all directions and along x, y, z; for cones
-// apexes, equal radii, and either end the wider one.
+// Random ends around a place: lengths from a hundredth to a hundred radii, axes of all directions
+// and along x, y, z; for cones apexes, equal radii, and either end the wider one.
 FlatPrimitive random_quadric(CaseMaker& maker, int shape, const dvec3& place, bool may_be_open) {
-  const double r = std::pow(10.0, maker.uniform(-1, 1)), length = r * std::pow(10.0, maker.uniform(-2, 2));
+  const double r = std::pow(10.0, maker.uniform(-1, 1)),
+               length = r * std::pow(10.0, maker.uniform(-2, 2));
   dvec3 axis = maker.direction();
   const double along = maker.uniform(0, 6);
   if (along < 3) axis = dvec3(along < 1, along >= 1 && along < 2, along >= 2);
   const double other = maker.uniform(0, 1);
-  const double r1 = shape == shape_cylinder || other > 0.9 ? r : other < 0.15 ? 0 : r * maker.uniform(0, 1);
+  const double r1 = shape == shape_cylinder || other > 0.9 ? r
+                    : other < 0.15                         ? 0
+                                                           : r * maker.uniform(0, 1);
   const bool turned = maker.uniform(0, 1) < 0.5;
   const auto cap = [&] {
     const double choice = maker.uniform(0, may_be_open ? 3 : 2);
     return choice < 1 ? flat : choice < 2 ? rounded : open;
   };
   const float cap0 = cap(), cap1 = cap();
-  return quadric(shape, {place - 0.5 * length * axis, place + 0.5 * length * axis, turned ? r1 : r, turned ? r : r1, cap0, cap1});
+  return quadric(shape, {place - 0.5 * length * axis, place + 0.5 * length * axis, turned ? r1 : r,
+                         turned ? r : r1, cap0, cap1});
 }
 
 dvec3 rim_point(CaseMaker& maker, const Ends& e, int end) {
@@ -108,7 +115,8 @@ struct Cases {
   std::vector<std::uint32_t> which;
   std::vector<RayRecord> rays;
 };
-Cases random_cases(CaseMaker& maker, int shape, int primitives, int rays, double away, bool may_be_open) {
+Cases random_cases(CaseMaker& maker, int shape, int primitives, int rays, double away,
+                   bool may_be_open) {
   Cases out;
   while (static_cast<int>(out.primitives.size()) < primitives) {
     const FlatPrimitive p = random_quadric(maker, shape, away * maker.direction(), may_be_open);
@@ -126,7 +134,8 @@ Cases random_cases(CaseMaker& maker, int shape, int primitives, int rays, double
 std::string text_of(const FlatPrimitive& p, const RayRecord& r) {
   std::string data;
   for (const float x : p.data) data += fmt::format("{:a} ", x);
-  return fmt::format("shape {}: {}\nray {:a} {:a} {:a}  {:a} {:a} {:a}", p.shape, data, r.ox, r.oy, r.oz, r.dx, r.dy, r.dz);
+  return fmt::format("shape {}: {}\nray {:a} {:a} {:a}  {:a} {:a} {:a}", p.shape, data, r.ox, r.oy,
+                     r.oz, r.dx, r.dy, r.dz);
 }
 
 // --- Rims ---
@@ -135,11 +144,13 @@ struct RimCase {
   int shape, width;
   double away;
 };
-void PrintTo(const RimCase& c, std::ostream* out) { *out << fmt::format("{} {} {}", c.shape, c.width, c.away); }
+void PrintTo(const RimCase& c, std::ostream* out) {
+  *out << fmt::format("{} {} {}", c.shape, c.width, c.away);
+}
 class QuadricRims : public testing::TestWithParam<RimCase> {};
 
-// Closed solids: what the line enters deeper than the bound is hit, and every hit is a point of the surface. Returns how many
-// such rays there are.
+// Closed solids: what the line enters deeper than the bound is hit, and every hit is a point of the
+// surface. Returns how many such rays there are.
 int expect_watertight(const Cases& cases, int width) {
   const auto probed = Probe(test_device(), width, cases.primitives).trace(cases.which, cases.rays);
   std::atomic<int> hits = 0, deep = 0, slipped = 0, off = 0;
@@ -157,11 +168,13 @@ int expect_watertight(const Cases& cases, int width) {
     }
     if (!is_hit(probed[i])) return;
     ++hits;
-    const double distance = std::abs(reference::value(reference, ray.origin + double(probed[i].hit.t) * ray.direction));
-    if (distance > bound && off++ < 3) ADD_FAILURE() << distance << " off, > " << bound << "\n" << text_of(p, cases.rays[i]);
+    const double distance =
+        std::abs(reference::value(reference, ray.origin + double(probed[i].hit.t) * ray.direction));
+    if (distance > bound && off++ < 3)
+      ADD_FAILURE() << distance << " off, > " << bound << "\n" << text_of(p, cases.rays[i]);
   });
-  std::printf("%zu rays, %d hits, %d deeper than the bound, %d slipped through\n", probed.size(), hits.load(), deep.load(),
-              slipped.load());
+  std::printf("%zu rays, %d hits, %d deeper than the bound, %d slipped through\n", probed.size(),
+              hits.load(), deep.load(), slipped.load());
   EXPECT_EQ(slipped, 0);
   EXPECT_EQ(off, 0);
   return deep;
@@ -174,7 +187,8 @@ TEST_P(QuadricRims, AreWatertight) {
   EXPECT_GT(expect_watertight(cases, width), static_cast<int>(cases.rays.size() / 4));
 }
 
-// Short cones: side and base meet at a sharp angle, and what lies within rounding of both is far from either.
+// Short cones: side and base meet at a sharp angle, and what lies within rounding of both is far
+// from either.
 TEST(QuadricShapes, SharpRimsEndWhereTheyAre) {
   CaseMaker maker(66);
   Cases cases;
@@ -182,8 +196,8 @@ TEST(QuadricShapes, SharpRimsEndWhereTheyAre) {
     const double length = std::pow(10.0, maker.uniform(-3, -1.5));
     const bool turned = maker.uniform(0, 1) < 0.5;
     const double thin = maker.uniform(0, 0.5);
-    const FlatPrimitive p =
-        quadric(shape_cone, {maker.direction(), maker.direction(), turned ? thin : 1, turned ? 1 : thin, flat, flat});
+    const FlatPrimitive p = quadric(shape_cone, {maker.direction(), maker.direction(),
+                                                 turned ? thin : 1, turned ? 1 : thin, flat, flat});
     Ends e = ends_of(p);
     e.p1 = e.p0 + length * glm::normalize(e.p1 - e.p0);
     cases.primitives.push_back(quadric(shape_cone, e));
@@ -199,7 +213,8 @@ TEST(QuadricShapes, SharpRimsEndWhereTheyAre) {
   EXPECT_GT(expect_watertight(cases, 8), 3000);
 }
 
-// The direction is the axis to rounding, or exactly: the distance from the axis decides, and nothing else has digits.
+// The direction is the axis to rounding, or exactly: the distance from the axis decides, and
+// nothing else has digits.
 TEST(QuadricShapes, RaysAlongTheAxis) {
   CaseMaker maker(67);
   for (const int shape : {shape_cylinder, shape_cone}) {
@@ -210,7 +225,8 @@ TEST(QuadricShapes, RaysAlongTheAxis) {
       const dvec3 axis = e.p1 - e.p0;
       for (int j = 0; j < 20; ++j) {
         const dvec3 rim = rim_point(maker, e, j % 2), center = j % 2 == 0 ? e.p0 : e.p1;
-        const double off = std::pow(10.0, maker.uniform(-6, 0)) * (maker.uniform(0, 1) < 0.5 ? -0.5 : 0.5);
+        const double off =
+            std::pow(10.0, maker.uniform(-6, 0)) * (maker.uniform(0, 1) < 0.5 ? -0.5 : 0.5);
         const dvec3 o = center + (1 + off) * (rim - center) - maker.uniform(-1, 3) * axis;
         cases.which.push_back(static_cast<std::uint32_t>(cases.primitives.size()));
         cases.rays.push_back(make_ray(o, j % 4 < 2 ? axis : axis * maker.uniform(-3, 3)));
@@ -221,19 +237,25 @@ TEST(QuadricShapes, RaysAlongTheAxis) {
   }
 }
 
-const RimCase rim_cases[] = {{shape_cylinder, 8, 0}, {shape_cylinder, 8, 1e3}, {shape_cylinder, 8, 1e5}, {shape_cylinder, 1, 1e4},
-                             {shape_cone, 8, 0},     {shape_cone, 8, 1e3},     {shape_cone, 8, 1e5},     {shape_cone, 1, 1e4}};
-INSTANTIATE_TEST_SUITE_P(Kinds, QuadricRims, testing::ValuesIn(rim_cases), [](const auto& instance) {
-  const RimCase& c = instance.param;
-  return fmt::format("{}_{}_at_{:.0f}", c.shape == shape_cylinder ? "cylinder" : "cone", c.width, c.away);
-});
+const RimCase rim_cases[] = {{shape_cylinder, 8, 0},   {shape_cylinder, 8, 1e3},
+                             {shape_cylinder, 8, 1e5}, {shape_cylinder, 1, 1e4},
+                             {shape_cone, 8, 0},       {shape_cone, 8, 1e3},
+                             {shape_cone, 8, 1e5},     {shape_cone, 1, 1e4}};
+INSTANTIATE_TEST_SUITE_P(Kinds, QuadricRims, testing::ValuesIn(rim_cases),
+                         [](const auto& instance) {
+                           const RimCase& c = instance.param;
+                           return fmt::format("{}_{}_at_{:.0f}",
+                                              c.shape == shape_cylinder ? "cylinder" : "cone",
+                                              c.width, c.away);
+                         });
 
 // --- One shape told in two ways ---
 
 constexpr std::uint32_t any_surface = 0xffff;
 
-// Both name the same crossing, each within its bound; `name` turns a's surface into what b should say. Close to where two
-// surfaces meet (closer than the two crossings are to each other, and the bound) either may be named.
+// Both name the same crossing, each within its bound; `name` turns a's surface into what b should
+// say. Close to where two surfaces meet (closer than the two crossings are to each other, and the
+// bound) either may be named.
 template <class Name>
 void expect_same(const Cases& a, const std::vector<FlatPrimitive>& b, const Name& name) {
   const auto first = Probe(test_device(), test_width(), a.primitives).trace(a.which, a.rays),
@@ -253,7 +275,9 @@ void expect_same(const Cases& a, const std::vector<FlatPrimitive>& b, const Name
     if (!is_hit(first[i])) continue;
     ++hits;
     const double t0 = first[i].hit.t, t1 = second[i].hit.t;
-    ASSERT_LE(std::abs(reference::value(reference, ray.origin + 0.5 * (t0 + t1) * ray.direction)), bound) << text_of(p, a.rays[i]);
+    ASSERT_LE(std::abs(reference::value(reference, ray.origin + 0.5 * (t0 + t1) * ray.direction)),
+              bound)
+        << text_of(p, a.rays[i]);
     const std::uint32_t expected = name(surface_number(first[i]));
     if (expected == any_surface) continue;
     ++named;
@@ -262,11 +286,14 @@ void expect_same(const Cases& a, const std::vector<FlatPrimitive>& b, const Name
     if (!exact) continue;
     // A shallow ray that is displaced by the bound meets the surface that much further along it.
     const dvec3 on = ray.origin + exact->t * ray.direction;
-    const double slope = std::abs(glm::dot(reference::normal_at(reference, on, bound), glm::normalize(ray.direction)));
-    const double apart = std::max(std::abs(t0 - exact->t), std::abs(t1 - exact->t)) * glm::length(ray.direction);
+    const double slope = std::abs(
+        glm::dot(reference::normal_at(reference, on, bound), glm::normalize(ray.direction)));
+    const double apart =
+        std::max(std::abs(t0 - exact->t), std::abs(t1 - exact->t)) * glm::length(ray.direction);
     ASSERT_LE(exact->surface_margin, apart + bound / slope)
-        << fmt::format("surfaces {} and {}, reference {}; t {} {} {}, bound {}\n", surface_number(first[i]),
-                       surface_number(second[i]), exact->surface, t0, t1, exact->t, bound)
+        << fmt::format("surfaces {} and {}, reference {}; t {} {} {}, bound {}\n",
+                       surface_number(first[i]), surface_number(second[i]), exact->surface, t0, t1,
+                       exact->t, bound)
         << text_of(p, a.rays[i]);
   }
   std::printf("%d hits, %d surfaces\n", hits, named);
@@ -282,7 +309,8 @@ TEST(QuadricRelations, EndsMayBeSwapped) {
       const Ends e = ends_of(p);
       swapped.push_back(quadric(shape, {e.p1, e.p0, e.r1, e.r0, e.cap1, e.cap0}));
     }
-    expect_same(cases, swapped, [](std::uint32_t surface) { return surface == 0 ? 0u : 3 - surface; });
+    expect_same(cases, swapped,
+                [](std::uint32_t surface) { return surface == 0 ? 0u : 3 - surface; });
   }
 }
 
@@ -307,18 +335,22 @@ TEST(QuadricRelations, EqualRadiiMakeACylinder) {
   CaseMaker maker(64);
   const Cases cylinders = random_cases(maker, shape_cylinder, 300 * test_scale(), 50, 10, true);
   std::vector<FlatPrimitive> cones;
-  for (const FlatPrimitive& p : cylinders.primitives) cones.push_back(quadric(shape_cone, ends_of(p)));
+  for (const FlatPrimitive& p : cylinders.primitives)
+    cones.push_back(quadric(shape_cone, ends_of(p)));
   expect_same(cylinders, cones, [](std::uint32_t surface) { return surface; });
 }
 
 // --- Ends ---
 
 Probed trace_one(const FlatPrimitive& p, const dvec3& o, const dvec3& d) {
-  return Probe(test_device(), test_width(), std::vector<FlatPrimitive>{p}).trace({0}, {make_ray(o, d)})[0];
+  return Probe(test_device(), test_width(), std::vector<FlatPrimitive>{p})
+      .trace({0}, {make_ray(o, d)})[0];
 }
 
 TEST(QuadricEnds, AreOpenFlatOrRound) {
-  const auto cylinder = [](float cap0, float cap1) { return quadric(shape_cylinder, {{0, 0, 0}, {0, 0, 4}, 1, 1, cap0, cap1}); };
+  const auto cylinder = [](float cap0, float cap1) {
+    return quadric(shape_cylinder, {{0, 0, 0}, {0, 0, 4}, 1, 1, cap0, cap1});
+  };
   const dvec3 below(0.25, 0, -3), up(0, 0, 1);
   EXPECT_FALSE(is_hit(trace_one(cylinder(open, open), below, up)));
   const Probed inner = trace_one(cylinder(open, flat), below, up);
@@ -349,8 +381,9 @@ TEST(QuadricEnds, ConesHaveAnApex) {
   EXPECT_NEAR(base.hit.t, 1, 1e-6);
 }
 
-// The hull of a disk and a ball that reaches through it (radius 5 around the origin, disk of radius 12 at z = 1): the tangents
-// from the rim (12, 1) touch the ball where the normal's angle is that of the rim -+ acos(5 / sqrt(145)).
+// The hull of a disk and a ball that reaches through it (radius 5 around the origin, disk of radius
+// 12 at z = 1): the tangents from the rim (12, 1) touch the ball where the normal's angle is that
+// of the rim -+ acos(5 / sqrt(145)).
 TEST(QuadricEnds, ABallMayReachThroughTheDisk) {
   const FlatPrimitive shape = quadric(shape_cone, {{0, 0, 0}, {0, 0, 1}, 5, 12, rounded, flat});
   const double angle = std::atan2(1, 12), opening = std::acos(5 / std::sqrt(145.0));
@@ -366,7 +399,8 @@ TEST(QuadricEnds, ABallMayReachThroughTheDisk) {
     EXPECT_NEAR(hit.surface.v, 0.5, 1e-6);
   }
   // Held by it altogether: one sphere.
-  const Probed sphere = trace_one(quadric(shape_cone, {{0, 0, 0}, {0, 0, 3}, 5, 4, rounded, flat}), {4, 0, 9}, {0, 0, -1});
+  const Probed sphere = trace_one(quadric(shape_cone, {{0, 0, 0}, {0, 0, 3}, 5, 4, rounded, flat}),
+                                  {4, 0, 9}, {0, 0, -1});
   EXPECT_EQ(surface_number(sphere), 1u);
   EXPECT_NEAR(sphere.hit.t, 6, 1e-5);
 }
@@ -383,14 +417,16 @@ TEST(QuadricParameters, FollowTheProfile) {
   EXPECT_NEAR(v({9, 0, 1e-6}, {-1, 0, 0}), 0, 1e-5);
   EXPECT_NEAR(v({0, 0, 9}, {0, 0, -1}), 1, 1e-6);
   EXPECT_NEAR(v({0, 0.001, 9}, {0, 0, -1}), 1, 1e-3);
-  // Rim to rim at one turn: a point of the base, of the side and of the ball, a quarter turn from each other's frame.
+  // Rim to rim at one turn: a point of the base, of the side and of the ball, a quarter turn from
+  // each other's frame.
   const dvec3 n = glm::normalize(dvec3(0.6, 0.8, 0));
   const float u = trace_one(cone, 9.0 * n + dvec3(0, 0, 1), -n).surface.u;
   EXPECT_NEAR(trace_one(cone, n + dvec3(0, 0, -9), {0, 0, 1}).surface.u, u, 1e-6);
   EXPECT_NEAR(trace_one(cone, 0.5 * n + dvec3(0, 0, 9), {0, 0, -1}).surface.u, u, 1e-6);
 }
 
-// Between two points nearby p changes by dpdu du + dpdv dv, up to the square of their distance over the radius there.
+// Between two points nearby p changes by dpdu du + dpdv dv, up to the square of their distance over
+// the radius there.
 TEST(QuadricParameters, DerivativesMatchDifferences) {
   CaseMaker maker(65);
   const float caps[] = {flat, rounded, open};
@@ -398,9 +434,15 @@ TEST(QuadricParameters, DerivativesMatchDifferences) {
   for (const float cap0 : caps)
     for (const float cap1 : caps)
       for (const double length : {0.5, 3.0}) {
-        primitives.push_back(quadric(shape_cylinder, {{1, 2, 3}, dvec3(1, 2, 3) + length * maker.direction(), 1, 1, cap0, cap1}));
-        primitives.push_back(quadric(shape_cone, {{1, 2, 3}, dvec3(1, 2, 3) + length * maker.direction(), 1, 2, cap0, cap1}));
-        primitives.push_back(quadric(shape_cone, {{1, 2, 3}, dvec3(1, 2, 3) + length * maker.direction(), 2, 0, cap0, cap1}));
+        primitives.push_back(
+            quadric(shape_cylinder,
+                    {{1, 2, 3}, dvec3(1, 2, 3) + length * maker.direction(), 1, 1, cap0, cap1}));
+        primitives.push_back(
+            quadric(shape_cone,
+                    {{1, 2, 3}, dvec3(1, 2, 3) + length * maker.direction(), 1, 2, cap0, cap1}));
+        primitives.push_back(
+            quadric(shape_cone,
+                    {{1, 2, 3}, dvec3(1, 2, 3) + length * maker.direction(), 2, 0, cap0, cap1}));
       }
   constexpr double step = 2e-3;
   std::vector<std::uint32_t> which;
@@ -408,7 +450,8 @@ TEST(QuadricParameters, DerivativesMatchDifferences) {
   for (std::uint32_t i = 0; i < primitives.size(); ++i)
     for (int j = 0; j < 300; ++j) {
       const Ends e = ends_of(primitives[i]);
-      const dvec3 inside = e.p0 + maker.uniform(-0.5, 1.5) * (e.p1 - e.p0) + maker.uniform(0, 1) * maker.direction();
+      const dvec3 inside =
+          e.p0 + maker.uniform(-0.5, 1.5) * (e.p1 - e.p0) + maker.uniform(0, 1) * maker.direction();
       const dvec3 o = inside + 6.0 * maker.direction(), d = inside - o;
       which.push_back(i);
       rays.push_back(make_ray(o, d));
@@ -419,17 +462,20 @@ TEST(QuadricParameters, DerivativesMatchDifferences) {
   int checked[3] = {0, 0, 0};
   for (std::size_t i = 0; i < first.size(); ++i) {
     const SurfaceOut &a = first[i].surface, &b = second[i].surface;
-    if (!is_hit(first[i]) || !is_hit(second[i]) || first[i].hit.surface != second[i].hit.surface) continue;
+    if (!is_hit(first[i]) || !is_hit(second[i]) || first[i].hit.surface != second[i].hit.surface)
+      continue;
     const dvec3 moved = point(b.p) - point(a.p), dpdu = point(a.dpdu), dpdv = point(a.dpdv);
     const double radius = glm::length(dpdu) / 6.283185307179586;
     // Away from poles and the seam, and not over the rim of a disk with a ball behind.
-    if (radius < 0.1 || std::abs(a.u - b.u) > 0.5 || glm::dot(point(a.ng), point(b.ng)) < 0.9 || glm::length(moved) > 10 * step)
+    if (radius < 0.1 || std::abs(a.u - b.u) > 0.5 || glm::dot(point(a.ng), point(b.ng)) < 0.9 ||
+        glm::length(moved) > 10 * step)
       continue;
     const dvec3 expected = double(b.u - a.u) * dpdu + double(b.v - a.v) * dpdv;
-    ASSERT_LE(glm::length(moved - expected), glm::dot(moved, moved) / radius + 1e-5) << text_of(primitives[which[i]], rays[i]);
+    ASSERT_LE(glm::length(moved - expected), glm::dot(moved, moved) / radius + 1e-5)
+        << text_of(primitives[which[i]], rays[i]);
     ++checked[surface_number(first[i])];
-    // Both lie in the tangent plane, as far as a unit normal (16 eps), their own few roundings and those of the ends' coordinates
-    // (up to 8, 4 eps) let them.
+    // Both lie in the tangent plane, as far as a unit normal (16 eps), their own few roundings and
+    // those of the ends' coordinates (up to 8, 4 eps) let them.
     ASSERT_NEAR(glm::dot(dpdu, point(a.ng)), 0, 32 * 0x1p-24 * (1 + glm::length(dpdu)));
     ASSERT_NEAR(glm::dot(dpdv, point(a.ng)), 0, 32 * 0x1p-24 * (1 + glm::length(dpdv)));
   }
@@ -439,12 +485,14 @@ TEST(QuadricParameters, DerivativesMatchDifferences) {
 // dpdu x dpdv points outward on every surface (but for the second part of a side that has one).
 TEST(QuadricParameters, AreRightHanded) {
   const FlatPrimitive cone = quadric(shape_cone, {{0, 0, 0}, {0, 0, 4}, 2, 1, flat, rounded});
-  const std::pair<dvec3, dvec3> rays[] = {{{1, 0.3, -9}, {0, 0, 1}}, {{9, 1, 2}, {-1, 0, 0}}, {{0.4, 0.2, 9}, {0, 0, -1}}};
+  const std::pair<dvec3, dvec3> rays[] = {
+      {{1, 0.3, -9}, {0, 0, 1}}, {{9, 1, 2}, {-1, 0, 0}}, {{0.4, 0.2, 9}, {0, 0, -1}}};
   std::uint32_t surfaces = 0;
   for (const auto& [o, d] : rays) {
     const Probed hit = trace_one(cone, o, d);
     surfaces |= 1u << surface_number(hit);
-    const dvec3 outward = glm::normalize(glm::cross(point(hit.surface.dpdu), point(hit.surface.dpdv)));
+    const dvec3 outward =
+        glm::normalize(glm::cross(point(hit.surface.dpdu), point(hit.surface.dpdv)));
     EXPECT_LT(glm::length(outward - point(hit.surface.ng)), 1e-5);
   }
   EXPECT_EQ(surfaces, 7u);

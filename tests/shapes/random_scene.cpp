@@ -41,12 +41,13 @@ decltype(Shape::geometry) SceneMaker::geometry(int kind) {
       return SphereShape{r};
     case 1:
       // Half of them are chains.
-      return CapsulesShape{{a, b},
-                           {b, c},
-                           {0.3f * f, 0.2f * f},
-                           {0.3f * f, 0.4f * f},
-                           {},
-                           r < 0.6 ? std::vector<glm::vec2>{} : std::vector<glm::vec2>{{-0.5f, f}, {f, 3}}};
+      return CapsulesShape{
+          {a, b},
+          {b, c},
+          {0.3f * f, 0.2f * f},
+          {0.3f * f, 0.4f * f},
+          {},
+          r < 0.6 ? std::vector<glm::vec2>{} : std::vector<glm::vec2>{{-0.5f, f}, {f, 3}}};
     case 2:
       return TriangleMeshShape{{a, b, c, -a}, {{0, 1, 2}, {1, 2, 3}}, {}, own_uvs(r)};
     case 3:
@@ -60,8 +61,9 @@ decltype(Shape::geometry) SceneMaker::geometry(int kind) {
     case 7:
       return BoxShape{-r * dvec3(1, 0.5, 0.3), r * dvec3(0.2, 0.4, 0.6)};
     case 8:
-      return PolyhedronShape{{dvec3(-r), dvec3(-r), dvec3(-r), dvec3(0.3 * r), dvec3(0, 0, 0.5 * r)},
-                             {{-1, 0, 0}, {0, -2, 0}, {0, 0, -1}, {1, 1, 1}, {0.1, 0.2, 1}}};
+      return PolyhedronShape{
+          {dvec3(-r), dvec3(-r), dvec3(-r), dvec3(0.3 * r), dvec3(0, 0, 0.5 * r)},
+          {{-1, 0, 0}, {0, -2, 0}, {0, 0, -1}, {1, 1, 1}, {0.1, 0.2, 1}}};
     case 9:
       return PartialSphereShape{r, -0.6 * r, 0.8 * r, uniform(2, 6)};
     case 10:
@@ -87,14 +89,17 @@ decltype(Shape::geometry) SceneMaker::geometry(int kind) {
 Scene random_scene(std::uint32_t seed) {
   SceneMaker make(seed);
   Scene scene;
-  for (int i = 0; i < 20; ++i) scene.materials.push_back({DiffuseMaterial{}, fmt::format("{}", i), {}});
+  for (int i = 0; i < 20; ++i)
+    scene.materials.push_back({DiffuseMaterial{}, fmt::format("{}", i), {}});
   for (int i = 0; i < SceneMaker::kinds; ++i) scene.shapes.push_back(make.shape(i));
   for (int i = 0; i < 5; ++i) {
     Object object;
     object.name = fmt::format("object {}", i);
-    for (int k = 0; k < 3; ++k) object.shapes.push_back(make.shape((3 * i + k) % SceneMaker::kinds));
+    for (int k = 0; k < 3; ++k)
+      object.shapes.push_back(make.shape((3 * i + k) % SceneMaker::kinds));
     scene.objects.push_back(object);
-    for (int k = make.below(2); k < 2; ++k) scene.instances.push_back({static_cast<std::uint32_t>(i), make.placement(4), {}});
+    for (int k = make.below(2); k < 2; ++k)
+      scene.instances.push_back({static_cast<std::uint32_t>(i), make.placement(4), {}});
   }
   return scene;
 }

@@ -23,8 +23,8 @@ using namespace caplet::reference;
 using caplet::reference::full_turn;
 using glm::dvec3;
 
-// Bisection ends at neighbouring doubles of an offset from the foot; t is then off by a few roundings of |t| and of the scene's
-// size.
+// Bisection ends at neighbouring doubles of an offset from the foot; t is then off by a few
+// roundings of |t| and of the scene's size.
 constexpr double rounding = 1e-13;
 
 dvec3 random_vector(std::mt19937& random) {
@@ -32,7 +32,8 @@ dvec3 random_vector(std::mt19937& random) {
   return {normal(random), normal(random), normal(random)};
 }
 
-void expect_crossings(const Primitive& primitive, const Ray& ray, std::initializer_list<double> expected) {
+void expect_crossings(const Primitive& primitive, const Ray& ray,
+                      std::initializer_list<double> expected) {
   const auto found = crossings(primitive, ray);
   ASSERT_EQ(found.size(), expected.size());
   std::size_t i = 0;
@@ -50,7 +51,8 @@ struct Expected {
   int surface;
   bool leaving;
 };
-void expect_surfaces(const Primitive& primitive, const Ray& ray, std::initializer_list<Expected> expected) {
+void expect_surfaces(const Primitive& primitive, const Ray& ray,
+                     std::initializer_list<Expected> expected) {
   const auto found = crossings(primitive, ray);
   ASSERT_EQ(found.size(), expected.size());
   std::size_t i = 0;
@@ -77,7 +79,8 @@ TEST(Reference, CapsuleAlongAndAcross) {
   expect_crossings(capsule, {{0.5001, 0, 10}, {0, 0, -2}}, {});
 }
 
-// The silhouette of the tangent cone in the xz plane: half angle a with sin a = (r0 - r1) / L; at x = q + r n on the generator.
+// The silhouette of the tangent cone in the xz plane: half angle a with sin a = (r0 - r1) / L; at x
+// = q + r n on the generator.
 TEST(Reference, TaperedCapsuleIsTheTangentHull) {
   const Capsule capsule{{0, 0, 0}, {0, 0, 4}, 2, 1};
   const double k = 1.0 / 4, c = std::sqrt(1 - k * k);
@@ -109,12 +112,17 @@ TEST(Reference, TriangleAndDisk) {
   expect_crossings(disk, {{1, 1, 0}, {0, 0, 0.5}}, {2});
   expect_crossings(disk, {{1.5, 1.5, 0}, {0, 0, 0.5}}, {});
   EXPECT_NEAR(margin(disk, {{1, 0, 0}, {0, 0, 1}}), 1, 1e-9);
-  // Almost in the disk's plane and almost a tangent of its rim, 5.33e-6 from it at the crossing: two minima close to each other.
-  const Disk flat{{0x1.d5a414p-3, -0x1.0859dap+3, 0x1.f633e8p+3}, {0x1.46e11ep-2, -0x1.1177eap-2, 0x1.d18c5ep-1}, 0x1.855672p+2};
-  const Ray grazing{{-14.949357741319, 11.799509225158, 26.938185622453}, {19.115298806774, -15.422550404783, -11.264191443461}};
+  // Almost in the disk's plane and almost a tangent of its rim, 5.33e-6 from it at the crossing:
+  // two minima close to each other.
+  const Disk flat{{0x1.d5a414p-3, -0x1.0859dap+3, 0x1.f633e8p+3},
+                  {0x1.46e11ep-2, -0x1.1177eap-2, 0x1.d18c5ep-1},
+                  0x1.855672p+2};
+  const Ray grazing{{-14.949357741319, 11.799509225158, 26.938185622453},
+                    {19.115298806774, -15.422550404783, -11.264191443461}};
   const auto crossed = crossings(flat, grazing);
   ASSERT_EQ(crossed.size(), 1u);
-  const double inside = flat.radius - glm::length(grazing.origin + crossed[0].t * grazing.direction - flat.center);
+  const double inside =
+      flat.radius - glm::length(grazing.origin + crossed[0].t * grazing.direction - flat.center);
   EXPECT_NEAR(inside, 5.33e-6, 1e-8);
   EXPECT_LE(margin(flat, grazing), inside);
 }
@@ -145,7 +153,8 @@ TEST(Reference, CylindersAndCones) {
   expect_surfaces(cylinder(false, true, false, true), along, {});
   expect_surfaces(cylinder(false, false, true, false), across, {{1, 0, false}, {2, 0, true}});
   // In at the side, out at the cap.
-  expect_surfaces(cylinder(false, false, false, false), {{-3, 0, 1}, {1, 0, 1}}, {{2, 0, false}, {3, 2, true}});
+  expect_surfaces(cylinder(false, false, false, false), {{-3, 0, 1}, {1, 0, 1}},
+                  {{2, 0, false}, {3, 2, true}});
   expect_surfaces(cylinder(false, true, false, true), {{-3, 0, 1}, {1, 0, 1}}, {{2, 0, false}});
 
   // A frustum whose side has slope 1, and its apex.
@@ -172,13 +181,18 @@ TEST(Reference, CylindersAndCones) {
   }
 }
 
-// The hull of a disk and a ball, by its definition: points between a point of the one and a point of the other.
+// The hull of a disk and a ball, by its definition: points between a point of the one and a point
+// of the other.
 TEST(Reference, MixedEndsAreTheHullOfADiskAndABall) {
   std::mt19937 random(4);
   std::uniform_real_distribution<double> uniform;
-  for (const auto& [disk, ball, length] :
-       {std::tuple(2.0, 1.0, 3.0), {1.0, 2.0, 3.0}, {1.0, 1.0, 0.5}, {0.0, 1.0, 2.0}, {3.0, 2.0, 1.0}}) {
-    const Frustum frustum = make_frustum({0, 0, 0}, {0, 0, length}, {disk, false, false}, {ball, true, false});
+  for (const auto& [disk, ball, length] : {std::tuple(2.0, 1.0, 3.0),
+                                           {1.0, 2.0, 3.0},
+                                           {1.0, 1.0, 0.5},
+                                           {0.0, 1.0, 2.0},
+                                           {3.0, 2.0, 1.0}}) {
+    const Frustum frustum =
+        make_frustum({0, 0, 0}, {0, 0, length}, {disk, false, false}, {ball, true, false});
     double greatest = -HUGE_VAL;
     for (int i = 0; i < 100000; ++i) {
       const double a = full_turn * uniform(random);
@@ -192,7 +206,8 @@ TEST(Reference, MixedEndsAreTheHullOfADiskAndABall) {
       const dvec3 n = glm::normalize(random_vector(random));
       const double support = std::max(disk * std::hypot(n.x, n.y), n.z * length + ball);
       for (int k = 0; k < 10; ++k) {
-        const dvec3 x = (1 + std::abs(uniform(random))) * support * n + 3.0 * glm::cross(n, random_vector(random));
+        const dvec3 x = (1 + std::abs(uniform(random))) * support * n +
+                        3.0 * glm::cross(n, random_vector(random));
         if (glm::dot(n, x) > support) {
           EXPECT_GE(value(frustum, x), glm::dot(n, x) - support - 1e-12);
         }
@@ -217,7 +232,8 @@ TEST(Reference, BoxesAndPolyhedra) {
 
 TEST(Reference, PartsOfSpheresAndTubes) {
   const PartialSphere sphere{2, -1, 1.5, 4.71238898038469};
-  expect_surfaces(sphere, {{-5, 0.1, 0}, {1, 0, 0}}, {{5 - std::sqrt(4 - 0.01), 0, false}, {5 + std::sqrt(4 - 0.01), 0, true}});
+  expect_surfaces(sphere, {{-5, 0.1, 0}, {1, 0, 0}},
+                  {{5 - std::sqrt(4 - 0.01), 0, false}, {5 + std::sqrt(4 - 0.01), 0, true}});
   expect_surfaces(sphere, {{-5, -0.1, 0}, {1, 0, 0}}, {{5 - std::sqrt(4 - 0.01), 0, false}});
   expect_surfaces(sphere, {{0.1, 0, -5}, {0, 0, 1}}, {});
   EXPECT_NEAR(value(sphere, {0, 0, 2}), std::hypot(std::sqrt(4 - 2.25), 0.5), rounding);
@@ -248,31 +264,37 @@ TEST(Reference, BilinearPatches) {
   expect_surfaces(flat, {{-4, 0.5, 0}, {1, 0, 0}}, {});
 }
 
-// However sharply a patch is folded: its own points are no distance from it, and no other of its points is nearer than that.
+// However sharply a patch is folded: its own points are no distance from it, and no other of its
+// points is nearer than that.
 TEST(Reference, DistanceFromFoldedPatches) {
   // Where two extremes meet, rounding of the squared distance (2^-52) may hide them.
   constexpr double hidden = 0x1p-26;
   std::mt19937 random(8);
   std::uniform_real_distribution<double> share(0, 1);
   for (int i = 0; i < 3000; ++i) {
-    Bilinear patch{random_vector(random), random_vector(random), random_vector(random), random_vector(random)};
+    Bilinear patch{random_vector(random), random_vector(random), random_vector(random),
+                   random_vector(random)};
     // Opposite corners, or neighbours, nearly the same.
     const double fold = std::pow(10, -6 * share(random));
     if (i % 3 == 0) patch.p11 = patch.p00 + fold * (patch.p11 - patch.p00);
     if (i % 3 == 1) patch.p10 = patch.p00 + fold * (patch.p10 - patch.p00);
     const auto at = [&](double u, double v) {
-      return (1 - u) * ((1 - v) * patch.p00 + v * patch.p01) + u * ((1 - v) * patch.p10 + v * patch.p11);
+      return (1 - u) * ((1 - v) * patch.p00 + v * patch.p01) +
+             u * ((1 - v) * patch.p10 + v * patch.p11);
     };
-    const double u = i % 2 == 0 ? share(random) : 0.5 + 0.01 * (share(random) - 0.5), v = i % 2 == 0 ? share(random) : u;
+    const double u = i % 2 == 0 ? share(random) : 0.5 + 0.01 * (share(random) - 0.5),
+                 v = i % 2 == 0 ? share(random) : u;
     const dvec3 x = at(u, v), off = x + std::pow(10, -4 * share(random)) * random_vector(random);
     EXPECT_LT(value(patch, x), hidden) << i;
     const double distance = value(patch, off);
-    for (int k = 0; k < 200; ++k) ASSERT_LE(distance, glm::length(off - at(share(random), share(random))) + hidden) << i;
+    for (int k = 0; k < 200; ++k)
+      ASSERT_LE(distance, glm::length(off - at(share(random), share(random))) + hidden) << i;
     ASSERT_LE(distance, glm::length(off - x) + hidden) << i;
   }
 }
 
-// Away from edges the gradient says the same; beside one it is that of the surface asked for, however close the other is.
+// Away from edges the gradient says the same; beside one it is that of the surface asked for,
+// however close the other is.
 TEST(Reference, NormalsOfSurfaces) {
   const Frustum cone = make_frustum({0, 0, 0}, {0, 0, 3}, {2, false, false}, {1, false, false});
   const Frustum bullet = make_frustum({1, 0, 0}, {5, 0, 0}, {1, false, false}, {2, true, false});
@@ -282,19 +304,23 @@ TEST(Reference, NormalsOfSurfaces) {
   const Polyhedron wedge = make_polyhedron({1, 1, 1}, normals, offsets);
   std::mt19937 random(3);
   std::uniform_real_distribution<double> coordinate(-1, 1);
-  for (const Primitive& primitive : {Primitive(cone), Primitive(bullet), Primitive(box), Primitive(wedge)}) {
+  for (const Primitive& primitive :
+       {Primitive(cone), Primitive(bullet), Primitive(box), Primitive(wedge)}) {
     const Ball ball = bounding_ball(primitive);
     std::set<int> seen;
     for (int i = 0; i < 2000; ++i) {
       const auto point = [&] {
-        return ball.center + ball.radius * dvec3(coordinate(random), coordinate(random), coordinate(random));
+        return ball.center +
+               ball.radius * dvec3(coordinate(random), coordinate(random), coordinate(random));
       };
       const dvec3 a = point(), b = point();
       for (const Crossing& hit : crossings(primitive, {a, b - a})) {
         const dvec3 x = a + hit.t * (b - a);
         if (surface_at(primitive, x).margin < 1e-4) continue;
         seen.insert(hit.surface);
-        EXPECT_LT(glm::length(normal_of_surface(primitive, x, hit.surface, 1e-6) - normal_at(primitive, x, 1e-6)), 1e-6);
+        EXPECT_LT(glm::length(normal_of_surface(primitive, x, hit.surface, 1e-6) -
+                              normal_at(primitive, x, 1e-6)),
+                  1e-6);
       }
     }
     EXPECT_EQ(seen.size(), static_cast<std::size_t>(surface_count(primitive)));
@@ -303,28 +329,34 @@ TEST(Reference, NormalsOfSurfaces) {
   EXPECT_LT(glm::length(normal_of_surface(cone, rim, 0, 1e-3) - side), 1e-12);
   EXPECT_LT(glm::length(normal_of_surface(cone, rim, 1, 1e-3) - dvec3(0, 0, -1)), 1e-12);
   EXPECT_LT(glm::length(normal_of_surface(box, {1, 2, 3}, 3, 1e-3) - dvec3(0, 1, 0)), 1e-12);
-  EXPECT_LT(glm::length(normal_of_surface(Sphere{{1, 0, 0}, 2}, {3, 0, 0}, 0, 1e-3) - dvec3(1, 0, 0)), 1e-9);
+  EXPECT_LT(
+      glm::length(normal_of_surface(Sphere{{1, 0, 0}, 2}, {3, 0, 0}, 0, 1e-3) - dvec3(1, 0, 0)),
+      1e-9);
 }
 
 TEST(Reference, CsgByMembership) {
   const auto moved = [](const dvec3& by) { return glm::translate(glm::dmat4(1), by); };
-  const Csg lens = make_csg(Csg::Operation::set_intersection, std::vector<CsgPart>{{Sphere{{0, 0, 0}, 2}, moved({0, 0, -1})},
-                                                                                   {Sphere{{0, 0, 0}, 2}, moved({0, 0, 1})}});
+  const Csg lens = make_csg(Csg::Operation::set_intersection,
+                            std::vector<CsgPart>{{Sphere{{0, 0, 0}, 2}, moved({0, 0, -1})},
+                                                 {Sphere{{0, 0, 0}, 2}, moved({0, 0, 1})}});
   expect_surfaces(lens, {{0, 0, -5}, {0, 0, 1}}, {{4, 1, false}, {6, 0, true}});
   expect_surfaces(lens, {{1.8, 0, -5}, {0, 0, 1}}, {});
-  const Csg hollow = make_csg(Csg::Operation::set_difference,
-                              std::vector<CsgPart>{{Box{{{-2, -2, -2}, {2, 2, 2}}}, glm::dmat4(1)}, {lens, glm::dmat4(1)}});
+  const Csg hollow = make_csg(
+      Csg::Operation::set_difference,
+      std::vector<CsgPart>{{Box{{{-2, -2, -2}, {2, 2, 2}}}, glm::dmat4(1)}, {lens, glm::dmat4(1)}});
   EXPECT_EQ(surface_count(hollow), 8);
-  expect_surfaces(hollow, {{0, 0, -5}, {0, 0, 1}}, {{3, 4, false}, {4, 7, true}, {6, 6, false}, {7, 5, true}});
+  expect_surfaces(hollow, {{0, 0, -5}, {0, 0, 1}},
+                  {{3, 4, false}, {4, 7, true}, {6, 6, false}, {7, 5, true}});
   EXPECT_LT(glm::length(normal_at(hollow, {0, 0, -1}, 1e-6) - dvec3(0, 0, 1)), 1e-6);
   // Touching capsules: no inner surface.
-  const Csg chain = make_csg(Csg::Operation::set_union, std::vector<CsgPart>{{Box{{{0, 0, 0}, {1, 1, 1}}}, glm::dmat4(1)},
-                                                                             {Box{{{0, 0, 0}, {1, 1, 1}}}, moved({1, 0, 0})}});
+  const Csg chain = make_csg(Csg::Operation::set_union,
+                             std::vector<CsgPart>{{Box{{{0, 0, 0}, {1, 1, 1}}}, glm::dmat4(1)},
+                                                  {Box{{{0, 0, 0}, {1, 1, 1}}}, moved({1, 0, 0})}});
   expect_surfaces(chain, {{-1, 0.5, 0.5}, {1, 0, 0}}, {{1, 0, false}, {3, 7, true}});
 }
 
-// All sign changes of the value, by excluding intervals that a 1-Lipschitz function cannot change sign in: no use is made of the
-// operands' own crossings.
+// All sign changes of the value, by excluding intervals that a 1-Lipschitz function cannot change
+// sign in: no use is made of the operands' own crossings.
 TEST(Reference, CsgCrossingsAreTheSignChangesOfTheValue) {
   std::mt19937 random(5);
   std::uniform_real_distribution<double> uniform;
@@ -332,13 +364,16 @@ TEST(Reference, CsgCrossingsAreTheSignChangesOfTheValue) {
   for (int i = 0; i < 300; ++i) {
     std::vector<CsgPart> parts;
     for (int k = 0; k < 4; ++k) {
-      const glm::dmat4 m = glm::scale(glm::rotate(glm::translate(glm::dmat4(1), 0.7 * random_vector(random)), 6 * uniform(random),
-                                                  glm::normalize(random_vector(random))),
-                                      dvec3(0.3 + uniform(random), 0.3 + uniform(random), 0.3 + uniform(random)));
-      const Primitive primitive = k == 0   ? Primitive(Box{{{-1, -1, -1}, {1, 1, 1}}})
-                                  : k == 1 ? Primitive(Sphere{})
-                                  : k == 2 ? Primitive(make_frustum({0, 0, -1}, {0, 0, 1}, {1, false, false}, {0.5, false, false}))
-                                           : Primitive(Capsule{{0, 0, -1}, {0, 0, 1}, 0.5, 0.3});
+      const glm::dmat4 m =
+          glm::scale(glm::rotate(glm::translate(glm::dmat4(1), 0.7 * random_vector(random)),
+                                 6 * uniform(random), glm::normalize(random_vector(random))),
+                     dvec3(0.3 + uniform(random), 0.3 + uniform(random), 0.3 + uniform(random)));
+      const Primitive primitive =
+          k == 0   ? Primitive(Box{{{-1, -1, -1}, {1, 1, 1}}})
+          : k == 1 ? Primitive(Sphere{})
+          : k == 2 ? Primitive(make_frustum({0, 0, -1}, {0, 0, 1}, {1, false, false},
+                                            {0.5, false, false}))
+                   : Primitive(Capsule{{0, 0, -1}, {0, 0, 1}, 0.5, 0.3});
       parts.push_back({primitive, m});
     }
     const auto operation = [&] { return static_cast<Csg::Operation>(i / 7 % 3); };
@@ -388,7 +423,8 @@ TEST(Reference, SolverAgreesWithReferee) {
   std::uniform_real_distribution<double> uniform;
   int hits = 0;
   for (int i = 0; i < 2000; ++i) {
-    const Capsule capsule{random_vector(random), random_vector(random), uniform(random), uniform(random)};
+    const Capsule capsule{random_vector(random), random_vector(random), uniform(random),
+                          uniform(random)};
     const dvec3 origin = 4.0 * random_vector(random);
     const Ray ray{origin, 0.8 * random_vector(random) - origin};
     const auto found = crossings(capsule, ray);
@@ -419,7 +455,8 @@ TEST(Reference, UselessRaysMiss) {
 TEST(SceneReference, InstancesKeepT) {
   Scene scene;
   Shape capsules;
-  capsules.geometry = CapsulesShape{{{0, 0, 0}, {5, 0, 0}}, {{0, 0, 1}, {5, 0, 1}}, {0.5f, 0.5f}, {}, {}};
+  capsules.geometry =
+      CapsulesShape{{{0, 0, 0}, {5, 0, 0}}, {{0, 0, 1}, {5, 0, 1}}, {0.5f, 0.5f}, {}, {}};
   scene.shapes.push_back(capsules);
   Shape sphere;
   sphere.geometry = SphereShape{1};
@@ -428,8 +465,10 @@ TEST(SceneReference, InstancesKeepT) {
   scene.instances.push_back({0, glm::translate(glm::dmat4(1), {10, 0, 2}), {}});
   const SceneReference reference(scene);
   EXPECT_EQ(reference.size(), 3u);
-  const std::vector<Ray> rays = {
-      {{5, 0, -9.5}, {0, 0, 2}}, {{10, 0, -13}, {0, 0, 2}}, {{-9, 0, 0}, {1, 0, 0}}, {{0, 0, 9}, {0, 1, 0}}};
+  const std::vector<Ray> rays = {{{5, 0, -9.5}, {0, 0, 2}},
+                                 {{10, 0, -13}, {0, 0, 2}},
+                                 {{-9, 0, 0}, {1, 0, 0}},
+                                 {{0, 0, 9}, {0, 1, 0}}};
   const auto hits = reference.closest(rays);
   ASSERT_TRUE(hits[0] && hits[1] && hits[2]);
   EXPECT_NEAR(hits[0]->t, 4.5, rounding);
@@ -452,10 +491,12 @@ TEST(SceneReference, SurfacesMaterialsAndNormals) {
   sphere.world_from_object = glm::translate(glm::dmat4(1), {1, 0, 0});
   Shape bitten;
   bitten.geometry =
-      CsgShape{CsgShape::Operation::set_difference, {std::make_shared<const Shape>(box), std::make_shared<const Shape>(sphere)}};
+      CsgShape{CsgShape::Operation::set_difference,
+               {std::make_shared<const Shape>(box), std::make_shared<const Shape>(sphere)}};
   scene.objects.push_back({"bitten", {bitten}, {}});
   // Mirrored in x, twice as long in z.
-  scene.instances.push_back({0, glm::scale(glm::translate(glm::dmat4(1), {5, 0, 0}), {-1, 1, 2}), {}});
+  scene.instances.push_back(
+      {0, glm::scale(glm::translate(glm::dmat4(1), {5, 0, 0}), {-1, 1, 2}), {}});
   Shape tube;
   tube.geometry = OpenCylinderShape{1, -1, 1, caplet::full_turn};
   tube.material = 30;
@@ -466,7 +507,8 @@ TEST(SceneReference, SurfacesMaterialsAndNormals) {
 
   const Ray ray{{-9, 0, 0.1}, {2, 0, 0}};
   const auto hits = reference.all(ray);
-  // The tube is seen from inside alone, then the bite, which is its sphere's inside, then the far face: that of the least x.
+  // The tube is seen from inside alone, then the bite, which is its sphere's inside, then the far
+  // face: that of the least x.
   ASSERT_EQ(hits.size(), 3u);
   EXPECT_NEAR(hits[0].t, 5, rounding);
   EXPECT_EQ(hits[0].material, 30u);
@@ -479,7 +521,9 @@ TEST(SceneReference, SurfacesMaterialsAndNormals) {
   EXPECT_EQ(hits[1].instance, 0u);
   EXPECT_FALSE(hits[1].leaving);
   // The normal is that of the ellipsoid with half axes 1/2 and 1, into its middle.
-  EXPECT_LT(glm::length(reference.normal(hits[1], {4 + chord, 0, 0.1}) + glm::normalize(dvec3(chord / 0.25, 0, 0.1 / 1.0))), 1e-6);
+  EXPECT_LT(glm::length(reference.normal(hits[1], {4 + chord, 0, 0.1}) +
+                        glm::normalize(dvec3(chord / 0.25, 0, 0.1 / 1.0))),
+            1e-6);
   EXPECT_NEAR(hits[2].t, (9 + 6) / 2.0, 10 * rounding);
   EXPECT_EQ(hits[2].surface, 0u);
   EXPECT_EQ(hits[2].material, 10u);

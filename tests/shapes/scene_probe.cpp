@@ -98,10 +98,13 @@ cl::Kernel kernel_of(const char* name, int width, bool has_chains) {
   const std::pair key{width, has_chains};
   auto found = programs.find(key);
   if (found == programs.end()) {
-    const std::string options = "-DCAPLET_REAL_WIDTH=" + std::to_string(width) + (has_chains ? " -DCAPLET_CHAINS" : "");
+    const std::string options =
+        "-DCAPLET_REAL_WIDTH=" + std::to_string(width) + (has_chains ? " -DCAPLET_CHAINS" : "");
     found = programs
-                .emplace(key, Program::from_source(test_device(), "scene probe",
-                                                   flatten_kernels(std::string(scene_parameters) + kernel_text), options))
+                .emplace(key,
+                         Program::from_source(
+                             test_device(), "scene probe",
+                             flatten_kernels(std::string(scene_parameters) + kernel_text), options))
                 .first;
   }
   return found->second.kernel(name);
@@ -119,13 +122,15 @@ std::vector<SceneHit> trace(const FlatScene& scene, const std::vector<RayRecord>
   return hits.read();
 }
 
-std::vector<Walk> walk(const FlatScene& scene, const std::vector<RayRecord>& rays, std::uint32_t most) {
+std::vector<Walk> walk(const FlatScene& scene, const std::vector<RayRecord>& rays,
+                       std::uint32_t most) {
   cl::Kernel kernel = kernel_of("scene_walk", test_width(), scene.has_chains);
   const Buffer<WalkStep> steps(test_device(), rays.size() * most);
   const Buffer<std::uint32_t> counts(test_device(), rays.size());
   const SceneOnDevice buffers(test_device(), scene, test_width());
   const auto ray_buffer = upload(test_device(), rays);
-  buffers.set_arguments(kernel, ray_buffer, steps, counts, static_cast<cl_uint>(most), static_cast<cl_uint>(rays.size()));
+  buffers.set_arguments(kernel, ray_buffer, steps, counts, static_cast<cl_uint>(most),
+                        static_cast<cl_uint>(rays.size()));
   launch(test_device(), kernel, rays.size(), 16);
   const std::vector<WalkStep> all = steps.read();
   const std::vector<std::uint32_t> found = counts.read();

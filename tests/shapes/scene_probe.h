@@ -30,13 +30,15 @@ struct SceneHit {
 };
 static_assert(sizeof(SceneHit) == 96);
 
-Shape shape_of(decltype(Shape::geometry) geometry, const glm::dmat4& world_from_object = glm::dmat4(1));
+Shape shape_of(decltype(Shape::geometry) geometry,
+               const glm::dmat4& world_from_object = glm::dmat4(1));
 
 /// Scenes of these shapes, of one material.
 FlatScene lower_shapes(std::vector<Shape> shapes);
 
 /// `width`: CAPLET_REAL_WIDTH, 8 or 1.
-std::vector<SceneHit> trace(const FlatScene& scene, const std::vector<RayRecord>& rays, int width = test_width());
+std::vector<SceneHit> trace(const FlatScene& scene, const std::vector<RayRecord>& rays,
+                            int width = test_width());
 
 /// A surface that a ray met on its way.
 struct WalkStep {
@@ -45,8 +47,10 @@ struct WalkStep {
 struct Walk {
   std::vector<WalkStep> steps;  // in order
 };
-/// Every ray goes straight on through whatever it meets, from each surface by offset_origin, at most `most` times.
-std::vector<Walk> walk(const FlatScene& scene, const std::vector<RayRecord>& rays, std::uint32_t most);
+/// Every ray goes straight on through whatever it meets, from each surface by offset_origin, at
+/// most `most` times.
+std::vector<Walk> walk(const FlatScene& scene, const std::vector<RayRecord>& rays,
+                       std::uint32_t most);
 
 inline glm::dvec3 vec(const float* p) { return {p[0], p[1], p[2]}; }
 

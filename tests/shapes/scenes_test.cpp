@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Whole scenes of all shapes, lowered, against the scene reference: what is hit, in which order, named by which object, primitive,
-// surface and material. CAPLET_TEST_SCALE=N tries N times as many scenes.
+// Whole scenes of all shapes, lowered, against the scene reference: what is hit, in which order,
+// named by which object, primitive, surface and material. CAPLET_TEST_SCALE=N tries N times as many
+// scenes.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -37,7 +38,8 @@ std::vector<RayRecord> random_rays(std::uint32_t seed, int count) {
   std::vector<RayRecord> out;
   for (int i = 0; i < count; ++i) {
     const dvec3 o = make.uniform(0, 12) * make.direction();
-    const dvec3 d = make.below(8) == 0 ? dvec3(0, 0, 1) : 5 * make.uniform(0, 1) * make.direction() - o;
+    const dvec3 d =
+        make.below(8) == 0 ? dvec3(0, 0, 1) : 5 * make.uniform(0, 1) * make.direction() - o;
     out.push_back(make_ray(o, d * std::pow(10.0, make.uniform(-1, 1))));
   }
   return out;
@@ -48,7 +50,8 @@ struct Tally {
   std::array<std::size_t, reference::kind_names.size()> kinds{};
 };
 
-/// What is hit, where, in which order; of which object, primitive, surface and material; points, normals and uv.
+/// What is hit, where, in which order; of which object, primitive, surface and material; points,
+/// normals and uv.
 void compare(const Scene& scene, const std::vector<RayRecord>& rays, Tally& tally) {
   static const std::vector<Device> devices{test_device()};
   std::mutex mutex;
@@ -64,13 +67,16 @@ void compare(const Scene& scene, const std::vector<RayRecord>& rays, Tally& tall
     for (const verify::Disagreement& wrong : outcome.disagreements)
       if (++tally.failures <= 5) {
         const RayRecord& r = rays[ray.ray];
-        ADD_FAILURE() << wrong.text << fmt::format("\nray {:a} {:a} {:a}  {:a} {:a} {:a}", r.ox, r.oy, r.oz, r.dx, r.dy, r.dz);
+        ADD_FAILURE() << wrong.text
+                      << fmt::format("\nray {:a} {:a} {:a}  {:a} {:a} {:a}", r.ox, r.oy, r.oz, r.dx,
+                                     r.dy, r.dz);
       }
   });
 }
 
 void report(const Tally& tally) {
-  std::printf("%zu rays, %zu crossings, %zu grazing, %zu failures\n", tally.rays, tally.crossings, tally.grazing, tally.failures);
+  std::printf("%zu rays, %zu crossings, %zu grazing, %zu failures\n", tally.rays, tally.crossings,
+              tally.grazing, tally.failures);
   EXPECT_EQ(tally.failures, 0u);
   EXPECT_GT(tally.crossings, tally.rays);
   EXPECT_LT(tally.grazing, tally.rays / 50);
@@ -79,24 +85,30 @@ void report(const Tally& tally) {
 TEST(Scenes, OfAllShapesAgreeWithTheReference) {
   Tally tally;
   for (int i = 0; i < 6 * test_scale(); ++i)
-    compare(random_scene(100 + static_cast<std::uint32_t>(i)), random_rays(200 + static_cast<std::uint32_t>(i), 2000), tally);
+    compare(random_scene(100 + static_cast<std::uint32_t>(i)),
+            random_rays(200 + static_cast<std::uint32_t>(i), 2000), tally);
   report(tally);
-  for (std::size_t k = 0; k < tally.kinds.size(); ++k) EXPECT_GT(tally.kinds[k], 200u) << reference::kind_names[k];
+  for (std::size_t k = 0; k < tally.kinds.size(); ++k)
+    EXPECT_GT(tally.kinds[k], 200u) << reference::kind_names[k];
 }
 
-// Faces that the mesh's normals turn over keep their uvs; capsules of one point have the z axis of their own space.
+// Faces that the mesh's normals turn over keep their uvs; capsules of one point have the z axis of
+// their own space.
 TEST(Scenes, OfTurnedFacesAndBalls) {
   SceneMaker make(5);
   Scene scene;
   scene.materials.push_back({DiffuseMaterial{}, "", {}});
   for (int i = 0; i < 24; ++i) {
-    const glm::vec3 a(make.direction()), b(make.direction()), c(make.direction()), d(make.direction());
+    const glm::vec3 a(make.direction()), b(make.direction()), c(make.direction()),
+        d(make.direction());
     const std::vector<glm::vec3> normals(4, glm::vec3(make.direction()));
     Shape shape;
     shape.world_from_object = make.placement(4);
-    if (i % 3 == 0) shape.geometry = TriangleMeshShape{{a, b, c, d}, {{0, 1, 2}, {1, 2, 3}}, normals, {}};
+    if (i % 3 == 0)
+      shape.geometry = TriangleMeshShape{{a, b, c, d}, {{0, 1, 2}, {1, 2, 3}}, normals, {}};
     if (i % 3 == 1) shape.geometry = BilinearMeshShape{{a, b, c, d}, {{0, 1, 2, 3}}, normals, {}};
-    if (i % 3 == 2) shape.geometry = CapsulesShape{{a, b}, {a, b + 0.1f * c}, {0.6f, 0.5f}, {0.3f, 0.9f}, {}};
+    if (i % 3 == 2)
+      shape.geometry = CapsulesShape{{a, b}, {a, b + 0.1f * c}, {0.6f, 0.5f}, {0.3f, 0.9f}, {}};
     if (i % 6 == 5) std::get<CapsulesShape>(shape.geometry).u = {{0.25f, 0.5f}, {0.5f, 2}};
     scene.shapes.push_back(shape);
   }
@@ -105,8 +117,8 @@ TEST(Scenes, OfTurnedFacesAndBalls) {
   report(tally);
 }
 
-// Eight primitives at a time or one: the same crossings of the same primitives. Contraction may differ between the two, so that
-// rays that graze may differ in both.
+// Eight primitives at a time or one: the same crossings of the same primitives. Contraction may
+// differ between the two, so that rays that graze may differ in both.
 TEST(Scenes, AreTheSameForBothWidths) {
   int rays_compared = 0, different = 0, crossings = 0;
   for (std::uint32_t i = 0; i < 4; ++i) {
@@ -146,18 +158,25 @@ TEST(Scenes, LimitsOfTheRay) {
     at[i].t_max = std::nextafter(t, HUGE_VALF);  // just inside
     beyond[i].t_min = t;                         // those behind it
   }
-  const auto lists_below = list_tracer().trace(flat, below, capacity), lists_at = list_tracer().trace(flat, at, capacity),
+  const auto lists_below = list_tracer().trace(flat, below, capacity),
+             lists_at = list_tracer().trace(flat, at, capacity),
              lists_beyond = list_tracer().trace(flat, beyond, capacity);
   int counted = 0, odd = 0;
   for (std::size_t i = 0; i < rays.size(); ++i) {
     if (all[i].hits.empty()) continue;
     ++counted;
     const float t = all[i].hits[all[i].hits.size() / 2].t;
-    const auto among = [&](const auto& keep) { return std::count_if(all[i].hits.begin(), all[i].hits.end(), keep); };
-    EXPECT_EQ(lists_below[i].hits.size(), among([&](const HitRecord& hit) { return hit.t < t; })) << i;
-    EXPECT_EQ(lists_at[i].hits.size(), among([&](const HitRecord& hit) { return hit.t <= t; })) << i;
-    // Csg shapes take crossings closer together than their bounds as one, and that as behind when it begins there.
-    odd += lists_beyond[i].hits.size() != static_cast<std::size_t>(among([&](const HitRecord& hit) { return hit.t > t; }));
+    const auto among = [&](const auto& keep) {
+      return std::count_if(all[i].hits.begin(), all[i].hits.end(), keep);
+    };
+    EXPECT_EQ(lists_below[i].hits.size(), among([&](const HitRecord& hit) { return hit.t < t; }))
+        << i;
+    EXPECT_EQ(lists_at[i].hits.size(), among([&](const HitRecord& hit) { return hit.t <= t; }))
+        << i;
+    // Csg shapes take crossings closer together than their bounds as one, and that as behind when
+    // it begins there.
+    odd += lists_beyond[i].hits.size() !=
+           static_cast<std::size_t>(among([&](const HitRecord& hit) { return hit.t > t; }));
     for (const RayList* list : {&lists_below[i], &lists_at[i], &lists_beyond[i]}) {
       EXPECT_EQ(list->any, !list->hits.empty()) << i;
       if (!list->hits.empty()) {
@@ -169,8 +188,9 @@ TEST(Scenes, LimitsOfTheRay) {
   EXPECT_LE(odd, counted / 100);
 }
 
-// Rays go to object space unnormalised: t is one measure for all. Were directions normalised there, a shape stretched along the
-// ray by s would have its t divided by s, and all but the first would be out of order.
+// Rays go to object space unnormalised: t is one measure for all. Were directions normalised there,
+// a shape stretched along the ray by s would have its t divided by s, and all but the first would
+// be out of order.
 TEST(Scenes, StretchedNeighboursAreInOrder) {
   SceneMaker make(7);
   Scene scene;
@@ -182,7 +202,8 @@ TEST(Scenes, StretchedNeighboursAreInOrder) {
     const double half = std::pow(10.0, make.uniform(-1.5, 1.5)), gap = make.uniform(0.01, 0.2);
     Shape ball;
     ball.geometry = SphereShape{1};
-    const dmat4 placed = glm::scale(glm::translate(dmat4(1), dvec3(0, 0, z + gap + half)), dvec3(1, 1, half));
+    const dmat4 placed =
+        glm::scale(glm::translate(dmat4(1), dvec3(0, 0, z + gap + half)), dvec3(1, 1, half));
     expected.push_back(z + gap);
     expected.push_back(z + gap + 2 * half);
     z = expected.back();
@@ -214,14 +235,15 @@ TEST(Scenes, StretchedNeighboursAreInOrder) {
       const std::vector<RayRecord> ray = {make_ray({0, 0, start}, {0, 0, speed})};
       const RayList next = list_tracer().trace(lower(scene), ray, capacity)[0];
       ASSERT_FALSE(next.hits.empty());
-      EXPECT_NEAR(double(next.closest.t) * speed, expected[i + 1] - start, 1e-5 * (expected[i + 1] + 1));
+      EXPECT_NEAR(double(next.closest.t) * speed, expected[i + 1] - start,
+                  1e-5 * (expected[i + 1] + 1));
       EXPECT_EQ(next.hits.size(), expected.size() - i - 1);
     }
   }
 }
 
-// A ray from so far that its rounding is larger than the solid, and planes that bound it nowhere: a face's point was led along a
-// line to where those planes meet, 1e37 away.
+// A ray from so far that its rounding is larger than the solid, and planes that bound it nowhere: a
+// face's point was led along a line to where those planes meet, 1e37 away.
 TEST(Scenes, PolyhedraSeenFromAfarAreMetWhereTheyAre) {
   const glm::vec3 center(9.0625f, 8.4375f, 8.91458321f);
   const std::array planes = {glm::vec4(-1, 0, 0, 2.6875),
@@ -245,7 +267,8 @@ TEST(Scenes, PolyhedraSeenFromAfarAreMetWhereTheyAre) {
   ASSERT_EQ(std::bit_cast<std::uint32_t>(scene.leaves.at(head + 3)), planes.size());
   for (int i = 0; i < 3; ++i) scene.leaves[head + static_cast<std::size_t>(i)] = center[i];
   for (std::size_t i = 0; i < planes.size(); ++i)
-    for (int k = 0; k < 4; ++k) scene.leaves[head + 8 + 4 * i + static_cast<std::size_t>(k)] = planes[i][k];
+    for (int k = 0; k < 4; ++k)
+      scene.leaves[head + 8 + 4 * i + static_cast<std::size_t>(k)] = planes[i][k];
 
   std::mt19937 random(5);
   std::uniform_real_distribution<double> coordinate(-1, 1);
@@ -253,7 +276,8 @@ TEST(Scenes, PolyhedraSeenFromAfarAreMetWhereTheyAre) {
   for (int i = 0; i < 20'000; ++i) {
     const double far = std::pow(10.0, 13 + 4 * std::abs(coordinate(random)));
     rays.push_back(make_ray(dvec3(far), dvec3(-far)));
-    rays.push_back(make_ray(far * dvec3(coordinate(random), coordinate(random), coordinate(random)), dvec3(0)));
+    rays.push_back(make_ray(far * dvec3(coordinate(random), coordinate(random), coordinate(random)),
+                            dvec3(0)));
     rays.back().dx = -rays.back().ox;
     rays.back().dy = -rays.back().oy;
     rays.back().dz = -rays.back().oz;
@@ -263,8 +287,8 @@ TEST(Scenes, PolyhedraSeenFromAfarAreMetWhereTheyAre) {
     for (const RayList& list : list_tracer(width).trace(scene, rays, 8))
       for (const CrossingSurface& surface : list.surfaces) {
         ++crossings;
-        // All corners are within 7 of the centre. A face's point is sought from within twice that in every coordinate, and within
-        // 8 times along a line.
+        // All corners are within 7 of the centre. A face's point is sought from within twice that
+        // in every coordinate, and within 8 times along a line.
         EXPECT_LT(glm::length(vec(surface.p) - dvec3(center)), 7 * (2 * std::sqrt(3.0) + 8));
         EXPECT_TRUE(std::isfinite(surface.error));
       }

@@ -32,16 +32,18 @@ struct Tally {
     std::string data;
     for (const float x : p.data) data += fmt::format("{:a} ", x);
     ADD_FAILURE() << what << "\nshape " << p.shape << ": " << data
-                  << fmt::format("\nray: {:a} {:a} {:a}  {:a} {:a} {:a}", r.ox, r.oy, r.oz, r.dx, r.dy, r.dz);
+                  << fmt::format("\nray: {:a} {:a} {:a}  {:a} {:a} {:a}", r.ox, r.oy, r.oz, r.dx,
+                                 r.dy, r.dz);
   }
 };
 
 dvec3 f_point(const reference::Ray& ray, double t) { return ray.origin + t * ray.direction; }
 
-// A shape that may be crossed many times: on its way from 0 to `end`, where it is said to leave or to enter, the ray must not
-// have been further than `slack` on the other side of the surface. What is thinner counts as one event.
-void check_way(const auto& f, const std::vector<reference::Crossing>& crossings, double end, bool leaving, double slack,
-               const auto& fail) {
+// A shape that may be crossed many times: on its way from 0 to `end`, where it is said to leave or
+// to enter, the ray must not have been further than `slack` on the other side of the surface. What
+// is thinner counts as one event.
+void check_way(const auto& f, const std::vector<reference::Crossing>& crossings, double end,
+               bool leaving, double slack, const auto& fail) {
   for (std::size_t i = 0; i + 1 < crossings.size(); ++i) {
     const double low = std::max(0.0, crossings[i].t), high = std::min(end, crossings[i + 1].t);
     if (!(low < high) || crossings[i].leaving != leaving) continue;
@@ -54,16 +56,19 @@ void check_way(const auto& f, const std::vector<reference::Crossing>& crossings,
       }
   }
   // Before the first crossing and behind the last all is outside.
-  if (leaving && !crossings.empty() && crossings[0].t > 0 && f(0.5 * std::min(end, crossings[0].t)) > slack)
+  if (leaving && !crossings.empty() && crossings[0].t > 0 &&
+      f(0.5 * std::min(end, crossings[0].t)) > slack)
     fail(crossings[0].t, f(0.5 * std::min(end, crossings[0].t)) / slack);
 }
 
-void check_ray(const FlatPrimitive& p, const reference::Primitive& reference, const RayRecord& ray, const Probed& probed,
-               Tally& tally) {
+void check_ray(const FlatPrimitive& p, const reference::Primitive& reference, const RayRecord& ray,
+               const Probed& probed, Tally& tally) {
   const reference::Ray exact = reference_ray(ray);
   const double bound = surface_bound(p, reference, ray);
   const double speed = glm::length(exact.direction);
-  const auto f = [&](double t) { return reference::value(reference, exact.origin + t * exact.direction); };
+  const auto f = [&](double t) {
+    return reference::value(reference, exact.origin + t * exact.direction);
+  };
   const auto expected = reference::closest(reference, exact);
   const bool hit = probed.hit.slot != CAPLET_NONE;
   if (probed.any != hit) tally.fail("any hit is not the existence of a closest one", p, ray);
@@ -81,27 +86,30 @@ void check_ray(const FlatPrimitive& p, const reference::Primitive& reference, co
       tally.worst = std::max(tally.worst, distance / bound);
     }
     if (!(t > 0)) tally.fail(fmt::format("t = {}", t), p, ray);
-    // Within the bound of its plane a triangle is seen edge-on: the kernel then reports a point of the ray beside it.
-    if (!(distance <= bound) && !(p.shape == shape_triangle && distance <= extent_of(p, reference).reach &&
-                                  reference::referee(reference, exact, bound) == reference::Verdict::tangent))
+    // Within the bound of its plane a triangle is seen edge-on: the kernel then reports a point of
+    // the ray beside it.
+    if (!(distance <= bound) &&
+        !(p.shape == shape_triangle && distance <= extent_of(p, reference).reach &&
+          reference::referee(reference, exact, bound) == reference::Verdict::tangent))
       tally.fail(fmt::format("the hit is {} off the surface, allowed {}", distance, bound), p, ray);
   }
   if (hit && surface_count(reference) > 1) {
     const auto number = static_cast<int>(probed.hit.surface & CAPLET_SURFACE_MASK);
-    const double off = reference::distance_from_surface(reference, f_point(exact, probed.hit.t), number);
+    const double off =
+        reference::distance_from_surface(reference, f_point(exact, probed.hit.t), number);
     if (!(off <= 2 * bound))
-      tally.fail(fmt::format("the hit is said to be on surface {}, {} away; bound {}", number, off, bound), p, ray);
+      tally.fail(
+          fmt::format("the hit is said to be on surface {}, {} away; bound {}", number, off, bound),
+          p, ray);
   }
   if (std::holds_alternative<reference::Csg>(reference)) {
-    check_way(
-        f, reference::crossings(reference, exact), hit ? double(probed.hit.t) : HUGE_VAL, hit && leaving, 2 * bound,
-        [&](double t, double excess) {
-          tally.fail(
-              fmt::format(
-                  "hit {} at {} leaving {}: before that the ray crosses the surface at {}, and goes {} of what is allowed beyond",
-                  hit, probed.hit.t, leaving, t, excess),
-              p, ray);
-        });
+    check_way(f, reference::crossings(reference, exact), hit ? double(probed.hit.t) : HUGE_VAL,
+              hit && leaving, 2 * bound, [&](double t, double excess) {
+                tally.fail(fmt::format("hit {} at {} leaving {}: before that the ray crosses the "
+                                       "surface at {}, and goes {} of what is allowed beyond",
+                                       hit, probed.hit.t, leaving, t, excess),
+                           p, ray);
+              });
     return;
   }
   const bool same = hit == expected.has_value() && (!hit || leaving == expected->leaving);
@@ -110,8 +118,11 @@ void check_ray(const FlatPrimitive& p, const reference::Primitive& reference, co
     const double middle = f(0.5 * (expected->t + probed.hit.t));
     // A patch that is seen edge-on has crossings without number.
     if (!(std::abs(middle) <= 2 * bound) &&
-        !(p.shape == shape_bilinear && reference::referee(reference, exact, bound) == reference::Verdict::tangent))
-      tally.fail(fmt::format("t = {}, the reference says {} (lengths of {})", probed.hit.t, expected->t, speed), p, ray);
+        !(p.shape == shape_bilinear &&
+          reference::referee(reference, exact, bound) == reference::Verdict::tangent))
+      tally.fail(fmt::format("t = {}, the reference says {} (lengths of {})", probed.hit.t,
+                             expected->t, speed),
+                 p, ray);
   }
   if (!same) {
     {
@@ -121,25 +132,31 @@ void check_ray(const FlatPrimitive& p, const reference::Primitive& reference, co
     if (begins_there) return;
     const reference::Verdict verdict = reference::referee(reference, exact, bound);
     if (verdict != reference::Verdict::tangent)
-      tally.fail(fmt::format("hit {} leaving {}, the reference says hit {} leaving {}, the referee {}; margin {} bound {}", hit,
-                             leaving, expected.has_value(), expected && expected->leaving,
-                             verdict == reference::Verdict::hit ? "hit" : "miss", reference::margin(reference, exact), bound),
+      tally.fail(fmt::format("hit {} leaving {}, the reference says hit {} leaving {}, the referee "
+                             "{}; margin {} bound {}",
+                             hit, leaving, expected.has_value(), expected && expected->leaving,
+                             verdict == reference::Verdict::hit ? "hit" : "miss",
+                             reference::margin(reference, exact), bound),
                  p, ray);
   }
 }
 
 class ShapeAgainstReference : public testing::TestWithParam<ShapeKind> {};
 
-void compare(const ShapeKind& kind, int width, bool hard, int primitives, int rays, std::uint32_t seed) {
+void compare(const ShapeKind& kind, int width, bool hard, int primitives, int rays,
+             std::uint32_t seed) {
   CaseMaker maker(seed);
   const CaseSet cases = maker.set(kind.shape, hard, test_scale() * primitives, rays);
   const Probe probe(test_device(), width, cases.primitives, cases.leaves);
   const std::vector<Probed> probed = probe.trace(cases.which, cases.rays);
   Tally tally;
-  tbb::parallel_for(std::size_t{0}, cases.rays.size(),
-                    [&](std::size_t i) { check_ray(cases.primitive(i), cases.reference(i), cases.rays[i], probed[i], tally); });
-  std::printf("%zu rays, %d hits, %d leaving, %d disagreements, %d failures, worst %.3f of the bound\n", cases.rays.size(),
-              tally.hits, tally.leaving, tally.disagreements, tally.failures, tally.worst);
+  tbb::parallel_for(std::size_t{0}, cases.rays.size(), [&](std::size_t i) {
+    check_ray(cases.primitive(i), cases.reference(i), cases.rays[i], probed[i], tally);
+  });
+  std::printf(
+      "%zu rays, %d hits, %d leaving, %d disagreements, %d failures, worst %.3f of the bound\n",
+      cases.rays.size(), tally.hits, tally.leaving, tally.disagreements, tally.failures,
+      tally.worst);
   EXPECT_EQ(tally.failures, 0);
   EXPECT_GT(tally.hits, static_cast<int>(cases.rays.size() / 5));
   if (reference::is_solid(cases.references[0])) {
@@ -147,7 +164,8 @@ void compare(const ShapeKind& kind, int width, bool hard, int primitives, int ra
   }
 }
 
-// What of a polyhedron lies in `leaves`: centre, offsets (the fourth of each plane) and what else the header holds of lengths.
+// What of a polyhedron lies in `leaves`: centre, offsets (the fourth of each plane) and what else
+// the header holds of lengths.
 void scale_polyhedron(FlatPrimitive& p, float scale, std::vector<float>& leaves) {
   float* data = &leaves.at(std::bit_cast<std::uint32_t>(p.data[0]));
   const auto count = std::bit_cast<std::uint32_t>(data[3]);
@@ -162,10 +180,12 @@ TEST_P(ShapeAgainstReference, OneAtATime) { compare(GetParam(), 1, true, 200, 50
 
 // Scaling by a power of two scales every intermediate result exactly.
 TEST_P(ShapeAgainstReference, ScaledByPowersOfTwo) {
-  if (GetParam().shape == shape_csg) GTEST_SKIP() << "bounds inside are rounded outward, which does not scale";
+  if (GetParam().shape == shape_csg)
+    GTEST_SKIP() << "bounds inside are rounded outward, which does not scale";
   CaseMaker maker(21);
   CaseSet cases = maker.set(GetParam().shape, false, 200, 50);
-  const auto first = Probe(test_device(), test_width(), cases.primitives, cases.leaves).trace(cases.which, cases.rays);
+  const auto first = Probe(test_device(), test_width(), cases.primitives, cases.leaves)
+                         .trace(cases.which, cases.rays);
   for (const float scale : {0x1p-7f, 0x1p9f}) {
     CaseSet scaled = cases;
     for (FlatPrimitive& p : scaled.primitives) {
@@ -174,13 +194,15 @@ TEST_P(ShapeAgainstReference, ScaledByPowersOfTwo) {
       if (p.shape == shape_polyhedron) scale_polyhedron(p, scale, scaled.leaves);
     }
     for (RayRecord& r : scaled.rays) r.ox *= scale, r.oy *= scale, r.oz *= scale;
-    const auto second = Probe(test_device(), test_width(), scaled.primitives, scaled.leaves).trace(scaled.which, scaled.rays);
+    const auto second = Probe(test_device(), test_width(), scaled.primitives, scaled.leaves)
+                            .trace(scaled.which, scaled.rays);
     for (std::size_t i = 0; i < first.size(); ++i) {
       ASSERT_EQ(first[i].hit.slot == CAPLET_NONE, second[i].hit.slot == CAPLET_NONE)
           << i
-          << fmt::format(" ray {} {} {} {} {} {}", cases.rays[i].ox, cases.rays[i].oy, cases.rays[i].oz, cases.rays[i].dx,
-                         cases.rays[i].dy, cases.rays[i].dz)
-          << " t " << first[i].hit.t << " or " << second[i].hit.t << " scale " << scale << " distance "
+          << fmt::format(" ray {} {} {} {} {} {}", cases.rays[i].ox, cases.rays[i].oy,
+                         cases.rays[i].oz, cases.rays[i].dx, cases.rays[i].dy, cases.rays[i].dz)
+          << " t " << first[i].hit.t << " or " << second[i].hit.t << " scale " << scale
+          << " distance "
           << reference::value(cases.reference(i), reference_ray(cases.rays[i]).origin);
       ASSERT_EQ(first[i].hit.surface, second[i].hit.surface) << i;
       if (first[i].hit.slot != CAPLET_NONE) {
@@ -190,13 +212,17 @@ TEST_P(ShapeAgainstReference, ScaledByPowersOfTwo) {
   }
 }
 
-// Coordinates on a grid of 2^-9, shifted by whole numbers: differences are exact, so hits are the same bits.
+// Coordinates on a grid of 2^-9, shifted by whole numbers: differences are exact, so hits are the
+// same bits.
 TEST_P(ShapeAgainstReference, Shifted) {
   CaseMaker maker(22);
   CaseSet cases = maker.set(GetParam().shape, false, 200, 50);
   const int coordinates = coordinate_count(cases.primitives[0]);
-  if (coordinates == 0) GTEST_SKIP() << "stays around its axis, or around a centre made of its bounds";
-  const auto grid = [](float& x) { x = std::round(std::clamp(x, -4000.f, 4000.f) * 0x1p9f) * 0x1p-9f; };
+  if (coordinates == 0)
+    GTEST_SKIP() << "stays around its axis, or around a centre made of its bounds";
+  const auto grid = [](float& x) {
+    x = std::round(std::clamp(x, -4000.f, 4000.f) * 0x1p9f) * 0x1p-9f;
+  };
   for (FlatPrimitive& p : cases.primitives)
     for (int i = 0; i < coordinates; ++i) grid(p.data[i]);
   for (RayRecord& r : cases.rays) grid(r.ox), grid(r.oy), grid(r.oz);
@@ -205,8 +231,10 @@ TEST_P(ShapeAgainstReference, Shifted) {
   for (FlatPrimitive& p : shifted.primitives)
     for (int i = 0; i < coordinates; ++i) p.data[i] += shift[i % 3];
   for (RayRecord& r : shifted.rays) r.ox += shift[0], r.oy += shift[1], r.oz += shift[2];
-  const auto first = Probe(test_device(), test_width(), cases.primitives).trace(cases.which, cases.rays);
-  const auto second = Probe(test_device(), test_width(), shifted.primitives).trace(shifted.which, shifted.rays);
+  const auto first =
+      Probe(test_device(), test_width(), cases.primitives).trace(cases.which, cases.rays);
+  const auto second =
+      Probe(test_device(), test_width(), shifted.primitives).trace(shifted.which, shifted.rays);
   int hits = 0;
   for (std::size_t i = 0; i < first.size(); ++i) {
     ASSERT_EQ(first[i].hit.surface, second[i].hit.surface) << i;
@@ -235,8 +263,8 @@ TEST_P(ShapeAgainstReference, UselessRaysMiss) {
   rays.push_back(backwards);
   backwards.t_min = 0;
   backwards.t_max = nan;
-  const auto probed =
-      Probe(test_device(), test_width(), cases.primitives, cases.leaves).trace(std::vector<std::uint32_t>(rays.size(), 0), rays);
+  const auto probed = Probe(test_device(), test_width(), cases.primitives, cases.leaves)
+                          .trace(std::vector<std::uint32_t>(rays.size(), 0), rays);
   for (std::size_t i = 0; i < rays.size(); ++i) {
     EXPECT_EQ(probed[i].hit.slot, CAPLET_NONE) << i;
     EXPECT_EQ(probed[i].hit.t, inf) << i;
@@ -244,7 +272,8 @@ TEST_P(ShapeAgainstReference, UselessRaysMiss) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Kinds, ShapeAgainstReference, testing::ValuesIn(shape_kinds().begin(), shape_kinds().end()),
+INSTANTIATE_TEST_SUITE_P(Kinds, ShapeAgainstReference,
+                         testing::ValuesIn(shape_kinds().begin(), shape_kinds().end()),
                          [](const auto& instance) { return std::string(instance.param.name); });
 
 TEST(ShapeKinds, EveryShapeIsOnTrial) {
@@ -260,14 +289,17 @@ TEST(ShapeKinds, EveryShapeIsOnTrial) {
 
 // Each kernel is within its bound of the same surface.
 void expect_same(const CaseSet& a, const CaseSet& b) {
-  const auto first = Probe(test_device(), test_width(), a.primitives, a.leaves).trace(a.which, a.rays);
-  const auto second = Probe(test_device(), test_width(), b.primitives, b.leaves).trace(b.which, b.rays);
+  const auto first =
+      Probe(test_device(), test_width(), a.primitives, a.leaves).trace(a.which, a.rays);
+  const auto second =
+      Probe(test_device(), test_width(), b.primitives, b.leaves).trace(b.which, b.rays);
   int hits = 0;
   for (std::size_t i = 0; i < first.size(); ++i) {
     const FlatPrimitive& p = a.primitives[a.which[i]];
     const reference::Primitive& reference = a.reference(i);
     const reference::Ray exact = reference_ray(a.rays[i]);
-    const double bound = surface_bound(p, reference, a.rays[i]) + surface_bound(b.primitive(i), b.reference(i), b.rays[i]);
+    const double bound = surface_bound(p, reference, a.rays[i]) +
+                         surface_bound(b.primitive(i), b.reference(i), b.rays[i]);
     const bool hit = first[i].hit.slot != CAPLET_NONE, other = second[i].hit.slot != CAPLET_NONE;
     if (hit != other || first[i].hit.surface != second[i].hit.surface) {
       ASSERT_TRUE(std::abs(reference::value(reference, exact.origin)) <= bound ||
@@ -276,7 +308,9 @@ void expect_same(const CaseSet& a, const CaseSet& b) {
     } else if (hit) {
       // Between both parameters the ray stays near the surface: the same crossing.
       const double middle = 0.5 * (double(first[i].hit.t) + double(second[i].hit.t));
-      EXPECT_LE(std::abs(reference::value(reference, exact.origin + middle * exact.direction)), bound) << i;
+      EXPECT_LE(std::abs(reference::value(reference, exact.origin + middle * exact.direction)),
+                bound)
+          << i;
       ++hits;
     }
   }
@@ -326,33 +360,43 @@ TEST(ShapeRelations, EqualRadiiMakeACapsule) {
 
 // A cylinder's and a cone's surfaces are named by their ends.
 void expect_same_but_named(const CaseSet& a, CaseSet b, const auto& renamed) {
-  const auto first = Probe(test_device(), test_width(), a.primitives, a.leaves).trace(a.which, a.rays);
-  const auto second = Probe(test_device(), test_width(), b.primitives, b.leaves).trace(b.which, b.rays);
+  const auto first =
+      Probe(test_device(), test_width(), a.primitives, a.leaves).trace(a.which, a.rays);
+  const auto second =
+      Probe(test_device(), test_width(), b.primitives, b.leaves).trace(b.which, b.rays);
   int hits = 0, odd = 0, wrong = 0, misnamed = 0;
   for (std::size_t i = 0; i < first.size(); ++i) {
     const reference::Ray exact = reference_ray(a.rays[i]);
     const double bound = surface_bound(a.primitive(i), a.reference(i), a.rays[i]);
     const bool hit = first[i].hit.slot != CAPLET_NONE, other = second[i].hit.slot != CAPLET_NONE;
-    const auto at = [&](const Probed& probed) { return exact.origin + double(probed.hit.t) * exact.direction; };
+    const auto at = [&](const Probed& probed) {
+      return exact.origin + double(probed.hit.t) * exact.direction;
+    };
     if (!hit || !other || (first[i].hit.surface ^ second[i].hit.surface) > CAPLET_SURFACE_MASK) {
       if (hit == other && !hit) continue;
       ++odd;
-      const bool may_be = std::abs(reference::value(a.reference(i), exact.origin)) <= bound ||
-                          reference::referee(a.reference(i), exact, bound) == reference::Verdict::tangent;
+      const bool may_be =
+          std::abs(reference::value(a.reference(i), exact.origin)) <= bound ||
+          reference::referee(a.reference(i), exact, bound) == reference::Verdict::tangent;
       if (!may_be && ++wrong <= 5)
-        ADD_FAILURE() << "ray " << i << ": hit " << hit << " and " << other << ": " << described(a.primitive(i), a.rays[i]);
+        ADD_FAILURE() << "ray " << i << ": hit " << hit << " and " << other << ": "
+                      << described(a.primitive(i), a.rays[i]);
       continue;
     }
     ++hits;
     // Between both parameters the ray stays near the surface: the same crossing.
-    if (std::abs(reference::value(a.reference(i), 0.5 * (at(first[i]) + at(second[i])))) > 2 * bound && ++wrong <= 5)
+    if (std::abs(reference::value(a.reference(i), 0.5 * (at(first[i]) + at(second[i])))) >
+            2 * bound &&
+        ++wrong <= 5)
       ADD_FAILURE() << "ray " << i << ": t " << first[i].hit.t << " and " << second[i].hit.t;
     // Both names have to do, each for the other's point.
     const auto number = static_cast<int>(first[i].hit.surface & CAPLET_SURFACE_MASK);
     const auto other_number = static_cast<int>(second[i].hit.surface & CAPLET_SURFACE_MASK);
     if (other_number == renamed(number)) continue;
-    const double off = reference::distance_from_surface(b.reference(i), at(first[i]), renamed(number));
-    const double other_off = reference::distance_from_surface(b.reference(i), at(second[i]), other_number);
+    const double off =
+        reference::distance_from_surface(b.reference(i), at(first[i]), renamed(number));
+    const double other_off =
+        reference::distance_from_surface(b.reference(i), at(second[i]), other_number);
     if (std::max(off, other_off) > 2 * bound && ++misnamed <= 5)
       ADD_FAILURE() << "ray " << i << ": surfaces " << number << " and " << other_number;
   }
@@ -393,10 +437,14 @@ TEST(ShapeRelations, ConesOfEqualRadiiAreCylinders) {
 
 TEST(ShapeRelations, RoundCylindersAreCapsules) {
   CaseMaker maker(37);
-  const CaseSet capsules = maker.set(shape_capsule, true, 200, 50), tapered = maker.set(shape_tapered_capsule, true, 200, 50);
+  const CaseSet capsules = maker.set(shape_capsule, true, 200, 50),
+                tapered = maker.set(shape_tapered_capsule, true, 200, 50);
   CaseSet cylinders = capsules, cones = tapered;
-  // Far from the origin a short axis may vanish, and validation refuses cylinders and cones without one.
-  const auto has_axis = [](const FlatPrimitive& p) { return !std::equal(p.data, p.data + 3, p.data + 3); };
+  // Far from the origin a short axis may vanish, and validation refuses cylinders and cones without
+  // one.
+  const auto has_axis = [](const FlatPrimitive& p) {
+    return !std::equal(p.data, p.data + 3, p.data + 3);
+  };
   for (FlatPrimitive& p : cylinders.primitives) {
     if (!has_axis(p)) continue;
     p.shape = shape_cylinder;
@@ -488,13 +536,15 @@ TEST(ShapeRelations, ShapesWithoutRadius) {
       if (p.shape == shape_partial_disk) p.data[1] = p.data[2] = 0;
       if (p.shape == shape_bilinear) std::copy(p.data, p.data + 6, p.data + 6);
     }
-    const auto probed = Probe(test_device(), test_width(), cases.primitives, cases.leaves).trace(cases.which, cases.rays);
+    const auto probed = Probe(test_device(), test_width(), cases.primitives, cases.leaves)
+                            .trace(cases.which, cases.rays);
     for (std::size_t i = 0; i < probed.size(); ++i) {
       ASSERT_EQ(probed[i].any, probed[i].hit.slot != CAPLET_NONE);
       ASSERT_FALSE(std::isnan(probed[i].hit.t));
       if (probed[i].hit.slot == CAPLET_NONE) continue;
       const SurfaceOut& s = probed[i].surface;
-      for (int k = 0; k < 3; ++k) ASSERT_TRUE(std::isfinite(s.p[k]) && std::isfinite(s.ng[k]) && std::isfinite(s.dpdu[k]));
+      for (int k = 0; k < 3; ++k)
+        ASSERT_TRUE(std::isfinite(s.p[k]) && std::isfinite(s.ng[k]) && std::isfinite(s.dpdu[k]));
       ASSERT_TRUE(std::isfinite(s.error) && std::isfinite(s.u) && std::isfinite(s.v));
     }
   }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Surface points on the device: on the surface within the claimed error, inside the box, normals and parametrisation against
-// differences, and rays that leave a surface without meeting it again.
+// Surface points on the device: on the surface within the claimed error, inside the box, normals
+// and parametrisation against differences, and rays that leave a surface without meeting it again.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -29,19 +29,24 @@ bool is_hit(const Probed& probed) { return probed.hit.slot != CAPLET_NONE; }
 
 class SurfacePoints : public testing::TestWithParam<ShapeKind> {};
 
-// How far (about) one may go from a surface point of a solid or of a curved open shape before the normal turns by a radian: the
-// least radius of curvature, the distance from a cone's axis, the distance from an edge.
+// How far (about) one may go from a surface point of a solid or of a curved open shape before the
+// normal turns by a radian: the least radius of curvature, the distance from a cone's axis, the
+// distance from an edge.
 double feature_size(const reference::Primitive& reference, const dvec3& x) {
   const double ball = reference::bounding_ball(reference).radius;
   if (const auto* sphere = std::get_if<reference::Sphere>(&reference)) return sphere->radius;
   if (const auto* sphere = std::get_if<reference::PartialSphere>(&reference)) return sphere->radius;
-  if (const auto* cylinder = std::get_if<reference::OpenCylinder>(&reference)) return cylinder->radius;
-  if (const auto* capsule = std::get_if<reference::Capsule>(&reference)) return std::min(capsule->radius0, capsule->radius1);
+  if (const auto* cylinder = std::get_if<reference::OpenCylinder>(&reference))
+    return cylinder->radius;
+  if (const auto* capsule = std::get_if<reference::Capsule>(&reference))
+    return std::min(capsule->radius0, capsule->radius1);
   const reference::SurfaceAt at = reference::surface_at(reference, x);
   if (const auto* s = std::get_if<reference::Frustum>(&reference)) {
     const double across = glm::length(glm::cross(x - s->p0, s->axis));
     const auto end = static_cast<std::size_t>(std::max(at.surface - 1, 0));
-    return std::min(at.margin, at.surface == 0 ? across : s->ends[end].round ? s->ends[end].radius : ball);
+    return std::min(at.margin, at.surface == 0      ? across
+                               : s->ends[end].round ? s->ends[end].radius
+                                                    : ball);
   }
   if (const auto* csg = std::get_if<reference::Csg>(&reference))
     for (const reference::CsgOperand& operand : csg->body->operands) {
@@ -53,7 +58,8 @@ double feature_size(const reference::Primitive& reference, const dvec3& x) {
       double least = 0;
       for (int c = 0; c < 3; ++c) least += glm::dot(outward[c], outward[c]);
       const double condition = operand.stretch * std::sqrt(least);
-      return std::min(at.margin, feature_size(operand.primitive, local) / (operand.stretch * condition * condition));
+      return std::min(at.margin, feature_size(operand.primitive, local) /
+                                     (operand.stretch * condition * condition));
     }
   return std::min(at.margin, ball);
 }
@@ -68,8 +74,9 @@ std::string described(const FlatPrimitive& p) {
   return out;
 }
 
-// How much the normal of a bilinear patch may be off where its point is off by `error`: by the rounding of the edges, eps |e| |e|
-// over the area they span there, and by moving over the patch, whose tangents change by the twist.
+// How much the normal of a bilinear patch may be off where its point is off by `error`: by the
+// rounding of the edges, eps |e| |e| over the area they span there, and by moving over the patch,
+// whose tangents change by the twist.
 double bilinear_normal_limit(const reference::Bilinear& b, const dvec3& n, double error) {
   const dvec3 twist = b.p11 - b.p01 - b.p10 + b.p00;
   const double u = std::max(glm::length(b.p10 - b.p00), glm::length(b.p11 - b.p01));
@@ -77,9 +84,11 @@ double bilinear_normal_limit(const reference::Bilinear& b, const dvec3& n, doubl
   // The least area over the patch bounds the area at the point.
   double area = HUGE_VAL;
   for (const dvec3& du : {b.p10 - b.p00, b.p11 - b.p01})
-    for (const dvec3& dv : {b.p01 - b.p00, b.p11 - b.p10}) area = std::min(area, glm::dot(glm::cross(du, dv), n));
-  if (!(area > 0 && area < HUGE_VAL)) return HUGE_VAL;  // no normal where the patch is a point or a line
-  const double moved = error * std::max(u, v) / area;   // in u or v
+    for (const dvec3& dv : {b.p01 - b.p00, b.p11 - b.p10})
+      area = std::min(area, glm::dot(glm::cross(du, dv), n));
+  if (!(area > 0 && area < HUGE_VAL))
+    return HUGE_VAL;  // no normal where the patch is a point or a line
+  const double moved = error * std::max(u, v) / area;  // in u or v
   const double bend = glm::length(twist);
   return 32 * eps * (u + bend) * (v + bend) / area + 4 * moved * bend * std::max(u, v) / area;
 }
@@ -114,7 +123,8 @@ TEST_P(SurfacePoints, LieOnTheSurfaceAndInTheBox) {
     ASSERT_EQ(s.light, cases.which[i] % 2 == 0 ? CAPLET_NONE : cases.which[i]);
     ASSERT_TRUE(s.u >= 0 && s.u <= 1 && s.v >= 0 && s.v <= 1) << s.u << " " << s.v;
     if (is_flat(p)) {
-      // The edges of a triangle are rounded: its normal turns by eps |e1| |e2| / (2 area) at most twice.
+      // The edges of a triangle are rounded: its normal turns by eps |e1| |e2| / (2 area) at most
+      // twice.
       double limit = 4 * eps;
       if (p.shape == shape_triangle) {
         const dvec3 e1 = point(p.data + 3) - point(p.data), e2 = point(p.data + 6) - point(p.data);
@@ -125,18 +135,19 @@ TEST_P(SurfacePoints, LieOnTheSurfaceAndInTheBox) {
       const dvec3 expected = reference::normal_at(reference, x, 1);
       const double limit = bilinear_normal_limit(*patch, expected, double(s.error));
       if (!(limit < 0.1)) continue;
-      ASSERT_LE(glm::length(ng - expected), limit)
-          << i << described(p) << "\nat " << x.x << " " << x.y << " " << x.z << " error " << s.error;
+      ASSERT_LE(glm::length(ng - expected), limit) << i << described(p) << "\nat " << x.x << " "
+                                                   << x.y << " " << x.z << " error " << s.error;
     } else {
-      // A point that is off by `error` turns the normal by error / radius; central differences over 1e-4 radius have an error of
-      // 1e-8.
+      // A point that is off by `error` turns the normal by error / radius; central differences over
+      // 1e-4 radius have an error of 1e-8.
       const double radius = feature_size(reference, x);
       if (!(double(s.error) <= 0.01 * radius)) continue;
       // On another surface than the hit's the normal is another one.
       if (static_cast<int>(s.surface) != reference::surface_at(reference, x).surface) continue;
       const dvec3 expected = reference::normal_at(reference, x, 1e-4 * radius);
       // The differences themselves are rounded: 2^-52 of the coordinates over the step.
-      ASSERT_LE(glm::length(ng - expected), 4 * double(s.error) / radius + 3e-5 + 0x1p-50 * glm::length(x) / (1e-4 * radius))
+      ASSERT_LE(glm::length(ng - expected),
+                4 * double(s.error) / radius + 3e-5 + 0x1p-50 * glm::length(x) / (1e-4 * radius))
           << i;
     }
     ++normals;
@@ -146,23 +157,28 @@ TEST_P(SurfacePoints, LieOnTheSurfaceAndInTheBox) {
   EXPECT_GT(normals, hits / 8);
 }
 
-// Directions: over the hemisphere around +-ng, every fifth one within 1e-4 of grazing, none so near that the rounding of a
-// float's scalar product could change its side.
+// Directions: over the hemisphere around +-ng, every fifth one within 1e-4 of grazing, none so near
+// that the rounding of a float's scalar product could change its side.
 std::array<float, 3> leaving_direction(CaseMaker& maker, const dvec3& n, bool may_graze) {
   const dvec3 around = maker.direction();
   const dvec3 across = glm::normalize(around - glm::dot(around, n) * n);
-  const double height =
-      may_graze && maker.uniform(0, 1) < 0.2 ? maker.uniform(1e-6, 1e-4) : maker.uniform(may_graze ? 0 : 1e-3, 1);
+  const double height = may_graze && maker.uniform(0, 1) < 0.2
+                            ? maker.uniform(1e-6, 1e-4)
+                            : maker.uniform(may_graze ? 0 : 1e-3, 1);
   const dvec3 d = std::sqrt(1 - height * height) * across + height * n;
-  std::array<float, 3> out{static_cast<float>(d.x), static_cast<float>(d.y), static_cast<float>(d.z)};
+  std::array<float, 3> out{static_cast<float>(d.x), static_cast<float>(d.y),
+                           static_cast<float>(d.z)};
   // Rounding must not turn it to the other side.
-  if (glm::dot(point(out.data()), n) < 0) out = {static_cast<float>(n.x), static_cast<float>(n.y), static_cast<float>(n.z)};
+  if (glm::dot(point(out.data()), n) < 0)
+    out = {static_cast<float>(n.x), static_cast<float>(n.y), static_cast<float>(n.z)};
   return out;
 }
 
 // What a ray that leaves may meet again.
 enum class Meets { nothing, itself_elsewhere, its_other_side };
-Meets outward_of(int shape) { return shape == shape_bilinear || shape == shape_csg ? Meets::itself_elsewhere : Meets::nothing; }
+Meets outward_of(int shape) {
+  return shape == shape_bilinear || shape == shape_csg ? Meets::itself_elsewhere : Meets::nothing;
+}
 Meets inward_of(int shape, const reference::Primitive& reference) {
   if (shape == shape_csg) return Meets::itself_elsewhere;
   if (reference::is_solid(reference)) return Meets::its_other_side;
@@ -170,17 +186,20 @@ Meets inward_of(int shape, const reference::Primitive& reference) {
   return flat ? Meets::nothing : Meets::itself_elsewhere;
 }
 
-void show_if(bool wanted, const FlatPrimitive& p, const Probed& from, const Left& out, const std::array<float, 3>& outward,
-             const Left& in, const std::array<float, 3>& inward) {
+void show_if(bool wanted, const FlatPrimitive& p, const Probed& from, const Left& out,
+             const std::array<float, 3>& outward, const Left& in,
+             const std::array<float, 3>& inward) {
   if (!wanted) return;
   const SurfaceOut& s = from.surface;
   const auto way = [](const Left& left, const std::array<float, 3>& d) {
-    return fmt::format("{:a} {:a} {:a}  {:a} {:a} {:a}: {} surface {:x} t {}", left.origin[0], left.origin[1], left.origin[2],
-                       d[0], d[1], d[2], left.hit.slot != CAPLET_NONE ? "hit" : "miss", left.hit.surface, left.hit.t);
+    return fmt::format("{:a} {:a} {:a}  {:a} {:a} {:a}: {} surface {:x} t {}", left.origin[0],
+                       left.origin[1], left.origin[2], d[0], d[1], d[2],
+                       left.hit.slot != CAPLET_NONE ? "hit" : "miss", left.hit.surface, left.hit.t);
   };
   ADD_FAILURE() << described(p)
-                << fmt::format("\npoint {:a} {:a} {:a} surface {} error {} ng {} {} {}\noutward ", s.p[0], s.p[1], s.p[2],
-                               s.surface, s.error, s.ng[0], s.ng[1], s.ng[2])
+                << fmt::format("\npoint {:a} {:a} {:a} surface {} error {} ng {} {} {}\noutward ",
+                               s.p[0], s.p[1], s.p[2], s.surface, s.error, s.ng[0], s.ng[1],
+                               s.ng[2])
                 << way(out, outward) << "\ninward " << way(in, inward);
 }
 
@@ -196,14 +215,15 @@ void expect_clean_exits(const Probe& probe, const CaseSet& cases, CaseMaker& mak
     const reference::Primitive& reference = cases.reference(i);
     const int shape = static_cast<int>(cases.primitive(i).shape);
     // Close to an edge a csg shape may lie on both sides.
-    if (shape == shape_csg &&
-        reference::surface_at(reference, point(probed[i].surface.p)).margin < 1e4 * double(probed[i].surface.error))
+    if (shape == shape_csg && reference::surface_at(reference, point(probed[i].surface.p)).margin <
+                                  1e4 * double(probed[i].surface.error))
       continue;
     which.push_back(cases.which[i]);
     from.push_back(probed[i]);
-    outward.push_back(leaving_direction(maker, point(probed[i].surface.ng), outward_of(shape) == Meets::nothing));
-    inward.push_back(
-        leaving_direction(maker, -point(probed[i].surface.ng), inward_of(shape, reference) != Meets::itself_elsewhere));
+    outward.push_back(
+        leaving_direction(maker, point(probed[i].surface.ng), outward_of(shape) == Meets::nothing));
+    inward.push_back(leaving_direction(maker, -point(probed[i].surface.ng),
+                                       inward_of(shape, reference) != Meets::itself_elsewhere));
   }
   const auto out = probe.leave(which, from, outward), in = probe.leave(which, from, inward);
   int again = 0, lost = 0, thick = 0, shown = 0;
@@ -212,22 +232,28 @@ void expect_clean_exits(const Probe& probe, const CaseSet& cases, CaseMaker& mak
     const reference::Primitive& reference = cases.references[which[i]];
     const int shape = static_cast<int>(cases.primitives[which[i]].shape);
     const double error = from[i].surface.error;
-    // Surfaces that bend towards the ray are met again, but not at once: it leaves them at 1e-3 or more. Asked where the normal
-    // turns less than that over the distance; a placed shape may be bent (3 / 0.2)^2 times as sharply.
+    // Surfaces that bend towards the ray are met again, but not at once: it leaves them at 1e-3 or
+    // more. Asked where the normal turns less than that over the distance; a placed shape may be
+    // bent (3 / 0.2)^2 times as sharply.
     const double sharper = object_from_world.empty() ? 1 : 225;
     const dvec3 p = point(from[i].surface.p);
-    const dvec3 local = object_from_world.empty() ? p : dvec3(object_from_world[which[i]] * glm::dvec4(p, 1));
+    const dvec3 local =
+        object_from_world.empty() ? p : dvec3(object_from_world[which[i]] * glm::dvec4(p, 1));
     const auto* patch = std::get_if<reference::Bilinear>(&reference);
-    const double turn = patch ? bilinear_normal_limit(*patch, reference::normal_at(reference, local, 1), 16 * error)
-                              : 16 * error / feature_size(reference, local);
+    const double turn =
+        patch ? bilinear_normal_limit(*patch, reference::normal_at(reference, local, 1), 16 * error)
+              : 16 * error / feature_size(reference, local);
     const auto again_at_once = [&](const Left& left) {
-      return sharper * turn < 1e-3 && left.hit.slot != CAPLET_NONE && double(left.hit.t) < 16 * error;
+      return sharper * turn < 1e-3 && left.hit.slot != CAPLET_NONE &&
+             double(left.hit.t) < 16 * error;
     };
-    again += outward_of(shape) == Meets::nothing ? out[i].hit.slot != CAPLET_NONE : again_at_once(out[i]);
+    again += outward_of(shape) == Meets::nothing ? out[i].hit.slot != CAPLET_NONE
+                                                 : again_at_once(out[i]);
     const Meets meets = inward_of(shape, reference);
     if (meets != Meets::its_other_side) {
       again += meets == Meets::nothing ? in[i].hit.slot != CAPLET_NONE : again_at_once(in[i]);
-      show_if(again > before && ++shown <= 5, cases.primitives[which[i]], from[i], out[i], outward[i], in[i], inward[i]);
+      show_if(again > before && ++shown <= 5, cases.primitives[which[i]], from[i], out[i],
+              outward[i], in[i], inward[i]);
       continue;
     }
     // Where the solid is thick enough, from inside the other side of it is the next hit.
@@ -242,7 +268,8 @@ void expect_clean_exits(const Probe& probe, const CaseSet& cases, CaseMaker& mak
       ++thick;
       lost += !(in[i].hit.slot != CAPLET_NONE && in[i].hit.surface >> 16 == 1);
     }
-    show_if(again + lost > before && ++shown <= 5, cases.primitives[which[i]], from[i], out[i], outward[i], in[i], inward[i]);
+    show_if(again + lost > before && ++shown <= 5, cases.primitives[which[i]], from[i], out[i],
+            outward[i], in[i], inward[i]);
   }
   std::printf("%zu exits, %d hit again; %d inward, %d lost\n", from.size(), again, thick, lost);
   EXPECT_EQ(again, 0);
@@ -253,7 +280,8 @@ void expect_clean_exits(const Probe& probe, const CaseSet& cases, CaseMaker& mak
 TEST_P(SurfacePoints, AreLeftForGood) {
   CaseMaker maker(42);
   const CaseSet cases = maker.set(GetParam().shape, true, 2000 * test_scale(), 50);
-  expect_clean_exits(Probe(test_device(), test_width(), cases.primitives, cases.leaves), cases, maker);
+  expect_clean_exits(Probe(test_device(), test_width(), cases.primitives, cases.leaves), cases,
+                     maker);
 }
 
 // --- Under affine transforms ---
@@ -283,8 +311,10 @@ TEST_P(SurfacePoints, ReversedOrientationTurnsTheNormals) {
     if (reference::is_solid(cases.reference(i))) {
       const reference::Primitive& reference = cases.reference(i);
       const double step = 100 * double(a.error);
-      if (!(step < 0.5 * feature_size(reference, point(b.p)))) continue;  // not through to the other side
-      EXPECT_LT(reference::value(reference, point(b.p) + step * point(b.ng)), reference::value(reference, point(b.p)));
+      if (!(step < 0.5 * feature_size(reference, point(b.p))))
+        continue;  // not through to the other side
+      EXPECT_LT(reference::value(reference, point(b.p) + step * point(b.ng)),
+                reference::value(reference, point(b.p)));
     }
   }
   EXPECT_GT(hits, 400);
@@ -306,13 +336,18 @@ TEST_P(SurfacePoints, OfInstances) {
     const dvec3 x = dvec3(object_from_world * glm::dvec4(point(s.p), 1));
     // An object-space distance f along the normal is f |M^T n| in the world.
     const dvec3 n = point(s.ng);
-    const double stretch = glm::length(glm::transpose(glm::dmat3(placed.world_from_object[which])) * n);
+    const double stretch =
+        glm::length(glm::transpose(glm::dmat3(placed.world_from_object[which])) * n);
     ASSERT_LE(std::abs(reference::value(reference, x)) * stretch, double(s.error)) << i;
     ASSERT_EQ(s.light, which % 2 == 0 ? CAPLET_NONE : 100 + which + 3);
-    // The normal is that of the implicit function of the world point; open shapes' winding is that of object space.
-    if (std::holds_alternative<reference::Bilinear>(reference)) continue;  // far from its object-space normal where it is sharp
+    // The normal is that of the implicit function of the world point; open shapes' winding is that
+    // of object space.
+    if (std::holds_alternative<reference::Bilinear>(reference))
+      continue;  // far from its object-space normal where it is sharp
     const double radius = is_flat(placed.cases.primitives[which]) ? 1 : feature_size(reference, x);
-    if (!(double(s.error) <= 0.01 * radius) || static_cast<int>(s.surface) != reference::surface_at(reference, x).surface) continue;
+    if (!(double(s.error) <= 0.01 * radius) ||
+        static_cast<int>(s.surface) != reference::surface_at(reference, x).surface)
+      continue;
     const dvec3 gradient = reference::normal_at(reference, x, 1e-4 * radius);
     const dvec3 expected = glm::normalize(glm::transpose(glm::dmat3(object_from_world)) * gradient);
     // Condition of the matrices (3 / 0.2) on top of the world-space case.
@@ -325,7 +360,8 @@ TEST_P(SurfacePoints, OfInstances) {
   expect_clean_exits(probe, placed.cases, directions, object_from_world);
 }
 
-// A step along the surface is dpdu and dpdv times the steps of u and v, up to what the second derivatives make of it.
+// A step along the surface is dpdu and dpdv times the steps of u and v, up to what the second
+// derivatives make of it.
 TEST_P(SurfacePoints, DerivativesMatchDifferences) {
   CaseMaker maker(48);
   const CaseSet cases = maker.set(GetParam().shape, false, 200, 20);
@@ -342,15 +378,20 @@ TEST_P(SurfacePoints, DerivativesMatchDifferences) {
     ASSERT_TRUE(std::isfinite(glm::length(dpdu)) && std::isfinite(glm::length(dpdv)));
     const double u_length = glm::length(dpdu), v_length = glm::length(dpdv);
     if (u_length == 0 || v_length == 0) continue;
-    // Tangents; next to a pole, where the one across shrinks to nothing, as far as the point's error lets them.
+    // Tangents; next to a pole, where the one across shrinks to nothing, as far as the point's
+    // error lets them.
     const double tilt = 1e-4 + 4 * two_pi * double(s.error) / std::min(u_length, v_length);
     if (tilt < 0.1) {
-      EXPECT_LE(std::abs(glm::dot(dpdu, n)), tilt * u_length) << i << " " << described(cases.primitive(i));
-      EXPECT_LE(std::abs(glm::dot(dpdv, n)), tilt * v_length) << i << " " << described(cases.primitive(i));
+      EXPECT_LE(std::abs(glm::dot(dpdu, n)), tilt * u_length)
+          << i << " " << described(cases.primitive(i));
+      EXPECT_LE(std::abs(glm::dot(dpdv, n)), tilt * v_length)
+          << i << " " << described(cases.primitive(i));
     }
     const auto shape = static_cast<int>(cases.primitive(i).shape);
-    const bool flat = is_flat(cases.primitive(i)) || shape == shape_box || shape == shape_polyhedron;
-    const double step = (flat ? 0.05 : 0.03) * std::min({feature_size(cases.reference(i), p), u_length / 4, v_length / 4});
+    const bool flat =
+        is_flat(cases.primitive(i)) || shape == shape_box || shape == shape_polyhedron;
+    const double step = (flat ? 0.05 : 0.03) *
+                        std::min({feature_size(cases.reference(i), p), u_length / 4, v_length / 4});
     for (const dvec3& along : {dpdu, dpdv}) {
       which.push_back(cases.which[i]);
       // From close by, so that no other part of the shape is in the way.
@@ -370,26 +411,28 @@ TEST_P(SurfacePoints, DerivativesMatchDifferences) {
     if (std::abs(du) > 0.5 || std::abs(dv) > 0.5) continue;  // across the seam
     const dvec3 dpdu = point(a.dpdu), dpdv = point(a.dpdv), moved = point(b.p) - point(a.p);
     if (glm::length(moved) > 2 * step) continue;  // over an edge
-    // Angles make second derivatives of 2 pi times the first ones, a curved surface ones of 1 / size, at least 33 steps; uv is
-    // what floats leave of it.
-    const double curvature = 2 / (33 * step) + two_pi / glm::length(dpdu) + two_pi / glm::length(dpdv);
+    // Angles make second derivatives of 2 pi times the first ones, a curved surface ones of 1 /
+    // size, at least 33 steps; uv is what floats leave of it.
+    const double curvature =
+        2 / (33 * step) + two_pi / glm::length(dpdu) + two_pi / glm::length(dpdv);
     double twist = 0;
     if (const auto* patch = std::get_if<reference::Bilinear>(&cases.references[which[i]]))
       twist = std::abs(du * dv) * glm::length(patch->p11 - patch->p01 - patch->p10 + patch->p00);
-    const double limit =
-        step * step * curvature + 4 * double(a.error + b.error) + 16 * eps * (glm::length(dpdu) + glm::length(dpdv)) + twist;
+    const double limit = step * step * curvature + 4 * double(a.error + b.error) +
+                         16 * eps * (glm::length(dpdu) + glm::length(dpdv)) + twist;
     const double off = glm::length(moved - du * dpdu - dv * dpdv);
     if (!(limit < 0.2 * step)) continue;
     ++checked;
     worst = std::max(worst, off / limit);
-    EXPECT_LE(off, limit) << i << " surface " << a.surface << " step " << step << " du " << du << " dv " << dv << " "
-                          << described(cases.primitives[which[i]]);
+    EXPECT_LE(off, limit) << i << " surface " << a.surface << " step " << step << " du " << du
+                          << " dv " << dv << " " << described(cases.primitives[which[i]]);
   }
   std::printf("%d steps, worst %.3f of what is allowed\n", checked, worst);
   EXPECT_GT(checked, 800);
 }
 
-INSTANTIATE_TEST_SUITE_P(Kinds, SurfacePoints, testing::ValuesIn(shape_kinds().begin(), shape_kinds().end()),
+INSTANTIATE_TEST_SUITE_P(Kinds, SurfacePoints,
+                         testing::ValuesIn(shape_kinds().begin(), shape_kinds().end()),
                          [](const auto& instance) { return std::string(instance.param.name); });
 
 // --- Parametrisation ---
@@ -404,7 +447,8 @@ struct Parametrised {
   double profile;  // length of the profile from v = 0 to v = 1
 };
 
-// uv.x runs along dpdu at 1 / |dpdu|, uv.y does not; across it uv.y runs at 1 / profile, up the axis.
+// uv.x runs along dpdu at 1 / |dpdu|, uv.y does not; across it uv.y runs at 1 / profile, up the
+// axis.
 TEST(SurfaceParameters, MatchDifferences) {
   const double k = 1.0 / 4, c = std::sqrt(1 - k * k), pi = two_pi / 2;
   const double tapered = 2 * (pi / 2 + std::asin(k)) + 4 * c + 1 * (pi / 2 - std::asin(k));
@@ -417,11 +461,14 @@ TEST(SurfaceParameters, MatchDifferences) {
     CaseMaker maker(46);
     int checked = 0;
     for (int i = 0; i < 60; ++i) {
-      const Probed here = probe.trace({0}, {maker.ray(shape.primitive, reference_of(shape.primitive))})[0];
+      const Probed here =
+          probe.trace({0}, {maker.ray(shape.primitive, reference_of(shape.primitive))})[0];
       if (!is_hit(here)) continue;
-      const dvec3 x = point(here.surface.p), n = point(here.surface.ng), dpdu = point(here.surface.dpdu);
+      const dvec3 x = point(here.surface.p), n = point(here.surface.ng),
+                  dpdu = point(here.surface.dpdu);
       const double speed = glm::length(dpdu);
-      // Away from the seam and the poles. Steps of 0.01: second differences are 1e-4 relative, rounding 1e-7 / 1e-3.
+      // Away from the seam and the poles. Steps of 0.01: second differences are 1e-4 relative,
+      // rounding 1e-7 / 1e-3.
       if (speed < 3 || here.surface.u < 0.05 || here.surface.u > 0.95) continue;
       EXPECT_NEAR(glm::dot(dpdu, n) / speed, 0, 1e-5);
       constexpr double h = 0.01;
@@ -441,7 +488,9 @@ TEST(SurfaceParameters, MatchDifferences) {
 
 TEST(SurfaceParameters, PolesAndRims) {
   const auto hit = [](const FlatPrimitive& p, const dvec3& o, const dvec3& d) {
-    return Probe(test_device(), test_width(), std::vector<FlatPrimitive>{p}).trace({0}, {make_ray(o, d)})[0].surface;
+    return Probe(test_device(), test_width(), std::vector<FlatPrimitive>{p})
+        .trace({0}, {make_ray(o, d)})[0]
+        .surface;
   };
   const FlatPrimitive tapered = make_tapered({0, 0, 0}, {4, 0, 0}, 2, 1);
   EXPECT_NEAR(hit(tapered, {-9, 0, 0}, {1, 0, 0}).v, 0, 1e-6);
@@ -455,7 +504,8 @@ TEST(SurfaceParameters, PolesAndRims) {
 TEST(SurfaceParameters, Triangles) {
   const FlatPrimitive triangle = make_triangle({0, 0, 0}, {2, 0, 0}, {0, 4, 0});
   Probe probe(test_device(), test_width(), std::vector<FlatPrimitive>{triangle});
-  const std::vector<RayRecord> rays = {make_ray({0.5, 2, 1}, {0, 0, -1})};  // barycentric 1/4 1/4 1/2
+  const std::vector<RayRecord> rays = {
+      make_ray({0.5, 2, 1}, {0, 0, -1})};  // barycentric 1/4 1/4 1/2
   const SurfaceOut plain = probe.trace({0}, rays)[0].surface;
   EXPECT_NEAR(plain.u, 0.75, 1e-6);  // vertices at (0 0), (1 0), (1 1)
   EXPECT_NEAR(plain.v, 0.5, 1e-6);

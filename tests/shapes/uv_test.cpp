@@ -44,7 +44,8 @@ TEST(Uv, Spheres) {
 }
 
 TEST(Uv, Capsules) {
-  // Profile: a quarter of a circle (pi), 4 along, another quarter; u from +x, which stays where it is.
+  // Profile: a quarter of a circle (pi), 4 along, another quarter; u from +x, which stays where it
+  // is.
   const Capsule capsule{{0, 0, 0}, {0, 0, 4}, 2, 2};
   const double whole = 2 * pi + 4;
   expect_uv(capsule, {2, 0, 1}, 0, {0, (pi + 1) / whole});
@@ -52,7 +53,8 @@ TEST(Uv, Capsules) {
   EXPECT_NEAR(uv_at(capsule, {0, 0, -2}, 0).y, 0, 1e-12);
   EXPECT_NEAR(uv_at(capsule, {0, 0, 6}, 0).y, 1, 1e-12);
   expect_uv(capsule, {0, std::sqrt(2.0), -std::sqrt(2.0)}, 0, {0.25, 0.5 * pi / whole});
-  // Tapered: the generator is at the angle whose sine is (2 - 1) / 2 from the axis: 30 degrees; it is sqrt(3) long.
+  // Tapered: the generator is at the angle whose sine is (2 - 1) / 2 from the axis: 30 degrees; it
+  // is sqrt(3) long.
   const Capsule tapered{{0, 0, 0}, {0, 0, 2}, 2, 1};
   const double first = 2 * (pi / 2 + pi / 6), side = std::sqrt(3.0), last = pi / 2 - pi / 6;
   const double c = std::sqrt(0.75);
@@ -64,14 +66,17 @@ TEST(Uv, Capsules) {
   expect_uv(Capsule{{1, 0, 0}, {1, 0, 0}, 1, 1}, {1, 1, 0}, 0, {0.25, 0.5});
 }
 
-// +z goes to +x the short way, by a quarter of a turn around y: +x goes to -z. The same holds for axes next to the xy plane.
+// +z goes to +x the short way, by a quarter of a turn around y: +x goes to -z. The same holds for
+// axes next to the xy plane.
 TEST(Uv, AnglesBeginWhereTheShortWayTakesThem) {
   const Capsule capsule{{0, 0, 0}, {4, 0, 0}, 1, 1};
   EXPECT_NEAR(uv_at(capsule, {2, 0, -1}, 0).x, 0, 1e-12);
   EXPECT_NEAR(uv_at(capsule, {2, 1, 0}, 0).x, 0.25, 1e-12);
   EXPECT_NEAR(uv_at(Capsule{{0, 0, 0}, {4, 0, -1e-9}, 1, 1}, {2, 1, 0}, 0).x, 0.25, 1e-9);
-  EXPECT_NEAR(uv_at(Capsule{{0, 0, 0}, {0, 4, 0}, 1, 1}, {1, 2, 0}, 0).x, 0, 1e-12);  // x is the axis of that turn
-  // Below -0.9 -z goes there: down the z axis nothing moves, and the angle runs right-handed around the axis.
+  EXPECT_NEAR(uv_at(Capsule{{0, 0, 0}, {0, 4, 0}, 1, 1}, {1, 2, 0}, 0).x, 0,
+              1e-12);  // x is the axis of that turn
+  // Below -0.9 -z goes there: down the z axis nothing moves, and the angle runs right-handed around
+  // the axis.
   const Capsule down{{0, 0, 0}, {0, 0, -4}, 1, 1};
   EXPECT_NEAR(uv_at(down, {1, 0, -2}, 0).x, 0, 1e-12);
   EXPECT_NEAR(uv_at(down, {0, -1, -2}, 0).x, 0.25, 1e-12);
@@ -85,8 +90,8 @@ TEST(Uv, CylindersAndCones) {
   const Frustum cone = make_frustum({0, 0, 0}, {0, 0, 3}, {2, false, false}, {1, false, false});
   expect_uv(cone, {1.5, 0, 1.5}, 0, {0, 0.5});
   expect_uv(cone, {0.25, 0, 3}, 2, {0, 0.75});
-  // A ball of radius 5 at a distance of 4 through a disk of radius 5: a second part of the side, which ends at the rim; the ball
-  // is whole.
+  // A ball of radius 5 at a distance of 4 through a disk of radius 5: a second part of the side,
+  // which ends at the rim; the ball is whole.
   const Frustum pierced = make_frustum({0, 0, 0}, {0, 0, 4}, {5, true, false}, {5, false, false});
   ASSERT_EQ(pierced.side_count, 2);
   expect_uv(pierced, {5, 0, 4}, 0, {0, 1});
@@ -113,7 +118,8 @@ TEST(Uv, Boxes) {
 
 TEST(Uv, PolyhedraAndCsg) {
   // A box of half edges 1, 2, 2: a bounding radius of 3.
-  const std::array<dvec3, 6> normals = {dvec3{-1, 0, 0}, {1, 0, 0}, {0, -1, 0}, {0, 1, 0}, {0, 0, -1}, {0, 0, 1}};
+  const std::array<dvec3, 6> normals = {dvec3{-1, 0, 0}, {1, 0, 0},  {0, -1, 0},
+                                        {0, 1, 0},       {0, 0, -1}, {0, 0, 1}};
   const std::array<double, 6> offsets = {1, 1, 2, 2, 2, 2};
   const Polyhedron p = make_polyhedron({5, 0, 0}, normals, offsets);
   expect_uv(p, {5, 0, 2}, 5, {0.5, 0.5});
@@ -134,7 +140,8 @@ TEST(Uv, Meshes) {
   expect_uv(patch, {4 * uv.x, 2 * uv.y, 3 * uv.x * uv.y}, 0, uv);
 }
 
-// A tapered capsule of a chain: u is that of the ball that touches there, v by the ray's distance from the axis.
+// A tapered capsule of a chain: u is that of the ball that touches there, v by the ray's distance
+// from the axis.
 TEST(Uv, OfChains) {
   // Radii 1 and 0.5 over a length of 1.3: the sine of the taper is 5 / 13, its cosine 12 / 13.
   const Capsule capsule{{0, 0, 0}, {1.3, 0, 0}, 1, 0.5, dvec2(2, 4)};
@@ -146,7 +153,8 @@ TEST(Uv, OfChains) {
     EXPECT_NEAR(found.y, expected.y, 1e-12);
   };
   expect(x, {0, 0, -2}, {2.5, 0.5});
-  // v grows to the side of direction x axis. A ray down and to -y goes by at r cos / sqrt(2) on that side.
+  // v grows to the side of direction x axis. A ray down and to -y goes by at r cos / sqrt(2) on
+  // that side.
   expect(x, {0, -1, -1}, {2.5, 0.5 + 0.5 * std::sqrt(0.5)});
   expect(x, {3, 0, 0}, {2.5, 0.5});  // along the axis
   expect({-1, 0, 0}, {0, 0, -1}, {2, 0.5});
@@ -154,23 +162,29 @@ TEST(Uv, OfChains) {
   expect({1.8, 0, 0}, {0, 0, -1}, {4, 0.5});
   EXPECT_EQ(uv_at(Capsule{{0, 0, 0}, {0, 0, 0}, 1, 1, dvec2(2, 4)}, {1, 0, 0}, 0, {-1, 0, 0}).x, 2);
   // Two balls around one centre are the larger one. The axis is z: along -x, v grows with y.
-  const dvec2 concentric = uv_at(Capsule{{0, 0, 0}, {0, 0, 0}, 0.25, 1, dvec2(2, 4)}, {0, 0.5, std::sqrt(0.75)}, 0, {-1, 0, 0});
+  const dvec2 concentric = uv_at(Capsule{{0, 0, 0}, {0, 0, 0}, 0.25, 1, dvec2(2, 4)},
+                                 {0, 0.5, std::sqrt(0.75)}, 0, {-1, 0, 0});
   EXPECT_EQ(concentric.x, 2);
   EXPECT_NEAR(concentric.y, 0.75, 1e-12);
-  EXPECT_EQ(uv_at(Capsule{{0, 0, 0}, {0.1, 0, 0}, 0.2, 1, dvec2(2, 4)}, {1.1, 0, 0}, 0, {-1, 0, 0}).x, 4);
+  EXPECT_EQ(
+      uv_at(Capsule{{0, 0, 0}, {0.1, 0, 0}, 0.2, 1, dvec2(2, 4)}, {1.1, 0, 0}, 0, {-1, 0, 0}).x, 4);
 }
 
 TEST(Uv, OfScenes) {
   Scene scene;
   Shape mesh;
-  mesh.geometry = TriangleMeshShape{{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}}, {{0, 1, 2}}, {}, {{0, 0}, {1, 0}, {0, 1}}};
+  mesh.geometry = TriangleMeshShape{
+      {{0, 0, 0}, {4, 0, 0}, {0, 4, 0}}, {{0, 1, 2}}, {}, {{0, 0}, {1, 0}, {0, 1}}};
   mesh.world_from_object = glm::translate(glm::dmat4(1), dvec3(0, 0, 9));
   Shape patch;
-  patch.geometry =
-      BilinearMeshShape{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}}, {{0, 1, 2, 3}}, {}, {{0, 0}, {3, 0}, {0, 5}, {3, 5}}};
+  patch.geometry = BilinearMeshShape{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}},
+                                     {{0, 1, 2, 3}},
+                                     {},
+                                     {{0, 0}, {3, 0}, {0, 5}, {3, 5}}};
   Shape ball;
   ball.geometry = SphereShape{1};
-  ball.world_from_object = glm::rotate(glm::translate(glm::dmat4(1), dvec3(0, 0, 5)), pi / 2, dvec3(1, 0, 0));
+  ball.world_from_object =
+      glm::rotate(glm::translate(glm::dmat4(1), dvec3(0, 0, 5)), pi / 2, dvec3(1, 0, 0));
   scene.shapes = {mesh, patch, ball};
   const SceneReference reference(scene);
   SceneHit hit;

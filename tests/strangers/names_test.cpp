@@ -20,7 +20,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-void put(const fs::path& file, const std::string& text) { std::ofstream(file, std::ios::binary) << text; }
+void put(const fs::path& file, const std::string& text) {
+  std::ofstream(file, std::ios::binary) << text;
+}
 
 std::string text_of(const fs::path& file) {
   std::ifstream in(file, std::ios::binary);
@@ -28,7 +30,8 @@ std::string text_of(const fs::path& file) {
 }
 
 TEST(Names, OfAnyBytesBecomeUtf8) {
-  const fs::path folder = test::temporary_folder(), file = folder / "a.pbrt", obj = folder / "a.obj";
+  const fs::path folder = test::temporary_folder(), file = folder / "a.pbrt",
+                 obj = folder / "a.obj";
   for (const test::Broken& broken : test::broken_utf8) {
     put(file, fmt::format(R"(MakeNamedMedium "{0}" "string type" "homogeneous"
 WorldBegin
@@ -62,13 +65,15 @@ ObjectInstance "{0}"
     const fs::path other = folder / (std::string(broken.bytes) + ".obj");
     put(other, text_of(obj));
     const std::vector<fs::path> both{file, other};
-    EXPECT_EQ(import_scenes(both, FileImageReader()).shapes.back().name, std::string(broken.valid)) << broken.what;
+    EXPECT_EQ(import_scenes(both, FileImageReader()).shapes.back().name, std::string(broken.valid))
+        << broken.what;
     fs::remove(other);
   }
 }
 
 TEST(Names, AreWrittenAsUtf8AndToldApart) {
-  const fs::path folder = test::temporary_folder(), file = folder / "a.pbrt", written = folder / "b.pbrt";
+  const fs::path folder = test::temporary_folder(), file = folder / "a.pbrt",
+                 written = folder / "b.pbrt";
   // One character of both names stays, and it is the same.
   put(file, R"(WorldBegin
 MakeNamedMaterial "K)"
@@ -94,7 +99,10 @@ Shape "sphere"
   const Scene again = import_scene(written, FileImageReader());
   ASSERT_EQ(again.shapes.size(), 2u);
   const auto red = [&](std::size_t i) {
-    return std::get<RgbSpectrum>(std::get<DiffuseMaterial>(again.materials.at(again.shapes[i].material).model).reflectance).rgb.x;
+    return std::get<RgbSpectrum>(
+               std::get<DiffuseMaterial>(again.materials.at(again.shapes[i].material).model)
+                   .reflectance)
+        .rgb.x;
   };
   EXPECT_EQ(red(0), 1);
   EXPECT_EQ(red(1), 0);
@@ -103,7 +111,8 @@ Shape "sphere"
 
 /// Files are found by their bytes.
 TEST(Names, OfFilesStayAsTheyAre) {
-  const fs::path folder = test::temporary_folder(), file = folder / "a.pbrt", image = folder / "K\xfcgel.exr";
+  const fs::path folder = test::temporary_folder(), file = folder / "a.pbrt",
+                 image = folder / "K\xfcgel.exr";
   LayeredImage picture;
   picture.width = picture.height = picture.data_width = picture.data_height = 1;
   for (const char* name : {"B", "G", "R"}) picture.channels.push_back({name, {0.5f}, {}});

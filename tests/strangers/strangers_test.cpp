@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Scenes of strangers that name files of others: each way in which a format names a file, by each way out of the scene's folder.
+// Scenes of strangers that name files of others: each way in which a format names a file, by each
+// way out of the scene's folder.
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -41,26 +42,42 @@ constexpr Naming namings[] = {
     {"plymesh", "a.pbrt", "WorldBegin\nShape \"plymesh\" \"string filename\" \"@\"\n", "", 2},
     {"capsules", "a.pbrt", "WorldBegin\nShape \"capsules\" \"string filename\" \"@\"\n", "", 2},
     {"swc", "a.pbrt", "WorldBegin\nShape \"swc\" \"string filename\" \"@\"\n", "", 2},
-    {"an OBJ of Shape file", "a.pbrt", "WorldBegin\nShape \"file\" \"string filename\" \"@\"\n", ".obj", 2},
-    {"XML of Shape file", "a.pbrt", "WorldBegin\nShape \"file\" \"string filename\" \"@\"\n", ".xml", 2},
-    {"values of neurons", "a.pbrt", "WorldBegin\nShape \"swc\" \"string filename\" \"own.swc\" \"string color\" \"@\"\n", "", 2},
-    {"places of atoms", "a.pbrt", "WorldBegin\nShape \"file\" \"string filename\" \"own.xyz\" \"string positions\" \"@\"\n",
+    {"an OBJ of Shape file", "a.pbrt", "WorldBegin\nShape \"file\" \"string filename\" \"@\"\n",
+     ".obj", 2},
+    {"XML of Shape file", "a.pbrt", "WorldBegin\nShape \"file\" \"string filename\" \"@\"\n",
+     ".xml", 2},
+    {"values of neurons", "a.pbrt",
+     "WorldBegin\nShape \"swc\" \"string filename\" \"own.swc\" \"string color\" \"@\"\n", "", 2},
+    {"places of atoms", "a.pbrt",
+     "WorldBegin\nShape \"file\" \"string filename\" \"own.xyz\" \"string positions\" \"@\"\n",
      ".npy", 2},
-    {"components", "a.pbrt", "WorldBegin\nShape \"file\" \"string filename\" \"own.pdb\" \"string components\" \"@\"\n", ".cif",
-     2},
-    {"imagemap", "a.pbrt", "WorldBegin\nTexture \"t\" \"spectrum\" \"imagemap\" \"string filename\" \"@\"\n", ".png", 2},
-    {"imagemap of EXR", "a.pbrt", "WorldBegin\nTexture \"t\" \"spectrum\" \"imagemap\" \"string filename\" \"@\"\n", ".exr", 2},
-    {"normalmap", "a.pbrt", "WorldBegin\nMaterial \"diffuse\" \"string normalmap\" \"@\"\nShape \"sphere\"\n", ".png", 2},
-    {"infinite", "a.pbrt", "WorldBegin\nLightSource \"infinite\" \"string filename\" \"@\"\n", ".exr", 2},
-    {"goniometric", "a.pbrt", "WorldBegin\nLightSource \"goniometric\" \"string filename\" \"@\"\n", "", 2},
-    {"projection", "a.pbrt", "WorldBegin\nLightSource \"projection\" \"string filename\" \"@\"\n", ".hdr", 2},
+    {"components", "a.pbrt",
+     "WorldBegin\nShape \"file\" \"string filename\" \"own.pdb\" \"string components\" \"@\"\n",
+     ".cif", 2},
+    {"imagemap", "a.pbrt",
+     "WorldBegin\nTexture \"t\" \"spectrum\" \"imagemap\" \"string filename\" \"@\"\n", ".png", 2},
+    {"imagemap of EXR", "a.pbrt",
+     "WorldBegin\nTexture \"t\" \"spectrum\" \"imagemap\" \"string filename\" \"@\"\n", ".exr", 2},
+    {"normalmap", "a.pbrt",
+     "WorldBegin\nMaterial \"diffuse\" \"string normalmap\" \"@\"\nShape \"sphere\"\n", ".png", 2},
+    {"infinite", "a.pbrt", "WorldBegin\nLightSource \"infinite\" \"string filename\" \"@\"\n",
+     ".exr", 2},
+    {"goniometric", "a.pbrt", "WorldBegin\nLightSource \"goniometric\" \"string filename\" \"@\"\n",
+     "", 2},
+    {"projection", "a.pbrt", "WorldBegin\nLightSource \"projection\" \"string filename\" \"@\"\n",
+     ".hdr", 2},
     {"ies", "a.pbrt", "WorldBegin\nLightSource \"ies\" \"string filename\" \"@\"\n", "", 2},
-    {"area light", "a.pbrt", "WorldBegin\nAreaLightSource \"diffuse\" \"string filename\" \"@\"\n", ".png", 2},
-    {"nanovdb", "a.pbrt", "MakeNamedMedium \"m\" \"string type\" \"nanovdb\" \"string filename\" \"@\"\nWorldBegin\n", "", 1},
+    {"area light", "a.pbrt", "WorldBegin\nAreaLightSource \"diffuse\" \"string filename\" \"@\"\n",
+     ".png", 2},
+    {"nanovdb", "a.pbrt",
+     "MakeNamedMedium \"m\" \"string type\" \"nanovdb\" \"string filename\" \"@\"\nWorldBegin\n",
+     "", 1},
     {"spectrum", "a.pbrt", "WorldBegin\nLightSource \"distant\" \"spectrum L\" \"@\"\n", "", 2},
-    {"spectrum of a metal", "a.pbrt", "WorldBegin\nMaterial \"conductor\" \"spectrum eta\" \"@\"\nShape \"sphere\"\n", ".spd", 2},
-    {"background", "a.pbrt", "Film \"rgb\" \"string background\" \"image\" \"string backgroundfile\" \"@\"\nWorldBegin\n", ".png",
-     1},
+    {"spectrum of a metal", "a.pbrt",
+     "WorldBegin\nMaterial \"conductor\" \"spectrum eta\" \"@\"\nShape \"sphere\"\n", ".spd", 2},
+    {"background", "a.pbrt",
+     "Film \"rgb\" \"string background\" \"image\" \"string backgroundfile\" \"@\"\nWorldBegin\n",
+     ".png", 1},
     {"mtllib", "a.obj", "v 0 0 0\nmtllib @\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "", 2},
     {"mtllib's image", "a.obj", "mtllib own.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", ".png", -1},
     {"buffer", "a.gltf",
@@ -75,57 +92,83 @@ constexpr Naming namings[] = {
      R"("images":[{"uri":"@"}],"textures":[{"source":0}],"materials":[{"pbrMetallicRoughness":{"baseColorTexture":{"index":0}}}]})",
      ".png", 0},
     {"init_from", "a.dae",
-     "<COLLADA xmlns='http://www.collada.org/2005/11/COLLADASchema' version='1.4.1'><library_images><image id='i'>"
-     "<init_from>@</init_from></image></library_images><library_effects><effect id='e'><profile_COMMON><technique><lambert>"
-     "<diffuse><texture texture='i' texcoord='u'/></diffuse></lambert></technique></profile_COMMON></effect></library_effects>"
-     "<library_materials><material id='m'><instance_effect url='#e'/></material></library_materials><library_geometries>"
-     "<geometry id='g'><mesh><source id='p'><float_array id='pa' count='9'>0 0 0 1 0 0 0 1 0</float_array><technique_common>"
-     "<accessor source='#pa' count='3' stride='3'/></technique_common></source><vertices id='v'><input semantic='POSITION' "
-     "source='#p'/></vertices><triangles count='1' material='s'><input semantic='VERTEX' source='#v' offset='0'/><p>0 1 2</p>"
-     "</triangles></mesh></geometry></library_geometries><library_visual_scenes><visual_scene id='vs'><node>"
-     "<instance_geometry url='#g'><bind_material><technique_common><instance_material symbol='s' target='#m'/>"
-     "</technique_common></bind_material></instance_geometry></node></visual_scene></library_visual_scenes><scene>"
+     "<COLLADA xmlns='http://www.collada.org/2005/11/COLLADASchema' "
+     "version='1.4.1'><library_images><image id='i'>"
+     "<init_from>@</init_from></image></library_images><library_effects><effect "
+     "id='e'><profile_COMMON><technique><lambert>"
+     "<diffuse><texture texture='i' "
+     "texcoord='u'/></diffuse></lambert></technique></profile_COMMON></effect></library_effects>"
+     "<library_materials><material id='m'><instance_effect "
+     "url='#e'/></material></library_materials><library_geometries>"
+     "<geometry id='g'><mesh><source id='p'><float_array id='pa' count='9'>0 0 0 1 0 0 0 1 "
+     "0</float_array><technique_common>"
+     "<accessor source='#pa' count='3' stride='3'/></technique_common></source><vertices "
+     "id='v'><input semantic='POSITION' "
+     "source='#p'/></vertices><triangles count='1' material='s'><input semantic='VERTEX' "
+     "source='#v' offset='0'/><p>0 1 2</p>"
+     "</triangles></mesh></geometry></library_geometries><library_visual_scenes><visual_scene "
+     "id='vs'><node>"
+     "<instance_geometry url='#g'><bind_material><technique_common><instance_material symbol='s' "
+     "target='#m'/>"
+     "</technique_common></bind_material></instance_geometry></node></visual_scene></"
+     "library_visual_scenes><scene>"
      "<instance_visual_scene url='#vs'/></scene></COLLADA>",
      ".png", 1},
     {"mesh of URDF", "a.urdf",
-     "<robot name='r'><link name='l'>\n<visual><geometry><mesh filename='@'/></geometry></visual></link></robot>", ".stl", 2},
+     "<robot name='r'><link name='l'>\n<visual><geometry><mesh "
+     "filename='@'/></geometry></visual></link></robot>",
+     ".stl", 2},
     {"file:// of URDF", "a.urdf",
-     "<robot name='r'><link name='l'>\n<visual><geometry><mesh filename='file://@'/></geometry></visual></link></robot>", ".obj",
-     2},
+     "<robot name='r'><link name='l'>\n<visual><geometry><mesh "
+     "filename='file://@'/></geometry></visual></link></robot>",
+     ".obj", 2},
     {"include of MJCF", "a.mjcf", "<mujoco>\n<include file='@'/></mujoco>", "", 2},
     {"attached model", "a.mjcf",
-     "<mujoco><asset>\n<model name='m' file='@'/></asset><worldbody><attach model='m' prefix='p'/></worldbody></mujoco>", ".xml",
-     2},
-    {"attached model without a name", "a.mjcf", "<mujoco><asset>\n<model file='@'/></asset></mujoco>", ".xml", 2},
+     "<mujoco><asset>\n<model name='m' file='@'/></asset><worldbody><attach model='m' "
+     "prefix='p'/></worldbody></mujoco>",
+     ".xml", 2},
+    {"attached model without a name", "a.mjcf",
+     "<mujoco><asset>\n<model file='@'/></asset></mujoco>", ".xml", 2},
     {"mesh of MJCF", "a.mjcf",
-     "<mujoco><asset><mesh name='m' file='@'/></asset><worldbody>\n<geom type='mesh' mesh='m'/></worldbody></mujoco>", ".stl", 2},
+     "<mujoco><asset><mesh name='m' file='@'/></asset><worldbody>\n<geom type='mesh' "
+     "mesh='m'/></worldbody></mujoco>",
+     ".stl", 2},
     {"OBJ of MJCF", "a.mjcf",
-     "<mujoco><asset><mesh name='m' file='@'/></asset><worldbody>\n<geom type='mesh' mesh='m'/></worldbody></mujoco>", ".obj", 2},
+     "<mujoco><asset><mesh name='m' file='@'/></asset><worldbody>\n<geom type='mesh' "
+     "mesh='m'/></worldbody></mujoco>",
+     ".obj", 2},
     {"height field", "a.mjcf",
-     "<mujoco><asset>\n<hfield name='h' file='@' size='1 1 1 1'/></asset><worldbody><geom type='hfield' "
+     "<mujoco><asset>\n<hfield name='h' file='@' size='1 1 1 1'/></asset><worldbody><geom "
+     "type='hfield' "
      "hfield='h'/></worldbody></mujoco>",
      "", 2},
     {"picture of a height field", "a.mjcf",
-     "<mujoco><asset>\n<hfield name='h' file='@' size='1 1 1 1'/></asset><worldbody><geom type='hfield' "
+     "<mujoco><asset>\n<hfield name='h' file='@' size='1 1 1 1'/></asset><worldbody><geom "
+     "type='hfield' "
      "hfield='h'/></worldbody></mujoco>",
      ".png", 2},
     {"texture of MJCF", "a.mjcf",
-     "<mujoco><asset>\n<texture name='t' type='2d' file='@'/><material name='m' texture='t'/></asset><worldbody>"
+     "<mujoco><asset>\n<texture name='t' type='2d' file='@'/><material name='m' "
+     "texture='t'/></asset><worldbody>"
      "<geom type='sphere' size='1' material='m'/></worldbody></mujoco>",
      ".png", 2},
     {"cube of MJCF", "a.mjcf",
-     "<mujoco><asset>\n<texture name='t' type='cube' file='@'/><material name='m' texture='t'/></asset><worldbody>"
+     "<mujoco><asset>\n<texture name='t' type='cube' file='@'/><material name='m' "
+     "texture='t'/></asset><worldbody>"
      "<geom type='sphere' size='1' material='m'/></worldbody></mujoco>",
      ".png", 2},
     {"skin", "a.mjcf",
-     "<mujoco><asset>\n<skin file='@'/></asset><worldbody><body name='b'><geom size='1'/></body></worldbody></mujoco>", ".skn",
-     2},
+     "<mujoco><asset>\n<skin file='@'/></asset><worldbody><body name='b'><geom "
+     "size='1'/></body></worldbody></mujoco>",
+     ".skn", 2},
     {"scene of Embree", "a.xml", "<scene>\n<xml src='@'/></scene>", ".xml", 2},
     {"mesh of Embree", "a.xml", "<scene>\n<obj src='@'/></scene>", ".obj", 2},
     {"PLY of Embree", "a.xml", "<scene>\n<obj src='@'/></scene>", ".ply", 2},
     {"image of Embree", "a.xml",
-     "<scene><TriangleMesh><positions>0 0 0 1 0 0 0 1 0</positions><triangles>0 1 2</triangles>\n<material><code>\"OBJ\"</code>"
-     "<parameters><texture3d name=\"map_Kd\" src=\"@\"/></parameters></material></TriangleMesh></scene>",
+     "<scene><TriangleMesh><positions>0 0 0 1 0 0 0 1 0</positions><triangles>0 1 "
+     "2</triangles>\n<material><code>\"OBJ\"</code>"
+     "<parameters><texture3d name=\"map_Kd\" "
+     "src=\"@\"/></parameters></material></TriangleMesh></scene>",
      ".png", 2},
     {"option of Embree", "a.ecs", "-vp 0 0 1\n-i @\n", ".xml", 2},
 };
@@ -136,7 +179,9 @@ class Strangers : public testing::Test {
     fs::create_directories(inside_ / "sub");
     fs::create_directories(outside_);
   }
-  static void put(const fs::path& file, const std::string& text) { std::ofstream(file, std::ios::binary) << text; }
+  static void put(const fs::path& file, const std::string& text) {
+    std::ofstream(file, std::ios::binary) << text;
+  }
   static std::string with_name(std::string text, const std::string& name) {
     for (std::size_t at; (at = text.find('@')) != std::string::npos;) text.replace(at, 1, name);
     return text;
@@ -145,7 +190,8 @@ class Strangers : public testing::Test {
   fs::path scene(const Naming& naming, const std::string& name) const {
     put(inside_ / "own.swc", "1 1 0 0 0 1 -1\n2 3 5 0 0 1 1\n");
     put(inside_ / "own.xyz", "1\n\nC 0 0 0\n");
-    put(inside_ / "own.pdb", "ATOM      1  CA  ALA A   1       0.000   0.000   0.000  1.00  0.00           C\n");
+    put(inside_ / "own.pdb",
+        "ATOM      1  CA  ALA A   1       0.000   0.000   0.000  1.00  0.00           C\n");
     put(inside_ / "own.mtl", with_name("newmtl m\nmap_Kd @\n", name));
     put(inside_ / naming.main, with_name(naming.text, name));
     return inside_ / naming.main;
@@ -167,7 +213,8 @@ class Strangers : public testing::Test {
     return text.find("which --no-outside does not let it read") != std::string::npos;
   }
 
-  const fs::path folder_ = test::temporary_folder(), inside_ = folder_ / "scene", outside_ = folder_ / "out";
+  const fs::path folder_ = test::temporary_folder(), inside_ = folder_ / "scene",
+                 outside_ = folder_ / "out";
 };
 
 /// Names that lead out of the folder, to a file that is there and to one that is not.
@@ -184,15 +231,18 @@ TEST_F(Strangers, ReadNothingOutsideOfTheirFolder) {
       fs::remove(inside_ / ("chain" + file));
       fs::create_symlink("link" + file, inside_ / ("chain" + file));
       for (const std::string& name :
-           {"../out/" + file, (outside_ / file).string(), "link" + file, "chain" + file, "away/" + file, "sub/../../out/" + file,
-            "sub/up/out/" + file, "missing/../../out/" + file, "./../scene/../out/" + file}) {
-        if (std::string_view(naming.what) == "file:// of URDF" && name[0] != '/') continue;  // is of the file system's root
+           {"../out/" + file, (outside_ / file).string(), "link" + file, "chain" + file,
+            "away/" + file, "sub/../../out/" + file, "sub/up/out/" + file,
+            "missing/../../out/" + file, "./../scene/../out/" + file}) {
+        if (std::string_view(naming.what) == "file:// of URDF" && name[0] != '/')
+          continue;  // is of the file system's root
         const fs::path path = scene(naming, name);
         const std::string text = said(path, true);
         EXPECT_TRUE(is_refused(text)) << naming.what << ", " << name << ":\n" << text;
         EXPECT_THAT(text, Not(HasSubstr("hun"))) << naming.what << ", " << name;
         EXPECT_EQ(text.find('\n'), text.size() - 1) << text;  // and nothing else
-        const std::string place = naming.line > 0    ? fmt::format("{}:{}:", path.string(), naming.line)
+        const std::string place = naming.line > 0
+                                      ? fmt::format("{}:{}:", path.string(), naming.line)
                                   : naming.line == 0 ? path.string()
                                                      : std::string();
         EXPECT_THAT(text, StartsWith(place)) << naming.what << ", " << name;
@@ -208,7 +258,8 @@ TEST_F(Strangers, SayTheSameOfWhatIsThereAndOfWhatIsNot) {
       const std::string name = "../out/file" + std::string(naming.ending);
       fs::remove(outside_ / fs::path(name).filename());
       if (there) put(outside_ / fs::path(name).filename(), "hunter2");
-      if (std::string_view(naming.what) != "file:// of URDF") text[there] = said(scene(naming, name), true);
+      if (std::string_view(naming.what) != "file:// of URDF")
+        text[there] = said(scene(naming, name), true);
     }
     EXPECT_EQ(text[0], text[1]) << naming.what;
   }
@@ -221,11 +272,14 @@ TEST_F(Strangers, MayNameWhatLiesInTheirFolder) {
     put(inside_ / "sub" / file, "nothing of use");
     fs::remove(inside_ / ("link" + file));
     fs::create_symlink((inside_ / "sub" / file).string(), inside_ / ("link" + file));
-    for (const std::string& name : {"sub/" + file, (inside_ / "sub" / file).string(), "here/" + file, "sub/../sub/" + file,
-                                    "link" + file, "../scene/sub/" + file, "missing" + file}) {
-      if (std::string_view(naming.what) == "file:// of URDF" && name[0] != '/') continue;  // is of the file system's root
+    for (const std::string& name :
+         {"sub/" + file, (inside_ / "sub" / file).string(), "here/" + file, "sub/../sub/" + file,
+          "link" + file, "../scene/sub/" + file, "missing" + file}) {
+      if (std::string_view(naming.what) == "file:// of URDF" && name[0] != '/')
+        continue;  // is of the file system's root
       const fs::path path = scene(naming, name);
-      EXPECT_FALSE(is_refused(said(path, true))) << naming.what << ", " << name << ":\n" << said(path, true);
+      EXPECT_FALSE(is_refused(said(path, true))) << naming.what << ", " << name << ":\n"
+                                                 << said(path, true);
       EXPECT_EQ(said(path, true), said(path, false)) << naming.what << ", " << name;
     }
   }
@@ -250,7 +304,8 @@ TEST_F(Strangers, MayBeNoLinkThemselves) {
 TEST_F(Strangers, CompanionsAreNoLinks) {
   // Embree looks for numbers beside the scene by itself.
   put(inside_ / "a.xml",
-      "<scene><TriangleMesh><positions ofs=\"0\" size=\"3\"/><triangles>0 1 2</triangles></TriangleMesh></scene>");
+      "<scene><TriangleMesh><positions ofs=\"0\" size=\"3\"/><triangles>0 1 "
+      "2</triangles></TriangleMesh></scene>");
   put(outside_ / "numbers", std::string(36, '\0'));
   fs::create_symlink("../out/numbers", inside_ / "a.bin");
   EXPECT_TRUE(is_refused(said(inside_ / "a.xml", true))) << said(inside_ / "a.xml", true);
@@ -259,10 +314,12 @@ TEST_F(Strangers, CompanionsAreNoLinks) {
 
 TEST_F(Strangers, UsersNameWhatTheyLike) {
   put(inside_ / "a.swc", "1 1 0 0 0 1 -1\n2 3 5 0 0 1 1\n");
-  put(inside_ / "a.pdb", "ATOM      1  CA  ALA A   1       0.000   0.000   0.000  1.00  0.00           C\n");
+  put(inside_ / "a.pdb",
+      "ATOM      1  CA  ALA A   1       0.000   0.000   0.000  1.00  0.00           C\n");
   put(outside_ / "values.txt", "1\n2\n");
   put(outside_ / "parts.cif",
-      "data_x\nloop_\n_chem_comp_bond.comp_id\n_chem_comp_bond.atom_id_1\n_chem_comp_bond.atom_id_2\nA B C\n");
+      "data_x\nloop_\n_chem_comp_bond.comp_id\n_chem_comp_bond.atom_id_1\n_chem_comp_bond.atom_id_"
+      "2\nA B C\n");
   const auto fine = [](const fs::path& file, const std::string& option, const fs::path& value) {
     ImportOptions options;
     options.set("no-outside", "yes");
@@ -287,7 +344,8 @@ TEST_F(Strangers, SeveralFilesHaveAFolderEach) {
   options.set("no-outside", "yes");
   EXPECT_THAT(
       [&] {
-        import_scenes(std::vector{outside_ / "mine.swc", inside_ / "a.pbrt"}, FileImageReader(), options);
+        import_scenes(std::vector{outside_ / "mine.swc", inside_ / "a.pbrt"}, FileImageReader(),
+                      options);
       },
       testing::ThrowsMessage<InputError>(HasSubstr("--no-outside")));
   for (const char* word : {"yes", "no"}) {
@@ -323,7 +381,8 @@ TEST_F(Strangers, WaitForNoPipeAndReadNoDevice) {
           }
           done->set_value(throws);
         }).detach();
-        ASSERT_EQ(ended.wait_for(std::chrono::seconds(20)), std::future_status::ready) << naming.what << ", " << name;
+        ASSERT_EQ(ended.wait_for(std::chrono::seconds(20)), std::future_status::ready)
+            << naming.what << ", " << name;
         EXPECT_TRUE(ended.get() || !no_outside || name != zero) << naming.what;
       }
   }
@@ -331,8 +390,8 @@ TEST_F(Strangers, WaitForNoPipeAndReadNoDevice) {
 
 // --- What errors show ---
 
-/// Files of other kinds, in which every word is a secret. Some formats have columns of three letters, so that three are looked
-/// for.
+/// Files of other kinds, in which every word is a secret. Some formats have columns of three
+/// letters, so that three are looked for.
 const std::pair<const char*, std::string> secrets[] = {
     {"passwords", "root:$6$hunter2$hunter2:19000:0:99999:7:::\nhunter2:!:19000:0:99999:7:::\n"},
     {"words", "hunter2 hunter2 hunter2 hunter2 hunter2 hunter2 hunter2 hunter2\nhunter2\n"},
@@ -345,18 +404,23 @@ const std::pair<const char*, std::string> secrets[] = {
     {"one number", "3\nhunter2\nhunter2 hunter2 hunter2 hunter2\n"},
     {"quotes", "\"hunter2\" \"hunter2\"\n\"hunter2\n"},
     {"sections", "[hunter2]\nhunter2 = hunter2\n; hunter2\n"},
-    {"statements of a shell", "# hunter2\nInclude hunter2\nHost hunter2\n  Option hunter2\n  Film hunter2\n"},
+    {"statements of a shell",
+     "# hunter2\nInclude hunter2\nHost hunter2\n  Option hunter2\n  Film hunter2\n"},
     {"statements that a scene has",
-     "Shape \"hunter2\" \"hunter2 hunter2\" hunter2\nOption \"hunter2\" hunter2\nTranslate hunter2 1 2\n"},
+     "Shape \"hunter2\" \"hunter2 hunter2\" hunter2\nOption \"hunter2\" hunter2\nTranslate hunter2 "
+     "1 2\n"},
     {"a statement with a word of another one", "Camera \"sphere\" hunter2\n"},
     {"many words", "hunter2\nhunter2\nhunter2\nhunter2\nhunter2\nhunter2\n"},
     {"a table", "hunter2,hunter2,1.5\nhunter2,hunter2,2.5\n"},
     {"dashes", "-hunter2 --hunter2 - hunter2\n"},
     {"brackets", "<hunter2, 0, 0> <1, 0, 0> hunter2\n(hunter2)\n"},
     {"letters of one line", "hunter2"},
-    {"records", "ATOM  hunter2 hunter2 hunter2 hunter2 hunter2 hunter2 hunter2 hunter2\nHETATM hunter2\nCONECT hunter2\n"},
+    {"records",
+     "ATOM  hunter2 hunter2 hunter2 hunter2 hunter2 hunter2 hunter2 hunter2\nHETATM "
+     "hunter2\nCONECT hunter2\n"},
     {"short records", "HETATM hunter2\nATOM hunter2\n"},
-    {"records of fixed columns", "ATOM      1  CA  ALA A   1     hunter2 hunter2 hunter2  1.00  0.00     hunter2\n"},
+    {"records of fixed columns",
+     "ATOM      1  CA  ALA A   1     hunter2 hunter2 hunter2  1.00  0.00     hunter2\n"},
     {"lists", "data_hunter2\nloop_\n_hunter2.hunter2\nhunter2 'hunter2\n_hunter2\n"},
     {"bytes", std::string("\0\1\2hunter2\xff\xfehunter2", 19)},
     {"a long word", std::string(3000, 'x') + "hunter2" + std::string(3000, 'x')},
@@ -371,7 +435,8 @@ TEST_F(Strangers, ErrorsShowNothingOfFilesThatAreNoScenes) {
         put(file, text);
         const std::string shown = said(file, false);
         EXPECT_THAT(shown, Not(HasSubstr("hun"))) << format.name << " of " << what;
-        EXPECT_TRUE(shown == "\n" || shown.find("secret" + extension) != std::string::npos) << format.name << " of " << what;
+        EXPECT_TRUE(shown == "\n" || shown.find("secret" + extension) != std::string::npos)
+            << format.name << " of " << what;
       }
     }
 }
@@ -382,7 +447,8 @@ TEST_F(Strangers, ErrorsShowNothingOfWhatScenesName) {
       const std::string name = "../out/private" + std::string(naming.ending);
       if (std::string_view(naming.what) == "file:// of URDF") continue;
       put(outside_ / fs::path(name).filename(), text);
-      EXPECT_THAT(said(scene(naming, name), false), Not(HasSubstr("hun"))) << naming.what << " of " << what;
+      EXPECT_THAT(said(scene(naming, name), false), Not(HasSubstr("hun")))
+          << naming.what << " of " << what;
     }
 }
 
@@ -400,8 +466,11 @@ TEST_F(Strangers, ErrorsShowWhatIsWrongInScenes) {
       {"a.sdf",
        "a\n\n\n  2  0  0  0  0  0  0  0  0  0999 V2000\n    0.0000    0.0000    0.0000 C   0  0\n"
        "    1.0000    0.0000      Shpe C   0  0\n"},
-      {"a.vtk", "# vtk DataFile Version 3.0\nx\nASCII\nDATASET POLYDATA\nPOINTS 1 float\n0 0 Shpe\n"},
-      {"a.urdf", "<robot name='r'><link name='l'><visual><geometry><sphere radius='Shpe'/></geometry></visual></link></robot>"},
+      {"a.vtk",
+       "# vtk DataFile Version 3.0\nx\nASCII\nDATASET POLYDATA\nPOINTS 1 float\n0 0 Shpe\n"},
+      {"a.urdf",
+       "<robot name='r'><link name='l'><visual><geometry><sphere "
+       "radius='Shpe'/></geometry></visual></link></robot>"},
       {"a.mjcf", "<mujoco><worldbody><geom size='Shpe'/></worldbody></mujoco>"},
       {"a.xml", "<scene><TriangleMesh><positions>0 0 Shpe</positions></TriangleMesh></scene>"},
       {"a.ecs", "-vp 0 0 1\n-vi 0 0 Shpe\n"}};
@@ -411,10 +480,14 @@ TEST_F(Strangers, ErrorsShowWhatIsWrongInScenes) {
   }
   put(inside_ / "part.pbrt", "Translate 1 0 0\nShpe \"sphere\"\n");
   put(inside_ / "whole.pbrt", "WorldBegin\nInclude \"part.pbrt\"\n");
-  EXPECT_THAT(said(inside_ / "whole.pbrt", false), HasSubstr("part.pbrt:2:1: unknown directive \"Shpe\""));
-  put(inside_ / "part.pbrt", "Shpe \"sphere\"\nShpe \"sphere\"\n");
   EXPECT_THAT(said(inside_ / "whole.pbrt", false),
-              StartsWith((inside_ / "part.pbrt:1:1: unknown directive \"...\"; the nearest known name is \"Shape\"\n").string()));
+              HasSubstr("part.pbrt:2:1: unknown directive \"Shpe\""));
+  put(inside_ / "part.pbrt", "Shpe \"sphere\"\nShpe \"sphere\"\n");
+  EXPECT_THAT(
+      said(inside_ / "whole.pbrt", false),
+      StartsWith((inside_ /
+                  "part.pbrt:1:1: unknown directive \"...\"; the nearest known name is \"Shape\"\n")
+                     .string()));
 }
 
 // --- Paths ---
@@ -425,8 +498,8 @@ TEST_F(Strangers, PathsAreFollowedAsTheSystemDoes) {
   fs::create_symlink("file", outside_ / "again");
   fs::create_symlink("../../out/./again", inside_ / "sub" / "there");
   // Where all of it is there the system's own answer is the right one.
-  for (const char* path :
-       {"away/file", "away/again", "sub/there", "sub/../away/file", "away/../scene/sub/there", ".", "..", "/", "sub/"}) {
+  for (const char* path : {"away/file", "away/again", "sub/there", "sub/../away/file",
+                           "away/../scene/sub/there", ".", "..", "/", "sub/"}) {
     const fs::path whole = path[0] == '/' ? fs::path(path) : inside_ / path;
     fs::path real = fs::canonical(whole);
     EXPECT_EQ(without_links(whole), real) << path;
@@ -440,7 +513,8 @@ TEST_F(Strangers, PathsAreFollowedAsTheSystemDoes) {
   EXPECT_EQ(without_links(inside_ / "round"), "");
   // As many links as the system would not follow.
   fs::create_symlink("/etc", inside_ / "step0");
-  for (int i = 1; i < 60; ++i) fs::create_symlink(fmt::format("step{}", i - 1), inside_ / fmt::format("step{}", i));
+  for (int i = 1; i < 60; ++i)
+    fs::create_symlink(fmt::format("step{}", i - 1), inside_ / fmt::format("step{}", i));
   const ReadingBeneath fence(inside_ / "a.pbrt");
   for (const int steps : {0, 20, 39, 40, 41, 59})
     EXPECT_FALSE(may_read(inside_ / fmt::format("step{}", steps) / "passwd")) << steps;

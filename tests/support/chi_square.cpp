@@ -46,7 +46,8 @@ ChiSquareResult chi_square(std::span<const double> observed, std::span<const dou
       throw std::invalid_argument("chi_square: expectations must be finite and not negative");
   std::vector<std::size_t> order(expected.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
-  std::stable_sort(order.begin(), order.end(), [expected](std::size_t a, std::size_t b) { return expected[a] < expected[b]; });
+  std::stable_sort(order.begin(), order.end(),
+                   [expected](std::size_t a, std::size_t b) { return expected[a] < expected[b]; });
 
   struct Pool {
     double observed = 0, expected = 0;
@@ -69,12 +70,16 @@ ChiSquareResult chi_square(std::span<const double> observed, std::span<const dou
   }
 
   ChiSquareResult result;
-  for (const Pool& p : pools) result.statistic += (p.observed - p.expected) * (p.observed - p.expected) / p.expected;
+  for (const Pool& p : pools)
+    result.statistic += (p.observed - p.expected) * (p.observed - p.expected) / p.expected;
   result.degrees_of_freedom = std::max(0, static_cast<int>(pools.size()) - 1);
-  if (result.degrees_of_freedom > 0) result.p_value = gamma_q(0.5 * result.degrees_of_freedom, 0.5 * result.statistic);
+  if (result.degrees_of_freedom > 0)
+    result.p_value = gamma_q(0.5 * result.degrees_of_freedom, 0.5 * result.statistic);
   return result;
 }
 
-double sidak(double significance, int tests) { return -std::expm1(std::log1p(-significance) / tests); }
+double sidak(double significance, int tests) {
+  return -std::expm1(std::log1p(-significance) / tests);
+}
 
 }  // namespace caplet::test

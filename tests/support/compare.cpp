@@ -27,14 +27,17 @@ std::vector<Block> block_means(const Picture& picture) {
     for (int x = 0; x < columns * block; ++x)
       for (std::size_t c = 0; c < 3; ++c)
         out[static_cast<std::size_t>(y / block * columns + x / block)][c] +=
-            static_cast<double>(picture.rgb[static_cast<std::size_t>(y * picture.width + x) * 3 + c]) / (block * block);
+            static_cast<double>(
+                picture.rgb[static_cast<std::size_t>(y * picture.width + x) * 3 + c]) /
+            (block * block);
   return out;
 }
 
 void check_sizes(const Picture& a, const Picture& b) {
   if (a.width != b.width || a.height != b.height || a.rgb.size() != b.rgb.size() || a.rgb.empty())
-    throw std::logic_error("pictures of different sizes: " + std::to_string(a.width) + "x" + std::to_string(a.height) + " and " +
-                           std::to_string(b.width) + "x" + std::to_string(b.height));
+    throw std::logic_error("pictures of different sizes: " + std::to_string(a.width) + "x" +
+                           std::to_string(a.height) + " and " + std::to_string(b.width) + "x" +
+                           std::to_string(b.height));
 }
 
 }  // namespace
@@ -47,20 +50,24 @@ Figures compare(const Picture& ours, const Picture& theirs) {
 
   const std::vector<Block> a = block_means(ours), b = block_means(theirs);
   double block_mean = 0, squares = 0;
-  for (const Block& value : b) block_mean += (value[0] + value[1] + value[2]) / (3 * static_cast<double>(b.size()));
+  for (const Block& value : b)
+    block_mean += (value[0] + value[1] + value[2]) / (3 * static_cast<double>(b.size()));
   for (std::size_t i = 0; i < b.size(); ++i) {
     const double scale = std::max((b[i][0] + b[i][1] + b[i][2]) / 3, 0.02 * block_mean);
     for (std::size_t c = 0; c < 3; ++c) squares += std::pow((a[i][c] - b[i][c]) / scale, 2);
   }
   out.blocks = std::sqrt(squares / (3 * static_cast<double>(b.size())));
 
-  if (ours.variance.size() != ours.rgb.size() || theirs.variance.size() != theirs.rgb.size()) return out;
+  if (ours.variance.size() != ours.rgb.size() || theirs.variance.size() != theirs.rgb.size())
+    return out;
   double sum = 0, sum_squares = 0;
   std::size_t far = 0;
   for (std::size_t i = 1; i < ours.rgb.size(); i += 3) {
-    const double variance = static_cast<double>(ours.variance[i]) + static_cast<double>(theirs.variance[i]);
+    const double variance =
+        static_cast<double>(ours.variance[i]) + static_cast<double>(theirs.variance[i]);
     if (!(variance > 0)) continue;
-    const double z = (static_cast<double>(ours.rgb[i]) - static_cast<double>(theirs.rgb[i])) / std::sqrt(variance);
+    const double z = (static_cast<double>(ours.rgb[i]) - static_cast<double>(theirs.rgb[i])) /
+                     std::sqrt(variance);
     if (!std::isfinite(z)) continue;
     sum += z;
     sum_squares += z * z;

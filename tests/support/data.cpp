@@ -15,7 +15,8 @@ namespace fs = std::filesystem;
 fs::path source_folder() { return CAPLET_SOURCE_DIR; }
 
 fs::path data_folder() {
-  if (const char* named = std::getenv("CAPLET_DATA"); named && fs::is_directory(named)) return named;
+  if (const char* named = std::getenv("CAPLET_DATA"); named && fs::is_directory(named))
+    return named;
   const fs::path beside = source_folder() / ".." / "shared" / "data";
   return fs::is_directory(beside) ? fs::weakly_canonical(beside) : fs::path();
 }

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Where tests find input. The shared data folder lies beside the checkout (or where CAPLET_DATA says).
+// Where tests find input. The shared data folder lies beside the checkout (or where CAPLET_DATA
+// says).
 #pragma once
 
 #include <filesystem>
@@ -20,11 +21,13 @@ std::filesystem::path temporary_folder();
 
 }  // namespace caplet::test
 
-/// Skips the test, with the reason printed, when the shared data folder is not there; fails it where data_required.
-#define CAPLET_NEEDS_DATA()                                                                                                \
-  do {                                                                                                                     \
-    if (::caplet::test::data_folder().empty()) {                                                                           \
-      if (::caplet::test::data_required()) FAIL() << "needs the shared data folder (beside the checkout, or CAPLET_DATA)"; \
-      GTEST_SKIP() << "needs the shared data folder (beside the checkout, or CAPLET_DATA)";                                \
-    }                                                                                                                      \
+/// Skips the test, with the reason printed, when the shared data folder is not there; fails it
+/// where data_required.
+#define CAPLET_NEEDS_DATA()                                                                 \
+  do {                                                                                      \
+    if (::caplet::test::data_folder().empty()) {                                            \
+      if (::caplet::test::data_required())                                                  \
+        FAIL() << "needs the shared data folder (beside the checkout, or CAPLET_DATA)";     \
+      GTEST_SKIP() << "needs the shared data folder (beside the checkout, or CAPLET_DATA)"; \
+    }                                                                                       \
   } while (false)

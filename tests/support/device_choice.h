@@ -8,7 +8,8 @@
 
 namespace caplet::test {
 
-/// What CAPLET_TEST_DEVICE says, as `--device` takes it; empty, the default choice, when it is not set.
+/// What CAPLET_TEST_DEVICE says, as `--device` takes it; empty, the default choice, when it is not
+/// set.
 std::string test_device_choice();
 
 }  // namespace caplet::test

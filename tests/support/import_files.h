@@ -16,7 +16,9 @@ namespace caplet::test {
 
 class NoImages : public ImageReader {
  public:
-  EnvironmentImage read_rgb(const std::filesystem::path& path) const override { throw InputError(path.string() + ": no images"); }
+  EnvironmentImage read_rgb(const std::filesystem::path& path) const override {
+    throw InputError(path.string() + ": no images");
+  }
 };
 
 inline std::filesystem::path write_file(const std::string& name, const std::string& text) {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// What kernels/shared lists, as names and numbers: tests that run over a list have a new row on trial at once. The one place
-// where tests expand shapes.def.
+// What kernels/shared lists, as names and numbers: tests that run over a list have a new row on
+// trial at once. The one place where tests expand shapes.def.
 #pragma once
 
 #include <array>

@@ -17,7 +17,8 @@ class FailOnLoggedErrors : public testing::EmptyTestEventListener {
     allowed = 0;
   }
   void OnTestEnd(const testing::TestInfo&) override {
-    EXPECT_EQ(caplet::log::error_count() - before_, allowed) << "errors were logged that the test did not declare";
+    EXPECT_EQ(caplet::log::error_count() - before_, allowed)
+        << "errors were logged that the test did not declare";
   }
   int before_ = 0;
 };

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Whether this build is instrumented by AddressSanitizer (preset asan), for tests that must ask for less then.
+// Whether this build is instrumented by AddressSanitizer (preset asan), for tests that must ask for
+// less then.
 #pragma once
 
 #if defined(__has_feature)

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// For test kernels that trace a lowered scene: their parameters, the groups made of these, and the buffers.
+// For test kernels that trace a lowered scene: their parameters, the groups made of these, and the
+// buffers.
 #pragma once
 
 #include <vector>
@@ -12,8 +13,8 @@
 
 namespace caplet::test {
 
-/// OpenCL C to put before a kernel's text: SCENE_PARAMETERS of a kernel, the arguments that SceneOnDevice sets, and
-/// SCENE_STRUCTS, which defines `tree` and `surfaces` of them.
+/// OpenCL C to put before a kernel's text: SCENE_PARAMETERS of a kernel, the arguments that
+/// SceneOnDevice sets, and SCENE_STRUCTS, which defines `tree` and `surfaces` of them.
 inline constexpr const char* scene_parameters = R"(
 #include "groups.cl"
 #define GROUP_BEGIN(Type, group)
@@ -31,7 +32,8 @@ Buffer<T> upload(const Device& device, const std::vector<T>& values) {
   return Buffer<T>(device, std::span<const T>(values));
 }
 
-/// Sets the arguments of a kernel with (SCENE_PARAMETERS, more...). The scene's buffers last as long as this.
+/// Sets the arguments of a kernel with (SCENE_PARAMETERS, more...). The scene's buffers last as
+/// long as this.
 class SceneOnDevice {
  public:
   /// For kernels of this CAPLET_REAL_WIDTH.

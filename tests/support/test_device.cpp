@@ -16,8 +16,8 @@ namespace {
 void announce(const Device& device) {
   static const bool done = [&] {
     const DeviceInfo& info = device.info();
-    std::cout << fmt::format("[  DEVICE  ] {} {} ({}), {}, encoding {}", info.index, info.name, info.type, info.platform,
-                             name_of(device.encoding()))
+    std::cout << fmt::format("[  DEVICE  ] {} {} ({}), {}, encoding {}", info.index, info.name,
+                             info.type, info.platform, name_of(device.encoding()))
               << std::endl;
     return true;
   }();
@@ -34,7 +34,8 @@ Device test_device(Encoding encoding) {
     return device;
   } catch (const std::exception& error) {
     throw RunError(fmt::format("no device to test on, CAPLET_TEST_DEVICE {}: {}",
-                               choice.empty() ? "is not set" : "is '" + choice + "'", error.what()));
+                               choice.empty() ? "is not set" : "is '" + choice + "'",
+                               error.what()));
   }
 }
 

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// How long comparisons of random cases run: CAPLET_TEST_SCALE=N in the environment makes them N times as long.
+// How long comparisons of random cases run: CAPLET_TEST_SCALE=N in the environment makes them N
+// times as long.
 #pragma once
 
 #include <algorithm>

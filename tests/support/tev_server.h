@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// In tev's place: takes its packets on a port of this machine and puts the pictures together, as tev's README and its reader have
-// them.
+// In tev's place: takes its packets on a port of this machine and puts the pictures together, as
+// tev's README and its reader have them.
 #pragma once
 
 #include <arpa/inet.h>
@@ -38,7 +38,8 @@ class TevServer {
     sockaddr_in address{};
     address.sin_family = AF_INET;
     address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-    if (::bind(listener_, reinterpret_cast<sockaddr*>(&address), sizeof address) != 0 || ::listen(listener_, 4) != 0)
+    if (::bind(listener_, reinterpret_cast<sockaddr*>(&address), sizeof address) != 0 ||
+        ::listen(listener_, 4) != 0)
       throw std::runtime_error("no port");
     socklen_t size = sizeof address;
     ::getsockname(listener_, reinterpret_cast<sockaddr*>(&address), &size);
@@ -76,7 +77,8 @@ class TevServer {
     Whole whole() {
       if (at + sizeof(Whole) > bytes.size()) throw std::runtime_error("a packet is too short");
       std::uint64_t value = 0;
-      for (std::size_t i = 0; i < sizeof(Whole); ++i) value |= std::uint64_t{static_cast<unsigned char>(bytes[at++])} << (8 * i);
+      for (std::size_t i = 0; i < sizeof(Whole); ++i)
+        value |= std::uint64_t{static_cast<unsigned char>(bytes[at++])} << (8 * i);
       return static_cast<Whole>(value);
     }
     float number() {
@@ -106,7 +108,8 @@ class TevServer {
       picture.height = in.whole<std::int32_t>();
       const auto count = in.whole<std::int32_t>();
       for (std::int32_t i = 0; i < count; ++i)
-        picture.channels[in.text()].resize(static_cast<std::size_t>(picture.width) * static_cast<std::size_t>(picture.height));
+        picture.channels[in.text()].resize(static_cast<std::size_t>(picture.width) *
+                                           static_cast<std::size_t>(picture.height));
       pictures_[name] = picture;
     } else if (kind == 6) {  // UpdateImageV3
       TevPicture& picture = pictures_.at(name);
@@ -126,8 +129,10 @@ class TevServer {
       for (std::size_t c = 0; c < count; ++c)
         for (std::int32_t row = 0; row < height; ++row)
           for (std::int32_t column = 0; column < width; ++column)
-            picture.channels.at(names[c]).at(static_cast<std::size_t>((y + row) * picture.width + x + column)) =
-                values.at(static_cast<std::size_t>(offsets[c] + (std::int64_t{row} * width + column) * strides[c]));
+            picture.channels.at(names[c]).at(
+                static_cast<std::size_t>((y + row) * picture.width + x + column)) =
+                values.at(static_cast<std::size_t>(
+                    offsets[c] + (std::int64_t{row} * width + column) * strides[c]));
     } else {
       throw std::runtime_error("a packet of kind " + std::to_string(kind));
     }

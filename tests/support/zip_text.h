@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Zip archives for tests, written by hand (APPNOTE 6.3): local headers and data, the list of files, its end.
+// Zip archives for tests, written by hand (APPNOTE 6.3): local headers and data, the list of files,
+// its end.
 #pragma once
 
 #include <zlib.h>
@@ -14,7 +15,8 @@
 namespace caplet::test {
 
 /// Files as they are, or deflated.
-inline std::string zip_of(const std::vector<std::pair<std::string, std::string>>& files, bool deflated = false) {
+inline std::string zip_of(const std::vector<std::pair<std::string, std::string>>& files,
+                          bool deflated = false) {
   const auto number = [](std::string& out, std::uint64_t value, int bytes) {
     for (int i = 0; i < bytes; ++i, value >>= 8) out += static_cast<char>(value);
   };
@@ -38,7 +40,9 @@ inline std::string zip_of(const std::vector<std::pair<std::string, std::string>>
     number(about, 0, 2);
     number(about, deflated ? 8 : 0, 2);
     number(about, 0, 4);
-    number(about, crc32(0, reinterpret_cast<const Bytef*>(bytes.data()), static_cast<uInt>(bytes.size())), 4);
+    number(about,
+           crc32(0, reinterpret_cast<const Bytef*>(bytes.data()), static_cast<uInt>(bytes.size())),
+           4);
     number(about, packed.size(), 4);
     number(about, bytes.size(), 4);
     number(about, name.size(), 2);
@@ -63,11 +67,13 @@ inline std::string zip_of(const std::vector<std::pair<std::string, std::string>>
 
 /// A 3MF package of one model.
 inline std::string package_3mf(const std::string& model) {
-  return zip_of({{"_rels/.rels",
-                  "<Relationships xmlns=\"http://schemas.openxmlformats.org/package/2006/relationships\">"
-                  "<Relationship Type=\"http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel\" Target=\"/3D/a.model\" "
-                  "Id=\"r\"/></Relationships>"},
-                 {"3D/a.model", model}});
+  return zip_of(
+      {{"_rels/.rels",
+        "<Relationships xmlns=\"http://schemas.openxmlformats.org/package/2006/relationships\">"
+        "<Relationship Type=\"http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel\" "
+        "Target=\"/3D/a.model\" "
+        "Id=\"r\"/></Relationships>"},
+       {"3D/a.model", model}});
 }
 
 }  // namespace caplet::test

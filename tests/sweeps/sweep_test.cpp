@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// The sweeps of ./run sweeps with fewer rays: in every cell all hits are within the bound that docs/numerics.md
-// states, and no hit or miss differs from the reference but where the referee says that the ray touches. CAPLET_TEST_SCALE=N: N
-// times the rays.
+// The sweeps of ./run sweeps with fewer rays: in every cell all hits are within the bound that
+// docs/numerics.md states, and no hit or miss differs from the reference but where the referee says
+// that the ray touches. CAPLET_TEST_SCALE=N: N times the rays.
 #include <gtest/gtest.h>
 
 #include "support/test_device.h"
@@ -17,12 +17,14 @@ class Sweeps : public testing::TestWithParam<ShapeKind> {};
 TEST_P(Sweeps, StayWithinTheBound) {
   for (const Axis& axis : axes()) {
     if (!has_axis(GetParam().shape, axis.name)) continue;
-    const auto cells = sweep(test_device(), GetParam().shape, axis.name, axis.values, 300 * test_scale(), 1);
+    const auto cells =
+        sweep(test_device(), GetParam().shape, axis.name, axis.values, 300 * test_scale(), 1);
     double worst = 0;
     std::uint64_t excused = 0;
     for (std::size_t i = 0; i < cells.size(); ++i) {
       const Cell& cell = cells[i];
-      for (const std::string& example : cell.examples) ADD_FAILURE() << axis.title << " " << axis.values[i] << ": " << example;
+      for (const std::string& example : cell.examples)
+        ADD_FAILURE() << axis.title << " " << axis.values[i] << ": " << example;
       EXPECT_EQ(cell.wrong, 0u) << axis.title << " " << axis.values[i];
       EXPECT_LE(cell.bound_worst, 1) << axis.title << " " << axis.values[i];
       EXPECT_LE(cell.differ_bound, 1) << axis.title << " " << axis.values[i];

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Solids that touch: boxes and polyhedra with common faces, chains of capsules and cylinders with common ends, spheres that rest
-// on boxes, triangles with common edges. A ray that begins in one of them goes on from surface to surface by offset_origin, as
-// paths do: wherever the reference says that it crosses a surface, one of the solids there has to have seen it. 20,000 rays;
+// Solids that touch: boxes and polyhedra with common faces, chains of capsules and cylinders with
+// common ends, spheres that rest on boxes, triangles with common edges. A ray that begins in one of
+// them goes on from surface to surface by offset_origin, as paths do: wherever the reference says
+// that it crosses a surface, one of the solids there has to have seen it. 20,000 rays;
 // CAPLET_TEST_SCALE=50 makes it a million.
 #include <gtest/gtest.h>
 #include <tbb/parallel_for.h>
@@ -42,7 +43,8 @@ class TouchingMaker {
  public:
   explicit TouchingMaker(std::uint32_t seed) : maker(seed) {
     scale = std::pow(10.0, maker.uniform(-3, 3));
-    center = (maker.below(2) == 0 ? 0.0 : scale * std::pow(10.0, maker.uniform(0, 3))) * maker.direction();
+    center = (maker.below(2) == 0 ? 0.0 : scale * std::pow(10.0, maker.uniform(0, 3))) *
+             maker.direction();
   }
 
   // A grid of boxes with common faces.
@@ -63,7 +65,8 @@ class TouchingMaker {
           out.shapes.push_back(shape_of(BoxShape{low, high}));
           out.inside.push_back(0.5 * (low + high));
           for (const double s : {0.0, 0.5, 1.0})
-            out.places.push_back({low.x + s * (high.x - low.x), low.y, low.z + s * (high.z - low.z)});
+            out.places.push_back(
+                {low.x + s * (high.x - low.x), low.y, low.z + s * (high.z - low.z)});
           out.places.push_back({low.x, 0.3 * low.y + 0.7 * high.y, 0.4 * low.z + 0.6 * high.z});
         }
     out.size = 3 * scale;
@@ -105,7 +108,8 @@ class TouchingMaker {
     for (int i = 0; i < 6; ++i) {
       const dvec3 next = rounded(at + scale * maker.uniform(0.2, 1) * axis);
       out.shapes.push_back(shape_of(CylinderShape{at, next, radius, {Cap::flat, Cap::flat}}));
-      const dvec3 around = maker.direction(), across = glm::normalize(around - glm::dot(around, axis) * axis);
+      const dvec3 around = maker.direction(),
+                  across = glm::normalize(around - glm::dot(around, axis) * axis);
       for (const double s : {0.0, 0.5, 1.0}) out.places.push_back(at + s * radius * across);
       out.inside.push_back(0.5 * (at + next));
       at = next;
@@ -151,7 +155,8 @@ class TouchingMaker {
     }
     for (int i = 0; i < 20; ++i) {
       const dvec3 around = maker.direction();
-      out.places.push_back(cut + 0.4 * scale * maker.uniform(0, 1) * (around - glm::dot(around, n) * n));
+      out.places.push_back(cut +
+                           0.4 * scale * maker.uniform(0, 1) * (around - glm::dot(around, n) * n));
     }
     out.size = 2 * scale;
     return out;
@@ -163,8 +168,10 @@ class TouchingMaker {
     Touching out;
     const int corners = 5 + maker.below(20);
     for (int i = 0; i < corners; ++i) {
-      const double phi = (i + 0.4 * maker.uniform(0, 1)) * full_turn / corners, r = scale * maker.uniform(0.5, 1);
-      out.places.push_back(rounded(center + r * dvec3(std::cos(phi), std::sin(phi), 0.2 * maker.uniform(-1, 1))));
+      const double phi = (i + 0.4 * maker.uniform(0, 1)) * full_turn / corners,
+                   r = scale * maker.uniform(0.5, 1);
+      out.places.push_back(
+          rounded(center + r * dvec3(std::cos(phi), std::sin(phi), 0.2 * maker.uniform(-1, 1))));
     }
     out.places.push_back(rounded(center + dvec3(0, 0, scale)));
     out.places.push_back(rounded(center - dvec3(0, 0, scale)));
@@ -196,17 +203,21 @@ struct Tally {
 };
 
 // Every place where the reference's ray crosses something has been seen by a step of the walk.
-void check(const Touching& touching, const reference::SceneReference& reference, const RayRecord& ray, const Walk& walk,
-           const std::string& where, Tally& tally) {
+void check(const Touching& touching, const reference::SceneReference& reference,
+           const RayRecord& ray, const Walk& walk, const std::string& where, Tally& tally) {
   const reference::Ray exact = reference_ray(ray);
-  const double speed = glm::length(exact.direction), reach = glm::length(exact.origin) + touching.size;
-  // What the first hit is off by, and each step moves the ray by at most its `error`; twice that, and the surface points' own.
+  const double speed = glm::length(exact.direction),
+               reach = glm::length(exact.origin) + touching.size;
+  // What the first hit is off by, and each step moves the ray by at most its `error`; twice that,
+  // and the surface points' own.
   double drift = 32 * eps * reach;
   for (const WalkStep& step : walk.steps) drift += 4 * double(step.error);
   std::uint64_t places = 0, steep = 0, leaks = 0;
   dvec3 leak(0);
   const std::vector<reference::SceneHit> crossings = reference.all(exact);
-  const auto at = [&](const reference::SceneHit& hit) { return exact.origin + hit.t * exact.direction; };
+  const auto at = [&](const reference::SceneHit& hit) {
+    return exact.origin + hit.t * exact.direction;
+  };
   const auto cosine_at = [&](const reference::SceneHit& hit) {
     return std::abs(glm::dot(reference.normal(hit, at(hit)), exact.direction)) / speed;
   };
@@ -219,9 +230,11 @@ void check(const Touching& touching, const reference::SceneReference& reference,
     for (std::size_t k = 0; k < crossings.size(); ++k) {
       const bool pair = hit.leaving ? k < i : k > i;
       if (!pair || crossings[k].index != hit.index || crossings[k].leaving == hit.leaving) continue;
-      chord = std::min(chord, std::abs(hit.t - crossings[k].t) * speed * std::min(cosine, cosine_at(crossings[k])));
+      chord = std::min(chord, std::abs(hit.t - crossings[k].t) * speed *
+                                  std::min(cosine, cosine_at(crossings[k])));
     }
-    // The crossing may lie 100 times the drift away, or nowhere; and normals at edges have no meaning.
+    // The crossing may lie 100 times the drift away, or nowhere; and normals at edges have no
+    // meaning.
     if (!(cosine > 0.01) || !(chord > 8 * drift)) {
       ++steep;
       continue;
@@ -229,8 +242,9 @@ void check(const Touching& touching, const reference::SceneReference& reference,
     ++places;
     const double allowed = 2 * drift / cosine;
     if (glm::length(x - exact.origin) < allowed) continue;  // begins there
-    const bool seen = std::any_of(walk.steps.begin(), walk.steps.end(),
-                                  [&](const WalkStep& step) { return glm::length(vec(step.p) - x) <= allowed; });
+    const bool seen = std::any_of(walk.steps.begin(), walk.steps.end(), [&](const WalkStep& step) {
+      return glm::length(vec(step.p) - x) <= allowed;
+    });
     if (!seen) ++leaks, leak = x;
   }
   const std::lock_guard lock(tally.mutex);
@@ -241,10 +255,11 @@ void check(const Touching& touching, const reference::SceneReference& reference,
   if (leaks > 0 && ++tally.shown <= 3) {
     std::string steps;
     for (const WalkStep& step : walk.steps)
-      steps += "\n  " + std::to_string(step.p[0]) + " " + std::to_string(step.p[1]) + " " + std::to_string(step.p[2]);
-    ADD_FAILURE() << where << ": nothing is seen at " << leak.x << " " << leak.y << " " << leak.z << ", drift " << drift
-                  << "; ray " << ray.ox << " " << ray.oy << " " << ray.oz << "  " << ray.dx << " " << ray.dy << " " << ray.dz
-                  << "; steps:" << steps;
+      steps += "\n  " + std::to_string(step.p[0]) + " " + std::to_string(step.p[1]) + " " +
+               std::to_string(step.p[2]);
+    ADD_FAILURE() << where << ": nothing is seen at " << leak.x << " " << leak.y << " " << leak.z
+                  << ", drift " << drift << "; ray " << ray.ox << " " << ray.oy << " " << ray.oz
+                  << "  " << ray.dx << " " << ray.dy << " " << ray.dz << "; steps:" << steps;
   }
 }
 
@@ -269,29 +284,37 @@ TEST_P(Leaks, EveryCrossingIsSeen) {
     CaseMaker& maker = made.maker;
     std::vector<RayRecord> rays;
     for (int k = 0; k < 300; ++k) {
-      const dvec3 from = touching.inside[static_cast<std::size_t>(maker.below(static_cast<int>(touching.inside.size())))] +
+      const dvec3 from = touching.inside[static_cast<std::size_t>(
+                             maker.below(static_cast<int>(touching.inside.size())))] +
                          (maker.below(2) == 0 ? 0.0 : 0.01 * made.scale) * maker.direction();
-      const dvec3 at = touching.places[static_cast<std::size_t>(maker.below(static_cast<int>(touching.places.size())))];
-      const double aside = maker.below(2) == 0 ? 0.0 : made.scale * std::pow(10.0, maker.uniform(-8, -1));
-      const dvec3 d = maker.below(4) == 0 ? maker.direction() : at + aside * maker.direction() - from;
+      const dvec3 at = touching.places[static_cast<std::size_t>(
+          maker.below(static_cast<int>(touching.places.size())))];
+      const double aside =
+          maker.below(2) == 0 ? 0.0 : made.scale * std::pow(10.0, maker.uniform(-8, -1));
+      const dvec3 d =
+          maker.below(4) == 0 ? maker.direction() : at + aside * maker.direction() - from;
       rays.push_back(make_ray(from, glm::normalize(d)));
     }
     const std::string where = "scene " + std::to_string(i);
     const auto walks = walk(lower_shapes(touching.shapes), rays, most_steps);
-    tbb::parallel_for(std::size_t{0}, rays.size(),
-                      [&](std::size_t k) { check(touching, reference, rays[k], walks[k], where, tally); });
+    tbb::parallel_for(std::size_t{0}, rays.size(), [&](std::size_t k) {
+      check(touching, reference, rays[k], walks[k], where, tally);
+    });
   }
   const auto number = [](std::uint64_t x) { return static_cast<unsigned long long>(x); };
-  std::printf("%s: %llu rays, %llu crossings, %llu of them not seen; %llu too oblique or shallow to ask\n", GetParam().name,
-              number(tally.rays), number(tally.places), number(tally.leaks), number(tally.steep));
+  std::printf(
+      "%s: %llu rays, %llu crossings, %llu of them not seen; %llu too oblique or shallow to ask\n",
+      GetParam().name, number(tally.rays), number(tally.places), number(tally.leaks),
+      number(tally.steep));
   EXPECT_EQ(tally.leaks, 0u);
   EXPECT_GT(tally.places, tally.rays / 2);
   EXPECT_LT(tally.steep, tally.places);
 }
 
-const Row rows[] = {{"boxes", &TouchingMaker::boxes},         {"capsules", &TouchingMaker::capsules},
-                    {"cylinders", &TouchingMaker::cylinders}, {"spheres", &TouchingMaker::spheres},
-                    {"polyhedra", &TouchingMaker::polyhedra}, {"triangles", &TouchingMaker::triangles}};
+const Row rows[] = {
+    {"boxes", &TouchingMaker::boxes},         {"capsules", &TouchingMaker::capsules},
+    {"cylinders", &TouchingMaker::cylinders}, {"spheres", &TouchingMaker::spheres},
+    {"polyhedra", &TouchingMaker::polyhedra}, {"triangles", &TouchingMaker::triangles}};
 INSTANTIATE_TEST_SUITE_P(Kinds, Leaks, testing::ValuesIn(rows),
                          [](const auto& instance) { return std::string(instance.param.name); });
 

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// .npy files against bytes written out by hand, and lists of rays with every fault that can be in them.
+// .npy files against bytes written out by hand, and lists of rays with every fault that can be in
+// them.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -19,14 +20,17 @@ namespace {
 using testing::HasSubstr;
 using testing::StartsWith;
 
-void write_bytes(const std::filesystem::path& path, const std::string& bytes) { std::ofstream(path, std::ios::binary) << bytes; }
+void write_bytes(const std::filesystem::path& path, const std::string& bytes) {
+  std::ofstream(path, std::ios::binary) << bytes;
+}
 
 std::string read_bytes(const std::filesystem::path& path) {
   std::ifstream in(path, std::ios::binary);
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-/// An array file as the format's description says: version 1.0, or 2.0 and 3.0 with a longer length field.
+/// An array file as the format's description says: version 1.0, or 2.0 and 3.0 with a longer length
+/// field.
 std::string npy(const std::string& dictionary, const std::string& data, char version = 1) {
   std::string out = "\x93NUMPY";
   out += {version, '\0'};
@@ -88,7 +92,8 @@ TEST(RayFile, ReadsArraysOfBothTypesAndAllVersions) {
     EXPECT_EQ(read_all(path), expected()) << int{version};
   }
   // Spelt differently, the same dictionary.
-  write_bytes(path, npy("{\"shape\":(2L,6L),\"fortran_order\":False,\"descr\":\"<f4\"}", bytes_of(two_rays)));
+  write_bytes(path, npy("{\"shape\":(2L,6L),\"fortran_order\":False,\"descr\":\"<f4\"}",
+                        bytes_of(two_rays)));
   EXPECT_EQ(read_all(path), expected());
   write_bytes(path, npy("{'descr': '<f4', 'fortran_order': False, 'shape': (0, 6), }", ""));
   EXPECT_TRUE(read_all(path).empty());
@@ -109,17 +114,24 @@ std::string bytes_as(const std::vector<double>& numbers, bool swapped = false) {
 
 TEST(RayFile, ReadsWholeNumbersOtherByteOrdersAndFortranOrder) {
   const auto path = test::temporary_folder() / "rays.npy";
-  const std::vector<double> rows{1, 2, 3, 0, 0, 1, 4, 5, 6, 0, 7, 0}, by_columns{1, 4, 2, 5, 3, 6, 0, 0, 0, 7, 1, 0};
+  const std::vector<double> rows{1, 2, 3, 0, 0, 1, 4, 5, 6, 0, 7, 0},
+      by_columns{1, 4, 2, 5, 3, 6, 0, 0, 0, 7, 1, 0};
   const std::vector<RayNumbers> wanted{{1, 2, 3, 0, 0, 1}, {4, 5, 6, 0, 7, 0}};
   const auto of = [](const std::string& type, bool fortran) {
-    return "{'descr': '" + type + "', 'fortran_order': " + (fortran ? "True" : "False") + ", 'shape': (2, 6), }";
+    return "{'descr': '" + type + "', 'fortran_order': " + (fortran ? "True" : "False") +
+           ", 'shape': (2, 6), }";
   };
   const std::vector<std::pair<std::string, std::string>> files = {
-      {of("|i1", false), bytes_as<std::int8_t>(rows)},        {of("|u1", false), bytes_as<std::uint8_t>(rows)},
-      {of("<i2", false), bytes_as<std::int16_t>(rows)},       {of(">u2", false), bytes_as<std::uint16_t>(rows, true)},
-      {of("<i4", false), bytes_as<std::int32_t>(rows)},       {of("<u8", false), bytes_as<std::uint64_t>(rows)},
-      {of(">i8", false), bytes_as<std::int64_t>(rows, true)}, {of(">f4", false), bytes_as<float>(rows, true)},
-      {of("<f8", true), bytes_as<double>(by_columns)},        {of("<i4", true), bytes_as<std::int32_t>(by_columns)},
+      {of("|i1", false), bytes_as<std::int8_t>(rows)},
+      {of("|u1", false), bytes_as<std::uint8_t>(rows)},
+      {of("<i2", false), bytes_as<std::int16_t>(rows)},
+      {of(">u2", false), bytes_as<std::uint16_t>(rows, true)},
+      {of("<i4", false), bytes_as<std::int32_t>(rows)},
+      {of("<u8", false), bytes_as<std::uint64_t>(rows)},
+      {of(">i8", false), bytes_as<std::int64_t>(rows, true)},
+      {of(">f4", false), bytes_as<float>(rows, true)},
+      {of("<f8", true), bytes_as<double>(by_columns)},
+      {of("<i4", true), bytes_as<std::int32_t>(by_columns)},
   };
   for (const auto& [header, data] : files) {
     write_bytes(path, npy(header, data));
@@ -127,8 +139,8 @@ TEST(RayFile, ReadsWholeNumbersOtherByteOrdersAndFortranOrder) {
     EXPECT_EQ(read_all(path, 1), wanted) << header;
   }
   // Negative ones, and halves: 1, -2, 0.5, 65504, the least 2^-24, 0.
-  write_bytes(path,
-              npy("{'descr': '<i2', 'fortran_order': False, 'shape': (1, 6)}", bytes_as<std::int16_t>({-1, -300, 7, 0, 0, -1})));
+  write_bytes(path, npy("{'descr': '<i2', 'fortran_order': False, 'shape': (1, 6)}",
+                        bytes_as<std::int16_t>({-1, -300, 7, 0, 0, -1})));
   EXPECT_EQ(read_all(path), (std::vector<RayNumbers>{{-1, -300, 7, 0, 0, -1}}));
   write_bytes(path, npy("{'descr': '<f2', 'fortran_order': False, 'shape': (1, 6)}",
                         std::string("\x00\x3c\x00\xc0\x00\x38\xff\x7b\x01\x00\x00\x00", 12)));
@@ -148,7 +160,8 @@ TEST(RayFile, ReadsLimits) {
   EXPECT_EQ(rays[2].t_min, 1.0f);
   EXPECT_EQ(rays[2].t_max, INFINITY);
   const auto array = test::temporary_folder() / "rays.npy";
-  write_bytes(array, npy("{'descr': '<f4', 'fortran_order': False, 'shape': (1, 8)}", bytes_as<float>({0, 0, 0, 0, 0, 1, 3, 4})));
+  write_bytes(array, npy("{'descr': '<f4', 'fortran_order': False, 'shape': (1, 8)}",
+                         bytes_as<float>({0, 0, 0, 0, 0, 1, 3, 4})));
   EXPECT_EQ(RayFile(array).next(1)[0].t_max, 4.0f);
 }
 
@@ -156,7 +169,8 @@ TEST(NpyReader, ReadsFramesOfPlaces) {
   const auto path = test::temporary_folder() / "frames.npy";
   std::vector<double> numbers(2 * 3 * 3);
   for (std::size_t i = 0; i < numbers.size(); ++i) numbers[i] = static_cast<double>(i);
-  write_bytes(path, npy("{'descr': '<f4', 'fortran_order': False, 'shape': (2, 3, 3)}", bytes_as<float>(numbers)));
+  write_bytes(path, npy("{'descr': '<f4', 'fortran_order': False, 'shape': (2, 3, 3)}",
+                        bytes_as<float>(numbers)));
   NpyReader reader(path, {3}, 3);
   EXPECT_EQ(reader.shape(), (std::vector<std::uint64_t>{2, 3, 3}));
   reader.go_to(3);
@@ -165,7 +179,8 @@ TEST(NpyReader, ReadsFramesOfPlaces) {
   EXPECT_EQ(second.front(), 9);
   EXPECT_EQ(second.back(), 17);
   EXPECT_THROW(NpyReader(path, {3}), InputError);
-  write_bytes(path, npy("{'descr': '<f4', 'fortran_order': True, 'shape': (2, 3, 3)}", bytes_as<float>(numbers)));
+  write_bytes(path, npy("{'descr': '<f4', 'fortran_order': True, 'shape': (2, 3, 3)}",
+                        bytes_as<float>(numbers)));
   EXPECT_THROW(NpyReader(path, {3}, 3), InputError);
 }
 
@@ -216,8 +231,10 @@ TEST(RayFile, RefusesOtherArrays) {
 TEST(RayFile, NamesTheRowsOfBadRays) {
   const auto path = test::temporary_folder() / "rays.npy";
   const std::vector<std::pair<std::size_t, std::pair<float, std::string>>> faults = {
-      {7, {NAN, "row 1: the ray's origin is not finite"}},   {11, {INFINITY, "row 1: the ray's direction is not finite"}},
-      {0, {1e30f, "row 0: 1e+30 is out of range"}},          {5, {0, "row 0: the ray has no direction"}},
+      {7, {NAN, "row 1: the ray's origin is not finite"}},
+      {11, {INFINITY, "row 1: the ray's direction is not finite"}},
+      {0, {1e30f, "row 0: 1e+30 is out of range"}},
+      {5, {0, "row 0: the ray has no direction"}},
       {5, {1e-30f, "row 0: the direction's length, 1e-30"}},
   };
   for (const auto& [at, fault] : faults) {
@@ -230,7 +247,9 @@ TEST(RayFile, NamesTheRowsOfBadRays) {
 
 TEST(RayFile, ReadsText) {
   const auto path = test::temporary_folder() / "rays.txt";
-  write_bytes(path, "# origin, direction\n\n1 2 3  0 0 -1\r\n   # nothing here\n+.5,-2e0 , 1e-3\t0,4,0 # the second");
+  write_bytes(path,
+              "# origin, direction\n\n1 2 3  0 0 -1\r\n   # nothing here\n+.5,-2e0 , 1e-3\t0,4,0 # "
+              "the second");
   EXPECT_EQ(read_all(path), expected());
   EXPECT_EQ(read_all(path, 1), expected());
   write_bytes(path, "");
@@ -238,7 +257,8 @@ TEST(RayFile, ReadsText) {
   // Longer than what is read at a time, with lines across its seams.
   std::string text;
   std::size_t lines = 0;
-  for (; text.size() < 3'000'000; ++lines) text += "1 2 3 0 0 -1" + std::string(lines % 7, ' ') + "\n";
+  for (; text.size() < 3'000'000; ++lines)
+    text += "1 2 3 0 0 -1" + std::string(lines % 7, ' ') + "\n";
   write_bytes(path, text);
   const auto rays = read_all(path);
   ASSERT_EQ(rays.size(), lines);
@@ -270,7 +290,8 @@ TEST(RayFile, RefusesTextWithItsPlace) {
   };
   for (const auto& [text, message] : rows) {
     write_bytes(path, text);
-    EXPECT_EQ(refusal(path).substr(0, path.string().size() + message.size()), path.string() + message);
+    EXPECT_EQ(refusal(path).substr(0, path.string().size() + message.size()),
+              path.string() + message);
   }
   EXPECT_THAT(refusal(path.parent_path()), HasSubstr("folder"));
   EXPECT_THAT(refusal(path.parent_path() / "none.txt"), HasSubstr("no such file"));
@@ -301,20 +322,24 @@ TEST(NpyWriter, WritesWhatTheFormatSays) {
     for (std::size_t i = 0; i < rows; ++i) {
       const auto t = static_cast<float>(i) * 0.5f;
       data.append(reinterpret_cast<const char*>(&t), sizeof t);
-      append_unicode(data, i % 2 == 0 ? "ab" : "\xc3\xa9\xe2\x82\xac\xf0\x9f\x98\x80z", 3);  // U+E9 U+20AC U+1F600 z
+      append_unicode(data, i % 2 == 0 ? "ab" : "\xc3\xa9\xe2\x82\xac\xf0\x9f\x98\x80z",
+                     3);  // U+E9 U+20AC U+1F600 z
       data += static_cast<char>(i % 2);
     }
     writer.append(data);
     writer.finish();
     const std::string bytes = read_bytes(path);
     ASSERT_EQ(bytes.substr(0, 8), std::string("\x93NUMPY\1\0", 8));
-    const std::size_t header = static_cast<unsigned char>(bytes[8]) + 256u * static_cast<unsigned char>(bytes[9]);
+    const std::size_t header =
+        static_cast<unsigned char>(bytes[8]) + 256u * static_cast<unsigned char>(bytes[9]);
     EXPECT_EQ((10 + header) % 64, 0u);
     std::string text = bytes.substr(10, header);
     EXPECT_EQ(text.back(), '\n');
     text.resize(text.find_last_not_of(" \n") + 1);
-    EXPECT_EQ(text, "{'descr': [('t', '<f4'), ('name', '<U3'), ('in', '|b1')], 'fortran_order': False, 'shape': (" +
-                        std::to_string(rows) + ",), }");
+    EXPECT_EQ(text,
+              "{'descr': [('t', '<f4'), ('name', '<U3'), ('in', '|b1')], 'fortran_order': False, "
+              "'shape': (" +
+                  std::to_string(rows) + ",), }");
     ASSERT_EQ(bytes.size(), 10 + header + rows * 17);
     if (rows < 2) continue;
     const std::string second = bytes.substr(10 + header + 17, 17);
@@ -329,17 +354,19 @@ TEST(NpyWriter, WritesWhatTheFormatSays) {
 TEST(NpyWriter, CountsCharactersNotBytes) {
   EXPECT_EQ(unicode_length("axon"), 4u);
   EXPECT_EQ(unicode_length("\xc3\xa9\xe2\x82\xac\xf0\x9f\x98\x80"), 3u);
-  // What is no UTF-8 (alone, cut off, too long a form, a surrogate, beyond the last one) counts as often as Python's
-  // bytes.decode("utf-8", "replace") has U+FFFD for it.
-  constexpr std::pair<const char*, std::size_t> broken[] = {{"\x80", 1},         {"\xc3", 1},         {"\xe2\x82", 1},
-                                                            {"\xc0\x80", 2},     {"\xed\xa0\x80", 3}, {"\xf4\x90\x80\x80", 4},
-                                                            {"\xf0\x9f\x98", 1}, {"\xff", 1}};
+  // What is no UTF-8 (alone, cut off, too long a form, a surrogate, beyond the last one) counts as
+  // often as Python's bytes.decode("utf-8", "replace") has U+FFFD for it.
+  constexpr std::pair<const char*, std::size_t> broken[] = {
+      {"\x80", 1},         {"\xc3", 1},         {"\xe2\x82", 1},
+      {"\xc0\x80", 2},     {"\xed\xa0\x80", 3}, {"\xf4\x90\x80\x80", 4},
+      {"\xf0\x9f\x98", 1}, {"\xff", 1}};
   for (const auto& [bad, count] : broken) {
     std::string row;
     const std::size_t length = unicode_length(bad);
     EXPECT_EQ(length, count);
     append_unicode(row, bad, length);
-    for (std::size_t i = 0; i < length; ++i) EXPECT_EQ(row.substr(4 * i, 4), std::string("\xfd\xff\0\0", 4));
+    for (std::size_t i = 0; i < length; ++i)
+      EXPECT_EQ(row.substr(4 * i, 4), std::string("\xfd\xff\0\0", 4));
   }
 }
 

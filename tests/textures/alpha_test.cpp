@@ -12,8 +12,8 @@
 namespace caplet::test {
 namespace {
 
-// A wall of eight columns, one in three there: rays have no width, and each is stopped by the texel that it meets, whatever the
-// filter. Bilinear looks are those of a texel in its middle alone.
+// A wall of eight columns, one in three there: rays have no width, and each is stopped by the texel
+// that it meets, whatever the filter. Bilinear looks are those of a texel in its middle alone.
 TEST(Alpha, OfAnImageIsThatOfTheTexelsThatRaysMeet) {
   auto texels = std::make_shared<TextureImage>();
   texels->width = 8;
@@ -23,9 +23,12 @@ TEST(Alpha, OfAnImageIsThatOfTheTexelsThatRaysMeet) {
   texels->encoding = {ImageEncoding::Kind::linear, 1};
   for (int filter = 0; filter < 4; ++filter) {
     Scene scene = scene_of_text(
-        "LookAt 0 0 4  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" 28.072486935852957\nPixelFilter \"box\"\n"
-        "Film \"rgb\" \"integer xresolution\" 64 \"integer yresolution\" 64\nWorldBegin\nLightSource \"infinite\"\n"
-        "Material \"diffuse\"\nShape \"bilinearmesh\" \"point3 P\" [1 -1 0  -1 -1 0  1 1 0  -1 1 0]\n");
+        "LookAt 0 0 4  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" "
+        "28.072486935852957\nPixelFilter \"box\"\n"
+        "Film \"rgb\" \"integer xresolution\" 64 \"integer yresolution\" "
+        "64\nWorldBegin\nLightSource \"infinite\"\n"
+        "Material \"diffuse\"\nShape \"bilinearmesh\" \"point3 P\" [1 -1 0  -1 -1 0  1 1 0  -1 1 "
+        "0]\n");
     ImagemapTexture map;
     map.image = texels;
     map.filter = filter;
@@ -33,8 +36,8 @@ TEST(Alpha, OfAnImageIsThatOfTheTexelsThatRaysMeet) {
     scene.shapes.at(0).alpha = TextureOperand(1);
     scene.shapes[0].alpha->texture = static_cast<std::uint32_t>(scene.textures.size() - 1);
     const LayeredImage image = render_model(scene, 4).image;
-    // The middle two of the eight pixels of a column: within 1 / 8 of its texel's middle. Seen from +z, LookAt has +x on the
-    // left, as has u.
+    // The middle two of the eight pixels of a column: within 1 / 8 of its texel's middle. Seen from
+    // +z, LookAt has +x on the left, as has u.
     for (int column = 0; column < 8; ++column) {
       double covered = 0;
       for (int y = 0; y < 64; ++y)

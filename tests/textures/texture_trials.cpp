@@ -22,7 +22,8 @@ Texture floats(decltype(Texture::model) model) { return {std::move(model), true,
 
 }  // namespace
 
-std::shared_ptr<const TextureImage> image_of(int width, int height, int channels, std::vector<float> values) {
+std::shared_ptr<const TextureImage> image_of(int width, int height, int channels,
+                                             std::vector<float> values) {
   auto image = std::make_shared<TextureImage>();
   image->width = width;
   image->height = height;
@@ -108,14 +109,16 @@ TextureTrial bilerp_texture_trial() {
            {0, 0.75, 0.5},
            {0.5, -0.25, 0.75},
            {0.5, 0.75, 0.5},
-           {0.25, 0.25, 0.5},        // the middle: their mean
-           {0.125, 0.5, 0.46875}}};  // (0.25, 0.75): 0.75 (0.25 0.25 + 0.75 0.5) + 0.25 (0.25 0.75 + 0.75 0.5)
+           {0.25, 0.25, 0.5},  // the middle: their mean
+           {0.125, 0.5,
+            0.46875}}};  // (0.25, 0.75): 0.75 (0.25 0.25 + 0.75 0.5) + 0.25 (0.25 0.75 + 0.75 0.5)
 }
 
 TextureTrial root_texture_trial() {
   RootTexture root;
   root.tex = operand_of(0);
-  TextureTrial out{{floats(board()), floats(root)}, {{0.5, 0.5, std::sqrt(0.5)}, {1.5, 0.5, std::sqrt(0.125)}}};
+  TextureTrial out{{floats(board()), floats(root)},
+                   {{0.5, 0.5, std::sqrt(0.5)}, {1.5, 0.5, std::sqrt(0.125)}}};
   out.of_spectra = false;
   return out;
 }
@@ -150,7 +153,8 @@ TextureTrial imagemap_texture_trial() {
            {0.5, 0.5, 0.46875},  // between four
            {0, 0.25, 0.75},      // between the first and the last: it repeats
            {-0.75, 5.25, 0.5},
-           // Looks are over twice the sides: what is as wide, or as high, as both texels is their mean, of all four.
+           // Looks are over twice the sides: what is as wide, or as high, as both texels is their
+           // mean, of all four.
            {0.25, 0.25, 0.46875, {}, {0, 0, 1}, {}, {}, {0.5f, 0}, {0, 0.01f}},
            {0.25, 0.25, 0.46875, {}, {0, 0, 1}, {}, {}, {0, 0.5f}, {0.01f, 0}},
            {0.25, 0.25, 0.46875, {}, {0, 0, 1}, {}, {}, {0, 0.01f}, {0.5f, 0}},
@@ -171,10 +175,12 @@ TextureTrial directionmix_texture_trial() {
            {0.5, 0.5, 0.5, {}, {0, 0.6f, 0.8f}}}};
 }
 
-// Cells about (0, 1) and (3, 2) have a dot, those about (0, 0) and (1, 1) have none: by the noise at their corners, worked out
-// apart, as is how far dots are moved: the dot about (5, 5) has its centre at (4.9993, 5.0013), that about (19, 37) is moved by
-// (-0.09756, 0.10598), that about (10, 18) by (-0.09539, -0.06783), that about (-2, -5) by (-0.07636, 0.11315). Of these a point
-// 0.345 away on each side is inside and one 0.355 away is not.
+// Cells about (0, 1) and (3, 2) have a dot, those about (0, 0) and (1, 1) have none: by the noise
+// at their corners, worked out apart, as is how far dots are moved: the dot about (5, 5) has its
+// centre at (4.9993, 5.0013), that about (19, 37) is moved by
+// (-0.09756, 0.10598), that about (10, 18) by (-0.09539, -0.06783), that about (-2, -5) by
+// (-0.07636, 0.11315). Of these a point 0.345 away on each side is inside and one 0.355 away is
+// not.
 TextureTrial dots_texture_trial() {
   DotsTexture dots;
   dots.inside = 0.75;
@@ -206,7 +212,8 @@ TextureTrial dots_texture_trial() {
            {-1.038180, -5.241848, 0.5}}};  // (-2, -6)
 }
 
-// Noise at three points by another program (Perlin's definition with pbrt-v4's gradients): its sum over one octave is itself.
+// Noise at three points by another program (Perlin's definition with pbrt-v4's gradients): its sum
+// over one octave is itself.
 TextureTrial fbm_texture_trial() {
   FbmTexture noise;
   noise.octaves = 3;
@@ -272,19 +279,29 @@ TextureTrial normalmap_texture_trial() {
   image->channels = 3;
   image->floats = {0.75f, 0.5f, 1, 0.25f, 1, 0.5f};
   Texture map = floats(NormalmapTexture{image});
-  return {{map}, {{0.25, 0.5, 0.5}, {0.75, 0.5, -0.5}, {0.375, 0.5, 0.25}}, 4 * 0x1p-24, "step", true, false};
+  return {{map},       {{0.25, 0.5, 0.5}, {0.75, 0.5, -0.5}, {0.375, 0.5, 0.25}},
+          4 * 0x1p-24, "step",
+          true,        false};
 }
 
 // Steps that lowering puts in after a texture.
 TextureTrial displacement_texture_trial() {
-  return {{floats(board())}, {{0.5, 0.5, 0.5}, {1.5, 0.5, 0.125}}, 4 * 0x1p-24, "step", true, false, texture_displacement};
+  return {
+      {floats(board())},   {{0.5, 0.5, 0.5}, {1.5, 0.5, 0.125}}, 4 * 0x1p-24, "step", true, false,
+      texture_displacement};
 }
 
 TextureTrial alpha_texture_trial() {
   ScaleTexture wide;
   wide.tex = operand_of(0);
   wide.scale = 4;
-  return {{floats(board()), floats(wide)}, {{0.5, 0.5, 1}, {1.5, 0.5, 0.5}}, 4 * 0x1p-24, "step", true, false, texture_alpha};
+  return {{floats(board()), floats(wide)},
+          {{0.5, 0.5, 1}, {1.5, 0.5, 0.5}},
+          4 * 0x1p-24,
+          "step",
+          true,
+          false,
+          texture_alpha};
 }
 
 }  // namespace caplet::test

@@ -58,14 +58,16 @@ Program& program_of(std::uint64_t textures) {
   if (const auto found = built.find(textures); found != built.end()) return found->second;
   return built
       .emplace(textures,
-               Program::from_source(test_device(), "textures", flatten_kernels(kernel_text, {{"textures", textures}}), ""))
+               Program::from_source(test_device(), "textures",
+                                    flatten_kernels(kernel_text, {{"textures", textures}}), ""))
       .first->second;
 }
 
 constexpr std::uint64_t every_kind = ~std::uint64_t{0};
 
 /// Evaluates the first material, and the texture whose first step is `step` of `flat`.
-Looked look_up(FlatScene flat, const TextureTrial::Value& at, std::uint64_t kinds, std::uint32_t step = CAPLET_NONE) {
+Looked look_up(FlatScene flat, const TextureTrial::Value& at, std::uint64_t kinds,
+               std::uint32_t step = CAPLET_NONE) {
   const Device& device = test_device();
   flat.spectrum_tables.push_back(0);  // never empty
   flat.texture_data.push_back(0);
@@ -73,7 +75,8 @@ Looked look_up(FlatScene flat, const TextureTrial::Value& at, std::uint64_t kind
   flat.images.push_back({});
   flat.texels.push_back({});
   std::vector<float> place = {static_cast<float>(at.u), static_cast<float>(at.v)};
-  for (const auto& v : {at.p, at.n, at.dpdx, at.dpdy}) place.insert(place.end(), v.begin(), v.end());
+  for (const auto& v : {at.p, at.n, at.dpdx, at.dpdy})
+    place.insert(place.end(), v.begin(), v.end());
   for (const auto& v : {at.duvdx, at.duvdy}) place.insert(place.end(), v.begin(), v.end());
   const Buffer<MaterialRecord> materials(device, std::span<const MaterialRecord>(flat.materials));
   const Buffer<float> data(device, std::span<const float>(flat.material_data));
@@ -82,12 +85,13 @@ Looked look_up(FlatScene flat, const TextureTrial::Value& at, std::uint64_t kind
   const Buffer<ImageRecord> images(device, std::span<const ImageRecord>(flat.images));
   const Buffer<uint> texels(device, std::span<const uint>(flat.texels));
   const Buffer<SpectrumRecord> spectra(device, std::span<const SpectrumRecord>(flat.spectra));
-  const Buffer<float> tables(device, std::span<const float>(flat.spectrum_tables)), places(device, std::span<const float>(place));
+  const Buffer<float> tables(device, std::span<const float>(flat.spectrum_tables)),
+      places(device, std::span<const float>(place));
   Buffer<float> out(device, 18);
   out.clear();
   cl::Kernel kernel = program_of(kinds).kernel("look_up");
-  set_arguments(device, kernel, materials, data, textures, texture_data, images, texels, spectra, tables, places, cl_uint{step},
-                out, cl_uint{1});
+  set_arguments(device, kernel, materials, data, textures, texture_data, images, texels, spectra,
+                tables, places, cl_uint{step}, out, cl_uint{1});
   launch(device, kernel, 1, 1);
   const std::vector<float> values = out.read();
   Looked looked;
@@ -100,14 +104,16 @@ Looked look_up(FlatScene flat, const TextureTrial::Value& at, std::uint64_t kind
   return looked;
 }
 
-Looked look_up(const Scene& scene, const TextureTrial::Value& at, std::uint64_t kinds = every_kind) {
+Looked look_up(const Scene& scene, const TextureTrial::Value& at,
+               std::uint64_t kinds = every_kind) {
   return look_up(lower(scene), at, kinds);
 }
 Looked look_up(const Scene& scene, double u, double v, std::uint64_t kinds = every_kind) {
   return look_up(scene, TextureTrial::Value{u, v, 0}, kinds);
 }
 
-Scene scene_of(decltype(Material::model) model, std::vector<Texture> textures, std::vector<TexturedField> fields) {
+Scene scene_of(decltype(Material::model) model, std::vector<Texture> textures,
+               std::vector<TexturedField> fields) {
   Scene scene;
   scene.shapes.emplace_back().geometry = SphereShape{1};
   scene.textures = std::move(textures);
@@ -125,7 +131,8 @@ Scene scene_of(const TextureTrial& trial, bool is_float) {
   for (const Texture& texture : textures) {
     if (const auto* mix = std::get_if<MixTexture>(&texture.model); mix && mix->amount.texture)
       is_factor[*mix->amount.texture] = true;
-    if (const auto* scale = std::get_if<ScaleTexture>(&texture.model); scale && scale->scale.texture)
+    if (const auto* scale = std::get_if<ScaleTexture>(&texture.model);
+        scale && scale->scale.texture)
       is_factor[*scale->scale.texture] = true;
   }
   for (std::size_t i = 0; i < textures.size(); ++i) textures[i].is_float = is_float || is_factor[i];
@@ -142,8 +149,9 @@ std::uint32_t step_of(const TextureTrial& trial, FlatScene& flat) {
   Scene scene = scene_of(DiffuseMaterial{}, trial.textures, {});
   Lowering lowering(scene);
   const auto last = trial.last < 0 ? std::nullopt : std::optional(static_cast<uint>(trial.last));
-  const std::uint32_t step = lower_texture(scene, static_cast<std::uint32_t>(trial.textures.size() - 1), TextureUse::number, last,
-                                           lowering.images, lowering.spectra, lowering.flat);
+  const std::uint32_t step =
+      lower_texture(scene, static_cast<std::uint32_t>(trial.textures.size() - 1),
+                    TextureUse::number, last, lowering.images, lowering.spectra, lowering.flat);
   flat = std::move(lowering.flat);
   return step;
 }
@@ -163,14 +171,16 @@ TEST(EveryTexture, HasItsValuesAsSpectraAndAsFloats) {
       for (const TextureTrial::Value& expected : trial.values) {
         const Looked found = look_up(flat, expected, every_kind, step);
         const double slack = trial.tolerance * std::abs(expected.value);
-        const std::string where = fmt::format("{} {} {} {}", texture.name, expected.u, expected.v, expected.p[0]);
+        const std::string where =
+            fmt::format("{} {} {} {}", texture.name, expected.u, expected.v, expected.p[0]);
         if (step != CAPLET_NONE) {
           EXPECT_NEAR(found.step[0], expected.value, slack) << where;
         } else if (is_float) {
           EXPECT_NEAR(found.alpha_u, expected.value, slack) << where;
           EXPECT_EQ(found.alpha_v, 0.5f) << texture.name;
         } else {
-          for (const float value : of_metals ? found.k : found.reflectance) EXPECT_NEAR(value, expected.value, slack) << where;
+          for (const float value : of_metals ? found.k : found.reflectance)
+            EXPECT_NEAR(value, expected.value, slack) << where;
           if (of_metals) {
             EXPECT_EQ(found.eta, (std::array<float, 4>{1, 1, 1, 1}));
           }
@@ -180,7 +190,8 @@ TEST(EveryTexture, HasItsValuesAsSpectraAndAsFloats) {
   }
 }
 
-// What a renderer builds for a scene's textures says what the kernels of all say; without the one on trial they do not.
+// What a renderer builds for a scene's textures says what the kernels of all say; without the one
+// on trial they do not.
 TEST(EveryTexture, IsInTheKernelsOfItsScene) {
   for (const TextureOnTrial& texture : textures_on_trial()) {
     const TextureTrial& trial = texture.trial;
@@ -199,8 +210,8 @@ TEST(EveryTexture, IsInTheKernelsOfItsScene) {
       EXPECT_EQ(all.k, few.k) << texture.name;
       EXPECT_EQ(all.reflectance, few.reflectance) << texture.name;
       EXPECT_EQ(all.step, few.step) << texture.name;
-      EXPECT_TRUE(without.alpha_u != all.alpha_u || without.k != all.k || without.reflectance != all.reflectance ||
-                  without.step != all.step)
+      EXPECT_TRUE(without.alpha_u != all.alpha_u || without.k != all.k ||
+                  without.reflectance != all.reflectance || without.step != all.step)
           << texture.name;
     }
   }
@@ -220,13 +231,16 @@ TEST(Textures, OfColoursAreThoseOfConstants) {
   checks.tex1.value = red;
   checks.tex2.value = blue;
   const Scene scene = scene_of(DiffuseMaterial{}, {{checks, false, "t", {}}}, {{"reflectance", 0}});
-  EXPECT_EQ(look_up(scene, 0.5, 0.5).reflectance, look_up(scene_of(DiffuseMaterial{red}, {}, {}), 0, 0).reflectance);
-  EXPECT_EQ(look_up(scene, 1.5, 0.5).reflectance, look_up(scene_of(DiffuseMaterial{blue}, {}, {}), 0, 0).reflectance);
+  EXPECT_EQ(look_up(scene, 0.5, 0.5).reflectance,
+            look_up(scene_of(DiffuseMaterial{red}, {}, {}), 0, 0).reflectance);
+  EXPECT_EQ(look_up(scene, 1.5, 0.5).reflectance,
+            look_up(scene_of(DiffuseMaterial{blue}, {}, {}), 0, 0).reflectance);
   // For a metal's eta they are unbounded: 3 is 3.
   checks.tex1 = 3;
   checks.tex2 = 0.5;
   const Scene metal =
-      scene_of(ConductorMaterial{ConstantSpectrum{1}, ConstantSpectrum{2}, {}, 0, 0}, {{checks, false, "t", {}}}, {{"eta", 0}});
+      scene_of(ConductorMaterial{ConstantSpectrum{1}, ConstantSpectrum{2}, {}, 0, 0},
+               {{checks, false, "t", {}}}, {{"eta", 0}});
   EXPECT_EQ(look_up(metal, 0.5, 0.5).eta[1], 3);
   EXPECT_EQ(look_up(metal, 1.5, 0.5).eta[1], 0.5f);
   EXPECT_EQ(look_up(metal, 1.5, 0.5).k[1], 2);
@@ -236,11 +250,18 @@ TEST(Textures, ReflectancesEndAtOneAndRoughnessAtZero) {
   ScaleTexture twice;
   twice.tex = 0.75;
   twice.scale = 2;
-  EXPECT_EQ(look_up(scene_of(DiffuseMaterial{}, {{twice, false, "t", {}}}, {{"reflectance", 0}}), 0, 0).reflectance[2], 1);
+  EXPECT_EQ(
+      look_up(scene_of(DiffuseMaterial{}, {{twice, false, "t", {}}}, {{"reflectance", 0}}), 0, 0)
+          .reflectance[2],
+      1);
   twice.scale = -2;
-  EXPECT_EQ(look_up(scene_of(DiffuseMaterial{}, {{twice, false, "t", {}}}, {{"reflectance", 0}}), 0, 0).reflectance[2], 0);
+  EXPECT_EQ(
+      look_up(scene_of(DiffuseMaterial{}, {{twice, false, "t", {}}}, {{"reflectance", 0}}), 0, 0)
+          .reflectance[2],
+      0);
   ConductorMaterial metal{ConstantSpectrum{1}, ConstantSpectrum{1}, {}, 0.5, 0.5};
-  EXPECT_EQ(look_up(scene_of(metal, {{twice, true, "t", {}}}, {{"alpha_v", 0}}), 0, 0).alpha_v, CAPLET_ALPHA_MIN);
+  EXPECT_EQ(look_up(scene_of(metal, {{twice, true, "t", {}}}, {{"alpha_v", 0}}), 0, 0).alpha_v,
+            CAPLET_ALPHA_MIN);
 }
 
 // Sixteen levels, each of which takes the one below twice: 2^15 paths, 31 steps.
@@ -257,7 +278,8 @@ TEST(Textures, WhatIsUsedTwiceIsEvaluatedOnce) {
     mixed.amount = 0.5;
     textures.push_back({mixed, true, std::to_string(i), {}});
   }
-  EXPECT_EQ(texture_steps(textures, 14), 31u);  // the checkerboard's three, and 14 times a mix and its amount
+  EXPECT_EQ(texture_steps(textures, 14),
+            31u);  // the checkerboard's three, and 14 times a mix and its amount
   const Scene scene = scene_of(DielectricMaterial{}, textures, {{"alpha_u", 14}, {"alpha_v", 0}});
   ASSERT_EQ(lower(scene).textures.size(), 31u + 3u);
   EXPECT_EQ(look_up(scene, 0.5, 0.5).alpha_u, 0.5f);
@@ -270,7 +292,8 @@ TEST(Textures, WhatIsUsedTwiceIsEvaluatedOnce) {
 }
 
 TEST(Textures, TheModelRefusesWhatHasNoSense) {
-  const Texture number{CheckerboardTexture{}, true, "t", {}}, color{CheckerboardTexture{}, false, "t", {}};
+  const Texture number{CheckerboardTexture{}, true, "t", {}},
+      color{CheckerboardTexture{}, false, "t", {}};
   const DiffuseMaterial diffuse;
   EXPECT_NO_THROW(scene_of(diffuse, {color}, {{"reflectance", 0}}));
   EXPECT_THROW(scene_of(diffuse, {number}, {{"reflectance", 0}}), InputError);
@@ -300,7 +323,9 @@ float number_of(const ImagemapTexture& map, const TextureTrial::Value& at) {
   const ConductorMaterial metal{ConstantSpectrum{1}, ConstantSpectrum{1}, {}, 0.5, 0.5};
   return look_up(scene_of(metal, {{map, true, "t", {}}}, {{"alpha_u", 0}}), at).alpha_u;
 }
-float number_of(const ImagemapTexture& map, double u, double v) { return number_of(map, TextureTrial::Value{u, v, 0}); }
+float number_of(const ImagemapTexture& map, double u, double v) {
+  return number_of(map, TextureTrial::Value{u, v, 0});
+}
 
 TEST(Images, EndAsTheyAreWrapped) {
   ImagemapTexture map;
@@ -310,7 +335,8 @@ TEST(Images, EndAsTheyAreWrapped) {
     map.filter = filter;
     return number_of(map, u, v);
   };
-  // Left of the lower row: its other end, nothing, itself, the upper row's first (over the edge of an octahedron).
+  // Left of the lower row: its other end, nothing, itself, the upper row's first (over the edge of
+  // an octahedron).
   EXPECT_EQ(at(CAPLET_WRAP_REPEAT, CAPLET_FILTER_POINT, -0.25, 0.25), 1);
   EXPECT_EQ(at(CAPLET_WRAP_BLACK, CAPLET_FILTER_POINT, -0.25, 0.25), CAPLET_ALPHA_MIN);
   EXPECT_EQ(at(CAPLET_WRAP_CLAMP, CAPLET_FILTER_POINT, -0.25, 0.25), 0.5f);
@@ -345,21 +371,24 @@ TEST(Images, OfBytesAreWhatTheyStandFor) {
   image->height = 1;
   image->channels = 3;
   image->bytes = {0, 51, 255, 255, 0, 51, 51, 255, 0};
-  for (int i = 0; i < 256; ++i) image->decoded[static_cast<std::size_t>(i)] = static_cast<float>(i) / 510;
+  for (int i = 0; i < 256; ++i)
+    image->decoded[static_cast<std::size_t>(i)] = static_cast<float>(i) / 510;
   // As vectors they are not resampled.
   Scene scene = scene_of(DiffuseMaterial{}, {{NormalmapTexture{image}, true, "t", {}}}, {});
   Lowering lowering(scene);
-  const std::uint32_t step = lower_texture(scene, 0, TextureUse::number, {}, lowering.images, lowering.spectra, lowering.flat);
+  const std::uint32_t step = lower_texture(scene, 0, TextureUse::number, {}, lowering.images,
+                                           lowering.spectra, lowering.flat);
   for (int x = 0; x < 3; ++x) {
-    const Looked found = look_up(lowering.flat, TextureTrial::Value{(x + 0.5) / 3, 0.5, 0}, every_kind, step);
+    const Looked found =
+        look_up(lowering.flat, TextureTrial::Value{(x + 0.5) / 3, 0.5, 0}, every_kind, step);
     for (int c = 0; c < 3; ++c)
-      EXPECT_NEAR(found.step[static_cast<std::size_t>(c)], 2 * image->bytes[static_cast<std::size_t>(3 * x + c)] / 510.0 - 1,
-                  1e-6);
+      EXPECT_NEAR(found.step[static_cast<std::size_t>(c)],
+                  2 * image->bytes[static_cast<std::size_t>(3 * x + c)] / 510.0 - 1, 1e-6);
   }
 }
 
-// Images of 16 bits and of halves have no more than 65,536 values: texels are their numbers, and what is looked up is the same to
-// the bit.
+// Images of 16 bits and of halves have no more than 65,536 values: texels are their numbers, and
+// what is looked up is the same to the bit.
 TEST(Images, OfFewValuesAreNumbers) {
   const auto value_of = [](int i) { return 0.1f + static_cast<float>(i * 37 % 900) / 1900; };
   for (const int channels : {1, 3, 4}) {
@@ -379,7 +408,9 @@ TEST(Images, OfFewValuesAreNumbers) {
     for (const int at : {0, 1, 63, 64, 2000, 4095}) {
       const double u = (at % 64 + 0.5) / 64, v = 1 - (at / 64 + 0.5) / 64;
       const auto texel = [&](int c) { return values[static_cast<std::size_t>(at * channels + c)]; };
-      const float expected = channels == 4 ? texel(3) : channels == 1 ? texel(0) : (texel(0) + texel(1) + texel(2)) / 3;
+      const float expected = channels == 4   ? texel(3)
+                             : channels == 1 ? texel(0)
+                                             : (texel(0) + texel(1) + texel(2)) / 3;
       if (channels == 3)
         EXPECT_NEAR(number_of(map, u, v), expected, 1e-6) << at;
       else
@@ -398,7 +429,8 @@ TEST(Images, OfFewValuesAreNumbers) {
   EXPECT_EQ(flat.texels[flat.images.at(0).levels_begin + 3], CAPLET_TEXELS_FLOATS);
 }
 
-// Levels of a checkerboard of texels are grey; of sides that are no powers of two the mean stays, within the filter's ripple.
+// Levels of a checkerboard of texels are grey; of sides that are no powers of two the mean stays,
+// within the filter's ripple.
 TEST(Images, HaveMipLevelsOfTheirMeans) {
   std::vector<float> checks;
   for (int i = 0; i < 64; ++i) checks.push_back((i / 8 + i) % 2 ? 1.f : 0.f);
@@ -407,7 +439,8 @@ TEST(Images, HaveMipLevelsOfTheirMeans) {
   map.filter = CAPLET_FILTER_TRILINEAR;
   TextureTrial::Value at{0.5 / 8, 0.5 / 8, 0};
   EXPECT_EQ(number_of(map, at), 1);  // the bottom row's first
-  // Looks are over twice the sides: two texels, the first level, along either side and in either direction; half way to it.
+  // Looks are over twice the sides: two texels, the first level, along either side and in either
+  // direction; half way to it.
   for (const bool is_x : {true, false})
     for (const bool is_u : {true, false}) {
       const auto along = [&](float way) {
@@ -455,8 +488,9 @@ TEST(Images, EwaKeepsWhatOneSideIsNarrowEnoughFor) {
   EXPECT_LT(number_of(map, at), 0.5f);
 }
 
-// Alpha is a share whatever the colours' encoding: 0 and 255 are clear and opaque, 128 is 0.502, not the 0.216 of a colour. So it
-// is in the first level, in smaller ones, and in images whose sides are resampled.
+// Alpha is a share whatever the colours' encoding: 0 and 255 are clear and opaque, 128 is 0.502,
+// not the 0.216 of a colour. So it is in the first level, in smaller ones, and in images whose
+// sides are resampled.
 TEST(Images, HaveTheirAlphaAsAShare) {
   const auto rgba = [](int width, int height, const std::vector<std::uint8_t>& alpha) {
     auto image = std::make_shared<TextureImage>();
@@ -464,7 +498,8 @@ TEST(Images, HaveTheirAlphaAsAShare) {
     image->height = height;
     image->channels = 4;
     for (const std::uint8_t a : alpha)
-      for (const std::uint8_t byte : {std::uint8_t{200}, std::uint8_t{100}, std::uint8_t{50}, a}) image->bytes.push_back(byte);
+      for (const std::uint8_t byte : {std::uint8_t{200}, std::uint8_t{100}, std::uint8_t{50}, a})
+        image->bytes.push_back(byte);
     for (int i = 0; i < 256; ++i) {
       const double x = i / 255.0;  // sRGB, IEC 61966-2-1
       image->decoded[static_cast<std::size_t>(i)] =
@@ -480,7 +515,8 @@ TEST(Images, HaveTheirAlphaAsAShare) {
   EXPECT_NEAR(number_of(map, 0.75, 0.25), 26 / 255.0, 1e-6);
   TextureTrial::Value wide{0.5, 0.5, 0};
   wide.duvdx = {8, 0};
-  EXPECT_NEAR(number_of(map, wide), (128 + 64 + 255 + 26) / 4 / 255.0, 0.5 / 255 + 1e-6);  // rounded to a byte
+  EXPECT_NEAR(number_of(map, wide), (128 + 64 + 255 + 26) / 4 / 255.0,
+              0.5 / 255 + 1e-6);  // rounded to a byte
   map.image = rgba(3, 1, {128, 128, 128});
   EXPECT_NEAR(number_of(map, 0.5, 0.5), 128 / 255.0, 0.5 / 255 + 1e-6);
 }
@@ -510,10 +546,12 @@ std::array<float, 4> reflectance_of(const glm::dvec3& rgb, ColorSpace space = Co
   image->floats = {static_cast<float>(rgb.x), static_cast<float>(rgb.y), static_cast<float>(rgb.z)};
   ImagemapTexture map;
   map.image = image;
-  return look_up(scene_of(DiffuseMaterial{}, {{map, false, "t", {}}}, {{"reflectance", 0}}), 0, 0).reflectance;
+  return look_up(scene_of(DiffuseMaterial{}, {{map, false, "t", {}}}, {{"reflectance", 0}}), 0, 0)
+      .reflectance;
 }
 
-// The spectrum of an image's colour is that of a constant one, but for what is between the nodes of a table.
+// The spectrum of an image's colour is that of a constant one, but for what is between the nodes of
+// a table.
 TEST(Images, HaveTheSpectraOfConstants) {
   for (const glm::dvec3& rgb : std::vector<glm::dvec3>{{0.8, 0.1, 0.05},
                                                        {0.1, 0.2, 0.9},
@@ -524,13 +562,17 @@ TEST(Images, HaveTheSpectraOfConstants) {
                                                        {0.9, 0.85, 0.8},
                                                        {0, 0, 0},
                                                        {1, 1, 1}}) {
-    const auto constant = look_up(scene_of(DiffuseMaterial{RgbSpectrum{rgb}}, {}, {}), 0, 0).reflectance;
+    const auto constant =
+        look_up(scene_of(DiffuseMaterial{RgbSpectrum{rgb}}, {}, {}), 0, 0).reflectance;
     const auto of_image = reflectance_of(rgb);
     for (std::size_t i = 0; i < 4; ++i)
-      EXPECT_NEAR(of_image[i], constant[i], 2e-3 + 5e-3 * constant[i]) << rgb.x << ' ' << rgb.y << ' ' << rgb.z;
+      EXPECT_NEAR(of_image[i], constant[i], 2e-3 + 5e-3 * constant[i])
+          << rgb.x << ' ' << rgb.y << ' ' << rgb.z;
   }
   const glm::dvec3 green{0.1, 0.6, 0.2};
-  const auto wide = look_up(scene_of(DiffuseMaterial{RgbSpectrum{green, ColorSpace::rec2020}}, {}, {}), 0, 0).reflectance;
+  const auto wide =
+      look_up(scene_of(DiffuseMaterial{RgbSpectrum{green, ColorSpace::rec2020}}, {}, {}), 0, 0)
+          .reflectance;
   const auto of_image = reflectance_of(green, ColorSpace::rec2020);
   for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(of_image[i], wide[i], 5e-3);
   EXPECT_GT(std::abs(wide[1] - reflectance_of(green)[1]), 0.02);
@@ -551,7 +593,8 @@ TEST(Mappings, HaveTheirCoordinates) {
       one.mapping = mapping;
       FlatScene flat;
       const std::uint32_t step = step_of({{{one, true, "t", {}}}, {}, 0, "step"}, flat);
-      found[static_cast<std::size_t>(k)] = look_up(flat, TextureTrial::Value{9, 9, 0, p}, every_kind, step).step[0];
+      found[static_cast<std::size_t>(k)] =
+          look_up(flat, TextureTrial::Value{9, 9, 0, p}, every_kind, step).step[0];
     }
     return found;
   };
@@ -580,16 +623,19 @@ TEST(Mappings, HaveTheirCoordinates) {
   near(st(mapping, {3, 4, 5}), 2.25, 5);
 }
 
-// As wide as one square, about its middle, a footprint sees that square alone, as wide as two both as much: along each
-// coordinate. Boards are means over twice the sides of what is seen.
+// As wide as one square, about its middle, a footprint sees that square alone, as wide as two both
+// as much: along each coordinate. Boards are means over twice the sides of what is seen.
 TEST(Mappings, ChangeAlongTheSidesOfWhatIsSeen) {
   constexpr float pi = 3.14159265f;
   struct Side {
     TextureMapping::Kind kind;
-    std::array<float, 3> p, one;  // where (s, t) is in the middle of a square, and the way that is one square
+    std::array<float, 3> p,
+        one;  // where (s, t) is in the middle of a square, and the way that is one square
   };
   const std::vector<Side> sides = {
-      {TextureMapping::Kind::spherical, {-2, 0, 0}, {0, 0, 2 * pi}},  // half a turn from pole to pole
+      {TextureMapping::Kind::spherical,
+       {-2, 0, 0},
+       {0, 0, 2 * pi}},  // half a turn from pole to pole
       {TextureMapping::Kind::spherical, {-2, 0, 0}, {0, 4 * pi, 0}},  // a turn around
       {TextureMapping::Kind::spherical, {-3, 0, 0}, {0, 0, 3 * pi}},
       {TextureMapping::Kind::cylindrical, {2, 0, 0.5f}, {0, 4 * pi, 0}},
@@ -605,12 +651,14 @@ TEST(Mappings, ChangeAlongTheSidesOfWhatIsSeen) {
       const std::uint32_t step = step_of({{{board, true, "t", {}}}, {}, 0, "step"}, flat);
       TextureTrial::Value at{0, 0, 0, side.p};
       const auto seen = [&](float share) {
-        for (std::size_t k = 0; k < 3; ++k) (is_x ? at.dpdx : at.dpdy)[k] = 0.5f * share * side.one[k];
+        for (std::size_t k = 0; k < 3; ++k)
+          (is_x ? at.dpdx : at.dpdy)[k] = 0.5f * share * side.one[k];
         return look_up(flat, at, every_kind, step).step[0];
       };
       EXPECT_NEAR(seen(0.999f), 1, 1e-5);
       EXPECT_NEAR(seen(2), 0.5, 1e-4);
-      EXPECT_NEAR(seen(1.5f), 2 / 3.0, 1e-4);  // 1 of one square, and a quarter of each neighbour: (1 - 0.5) / 1.5
+      EXPECT_NEAR(seen(1.5f), 2 / 3.0,
+                  1e-4);  // 1 of one square, and a quarter of each neighbour: (1 - 0.5) / 1.5
     }
 }
 
@@ -633,10 +681,13 @@ TEST(Checkerboards, AreTheMeanOfWhatIsSeen) {
     at.duvdy = {0, static_cast<float>(0.5 * h)};
     const auto mean = [](double x, double width) {
       int odd = 0;
-      for (int i = 0; i < 100'000; ++i) odd += static_cast<int>(std::floor(x + ((i + 0.5) / 100'000 - 0.5) * width)) & 1;
+      for (int i = 0; i < 100'000; ++i)
+        odd += static_cast<int>(std::floor(x + ((i + 0.5) / 100'000 - 0.5) * width)) & 1;
       return 1 - 2 * odd / 1e5;
     };
-    EXPECT_NEAR(look_up(flat, at, every_kind, step).step[0], 0.5 + 0.5 * mean(u, w) * mean(v, h), 2e-4) << u << ' ' << v;
+    EXPECT_NEAR(look_up(flat, at, every_kind, step).step[0], 0.5 + 0.5 * mean(u, w) * mean(v, h),
+                2e-4)
+        << u << ' ' << v;
   }
 }
 
@@ -654,8 +705,8 @@ TEST(Checkerboards, OfSpaceAreCubes) {
   EXPECT_EQ(at(-0.5f, -0.5f, -0.5f), 0);
 }
 
-// What is seen reaches as far as its sides on both sides of the point: along each axis by the longer of the two. Means over boxes
-// by sums over many points, one axis after the other.
+// What is seen reaches as far as its sides on both sides of the point: along each axis by the
+// longer of the two. Means over boxes by sums over many points, one axis after the other.
 TEST(Checkerboards, OfSpaceAreTheMeanOfWhatIsSeen) {
   CheckerboardTexture board;
   board.mapping.kind = TextureMapping::Kind::solid;
@@ -663,14 +714,15 @@ TEST(Checkerboards, OfSpaceAreTheMeanOfWhatIsSeen) {
   const std::uint32_t step = step_of({{{board, true, "t", {}}}, {}, 0, "step"}, flat);
   const auto mean = [](double x, double half) {
     int odd = 0;
-    for (int i = 0; i < 100'000; ++i) odd += static_cast<int>(std::floor(x + ((i + 0.5) / 50'000 - 1) * half)) & 1;
+    for (int i = 0; i < 100'000; ++i)
+      odd += static_cast<int>(std::floor(x + ((i + 0.5) / 50'000 - 1) * half)) & 1;
     return 1 - 2 * odd / 1e5;
   };
-  for (const auto& [p, dx, dy] :
-       std::vector<std::array<std::array<float, 3>, 3>>{{{{0.3f, 0.8f, 0.1f}, {0.4f, 0, 0.3f}, {0.1f, 0.3f, 0}}},
-                                                        {{{0.5f, 0.5f, 0.9f}, {0, 0, 0.35f}, {0, 0, -0.2f}}},
-                                                        {{{-2.7f, 1.1f, 3.9f}, {-0.7f, 0.45f, 0.2f}, {0.3f, -0.8f, 0.9f}}},
-                                                        {{{0.25f, 5.75f, -0.4f}, {0, 0.35f, 0}, {0.3f, 0, 0.8f}}}}) {
+  for (const auto& [p, dx, dy] : std::vector<std::array<std::array<float, 3>, 3>>{
+           {{{0.3f, 0.8f, 0.1f}, {0.4f, 0, 0.3f}, {0.1f, 0.3f, 0}}},
+           {{{0.5f, 0.5f, 0.9f}, {0, 0, 0.35f}, {0, 0, -0.2f}}},
+           {{{-2.7f, 1.1f, 3.9f}, {-0.7f, 0.45f, 0.2f}, {0.3f, -0.8f, 0.9f}}},
+           {{{0.25f, 5.75f, -0.4f}, {0, 0.35f, 0}, {0.3f, 0, 0.8f}}}}) {
     const TextureTrial::Value at{0, 0, 0, p, {0, 0, 1}, dx, dy};
     double expected = 1;
     for (std::size_t k = 0; k < 3; ++k)

@@ -35,7 +35,8 @@ std::string end_of(pid_t child, double seconds) {
   const auto late = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);
   int status = 0;
   pid_t ended = 0;
-  while ((ended = ::waitpid(child, &status, WNOHANG)) == 0 && std::chrono::steady_clock::now() < late)
+  while ((ended = ::waitpid(child, &status, WNOHANG)) == 0 &&
+         std::chrono::steady_clock::now() < late)
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
   if (ended == 0) {
     ::kill(child, SIGKILL);
@@ -43,7 +44,8 @@ std::string end_of(pid_t child, double seconds) {
     return "hangs";
   }
   if (WIFSIGNALED(status)) return "ended by signal " + std::to_string(WTERMSIG(status));
-  return WEXITSTATUS(status) == 0 ? "" : "ended with exit code " + std::to_string(WEXITSTATUS(status));
+  return WEXITSTATUS(status) == 0 ? ""
+                                  : "ended with exit code " + std::to_string(WEXITSTATUS(status));
 }
 
 std::string apart(const std::function<void()>& work, double seconds) {
@@ -54,7 +56,8 @@ std::string apart(const std::function<void()>& work, double seconds) {
   if (child == 0) {
     try {
 #ifdef CAPLET_WITHOUT_WORKERS
-      const auto alone = CAPLET_WITHOUT_WORKERS;  // how TBB's threads wait for each other TSan does not see
+      const auto alone =
+          CAPLET_WITHOUT_WORKERS;  // how TBB's threads wait for each other TSan does not see
 #endif
       work();
     } catch (const std::exception& error) {
@@ -102,7 +105,8 @@ bool equal(const Film& a, const Film& b) {
     if (is_id) continue;
     const std::vector<float> one = a.values(channel), other = b.values(channel);
     for (std::size_t i = 0; i < one.size(); ++i)
-      if (std::bit_cast<std::uint32_t>(one[i]) != std::bit_cast<std::uint32_t>(other[i])) return false;
+      if (std::bit_cast<std::uint32_t>(one[i]) != std::bit_cast<std::uint32_t>(other[i]))
+        return false;
   }
   return true;
 }

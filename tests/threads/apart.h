@@ -15,12 +15,13 @@
 
 namespace caplet::test {
 
-/// Calls `work` in a forked process, which then ends by _exit: at an exit log4cplus, which Debian 12's OpenImageIO brings, waits
-/// for threads that a child does not have. Empty when that goes well; else what `work` threw, or how the process ended, or that
-/// it took more than `seconds`.
+/// Calls `work` in a forked process, which then ends by _exit: at an exit log4cplus, which Debian
+/// 12's OpenImageIO brings, waits for threads that a child does not have. Empty when that goes
+/// well; else what `work` threw, or how the process ended, or that it took more than `seconds`.
 std::string apart(const std::function<void()>& work, double seconds = 120);
 
-/// How a child process ends: empty when it ends by itself with exit code 0. Kills it when it takes more than `seconds`.
+/// How a child process ends: empty when it ends by itself with exit code 0. Kills it when it takes
+/// more than `seconds`.
 std::string end_of(pid_t child, double seconds);
 
 /// Times that a scene is played: 5, or so many times as much (CAPLET_TEST_SCALE).

@@ -95,7 +95,8 @@ void all_that_need_a_device() {
         session.reset();
         picker.reset();
         on.reset();
-        require(apart([] { refused("a grandchild", [] { devices(); }); }, plenty).empty(), "a grandchild is not refused");
+        require(apart([] { refused("a grandchild", [] { devices(); }); }, plenty).empty(),
+                "a grandchild is not refused");
       },
       plenty);
   require(child.empty(), child);
@@ -108,7 +109,8 @@ TEST(Fork, AfterOpenClWasUsedIsRefusedByAllThatNeedsADevice) {
 }
 
 TEST(Fork, LeavesScenesUsable) {
-  const fs::path file = fs::temp_directory_path() / ("caplet-fork-" + std::to_string(::getpid()) + ".pbrt");
+  const fs::path file =
+      fs::temp_directory_path() / ("caplet-fork-" + std::to_string(::getpid()) + ".pbrt");
   EXPECT_EQ(apart([&file] {
               Scene scene = small_scene();
               render(scene, device());
@@ -117,7 +119,8 @@ TEST(Fork, LeavesScenesUsable) {
                             scene.add_shape("sphere", {{"radius", 0.5}}, {.name = "more"});
                             scene.present();
                             write_scene(scene, file);
-                            require(import_scene(file).shapes().back() == "more", "the scene is another");
+                            require(import_scene(file).shapes().back() == "more",
+                                    "the scene is another");
                           },
                           plenty)
                           .empty(),
@@ -153,7 +156,8 @@ TEST(Fork, DuringARenderOfAnotherThreadIsRefusedAndEnds) {
                   require(bad.empty(), bad);
                   session->update(scene);
                   session->render(2);
-                  require(equal(session->film(), render(scene, on)), "the parent's picture is wrong");
+                  require(equal(session->film(), render(scene, on)),
+                          "the parent's picture is wrong");
                 },
                 500),
             "");
@@ -179,7 +183,8 @@ TEST(Fork, WithinARenderEndsItInTheChild) {
                   said = error.what();
                 }
                 if (child == 0) ::_exit(said.find("spawn") == std::string::npos ? 1 : 0);
-                require(child > 0 && end_of(child, plenty).empty(), "the child does not end with an error");
+                require(child > 0 && end_of(child, plenty).empty(),
+                        "the child does not end with an error");
                 require(film && equal(*film, alone), "the parent's picture is wrong");
               }),
               "");

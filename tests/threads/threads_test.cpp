@@ -50,9 +50,11 @@ TEST(Threads, FindDevicesAtTheSameTime) {
     ASSERT_EQ(apart([] {
                 std::vector<std::size_t> found(4);
                 std::vector<std::function<void()>> works;
-                for (std::size_t& count : found) works.emplace_back([&count] { count = devices().size(); });
+                for (std::size_t& count : found)
+                  works.emplace_back([&count] { count = devices().size(); });
                 together(works);
-                for (const std::size_t count : found) require(count > 0 && count == found[0], "a thread found no device");
+                for (const std::size_t count : found)
+                  require(count > 0 && count == found[0], "a thread found no device");
               }),
               "");
 }
@@ -61,9 +63,11 @@ void render_for_the_first_time() {
   const Scene scene = small_scene();
   std::vector<std::optional<Film>> films(3);
   std::vector<std::function<void()>> works;
-  for (std::optional<Film>& film : films) works.emplace_back([&] { film = render(scene, device()); });
+  for (std::optional<Film>& film : films)
+    works.emplace_back([&] { film = render(scene, device()); });
   together(works);
-  for (const auto& film : films) require(equal(*film, *films[0]), "threads render different pictures");
+  for (const auto& film : films)
+    require(equal(*film, *films[0]), "threads render different pictures");
 }
 
 TEST(Threads, UseOpenClForTheFirstTime) {
@@ -71,7 +75,8 @@ TEST(Threads, UseOpenClForTheFirstTime) {
 }
 
 TEST(Threads, CompileTheSameKernelsAtTheSameTime) {
-  const fs::path folder = fs::temp_directory_path() / ("caplet-threads-" + std::to_string(::getpid()));
+  const fs::path folder =
+      fs::temp_directory_path() / ("caplet-threads-" + std::to_string(::getpid()));
   fs::create_directories(folder);
   const auto work = [&folder] {
     for (const char* name : {"POCL_CACHE_DIR", "CAPLET_CACHE"}) ::setenv(name, folder.c_str(), 1);
@@ -95,10 +100,12 @@ TEST(Threads, ShareADeviceAndAScene) {
                             for (int x = 0; x < 24; ++x) hits += picker.pixel(x, 8) ? 1 : 0;
                           },
                           [&] {
-                            for (int k = 0; k < 100; ++k) scene.set_seed(static_cast<std::uint32_t>(k));
+                            for (int k = 0; k < 100; ++k)
+                              scene.set_seed(static_cast<std::uint32_t>(k));
                           }});
                 const Film alone = render(copy, device());
-                require(equal(*one, alone) && equal(*other, alone), "a picture differs from that of one thread");
+                require(equal(*one, alone) && equal(*other, alone),
+                        "a picture differs from that of one thread");
                 require(hits > 4, "no hits");
                 require(verify(scene, std::vector{on}, {1000, 0, {}}).agrees(), "verify disagrees");
               }),
@@ -113,7 +120,8 @@ TEST(Threads, CancelASessionAndReadItsFilms) {
                 std::atomic<bool> is_begun = false;
                 int done = 0;
                 together({[&] {
-                            done = session.render(1 << 24, {{}, [&](const RenderProgress&) { is_begun = true; }});
+                            done = session.render(
+                                1 << 24, {{}, [&](const RenderProgress&) { is_begun = true; }});
                           },
                           [&] {
                             while (!is_begun) std::this_thread::yield();
@@ -122,7 +130,8 @@ TEST(Threads, CancelASessionAndReadItsFilms) {
                 require(done > 0 && done < 1 << 24, "it was not cancelled");
                 const Film film = session.film();
                 std::vector<float> reds[2];
-                together({[&] { reds[0] = Film(film).values("R"); }, [&] { reds[1] = Film(film).values("R"); }});
+                together({[&] { reds[0] = Film(film).values("R"); },
+                          [&] { reds[1] = Film(film).values("R"); }});
                 require(!reds[0].empty() && reds[0] == reds[1], "a film differs between threads");
               }),
               "");

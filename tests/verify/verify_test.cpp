@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// The comparison of a device with the reference: agrees where it should, and notices every kind of fault. Faults are put into what
-// the device really answered.
+// The comparison of a device with the reference: agrees where it should, and notices every kind of
+// fault. Faults are put into what the device really answered.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -46,8 +46,10 @@ TEST(TortureScenes, AreValidAndHaveEveryKind) {
     EXPECT_NO_THROW(diagnostics.finish()) << round;
     const reference::SceneReference reference(scene);
     std::array<int, reference::kind_names.size()> kinds{};
-    for (std::size_t i = 0; i < reference.size(); ++i) ++kinds[reference::kind_of(reference.placed(i).primitive)];
-    for (std::size_t k = 0; k < kinds.size(); ++k) EXPECT_GT(kinds[k], 0) << reference::kind_names[k] << " in round " << round;
+    for (std::size_t i = 0; i < reference.size(); ++i)
+      ++kinds[reference::kind_of(reference.placed(i).primitive)];
+    for (std::size_t k = 0; k < kinds.size(); ++k)
+      EXPECT_GT(kinds[k], 0) << reference::kind_names[k] << " in round " << round;
   }
 }
 
@@ -72,7 +74,8 @@ TEST(Rays, AreAddressedByTheirNumber) {
     const RayRecord c = other.ray(1999 - i).ray;
     different += std::memcmp(&a.ray, &c, sizeof(RayRecord)) != 0;
     ++families[static_cast<std::size_t>(a.family)];
-    for (const float x : {a.ray.ox, a.ray.oy, a.ray.oz, a.ray.dx, a.ray.dy, a.ray.dz}) EXPECT_TRUE(std::isfinite(x)) << i;
+    for (const float x : {a.ray.ox, a.ray.oy, a.ray.oz, a.ray.dx, a.ray.dy, a.ray.dz})
+      EXPECT_TRUE(std::isfinite(x)) << i;
     EXPECT_GT(std::abs(a.ray.dx) + std::abs(a.ray.dy) + std::abs(a.ray.dz), 0) << i;
   }
   EXPECT_GT(different, 1700);  // camera rays through the same pixel are the same
@@ -101,7 +104,8 @@ TEST(Verify, ThisDeviceAgreesOnTheTortureSet) {
   ASSERT_EQ(report.devices.size(), 1u);
   const Statistics& s = report.devices[0].statistics;
   EXPECT_EQ(s.rays, 40'000u);
-  EXPECT_EQ(report.disagreements(), 0u) << report.devices[0].failures.front().disagreements.front().text;
+  EXPECT_EQ(report.disagreements(), 0u)
+      << report.devices[0].failures.front().disagreements.front().text;
   EXPECT_GT(s.hits, 20'000u);
   for (std::size_t k = 0; k < s.kinds.size(); ++k) {
     EXPECT_GT(s.kinds[k].hits, 100u) << reference::kind_names[k];
@@ -113,7 +117,8 @@ TEST(Verify, ThisDeviceAgreesOnTheTortureSet) {
 
 TEST(Verify, ThreadsAndRunsDoNotMatter) {
   const Options options{.rays = 10'000, .seed = 2};
-  const Report a = verify(nullptr, "", devices(), options), b = verify(nullptr, "", devices(), options);
+  const Report a = verify(nullptr, "", devices(), options),
+               b = verify(nullptr, "", devices(), options);
   const Statistics &x = a.devices[0].statistics, &y = b.devices[0].statistics;
   EXPECT_EQ(x.hits, y.hits);
   EXPECT_EQ(x.worst(), y.worst());
@@ -121,7 +126,8 @@ TEST(Verify, ThreadsAndRunsDoNotMatter) {
 }
 
 TEST(Verify, TwoQueuesOfADeviceAgreeToTheBit) {
-  const Report report = verify(nullptr, "", {devices()[0], devices()[0]}, {.rays = 5'000, .seed = 3});
+  const Report report =
+      verify(nullptr, "", {devices()[0], devices()[0]}, {.rays = 5'000, .seed = 3});
   ASSERT_EQ(report.differences.size(), 1u);
   EXPECT_EQ(report.differences[0].same, 5'000u);
   EXPECT_EQ(report.differences[0].other_t + report.differences[0].other_place, 0u);
@@ -137,21 +143,26 @@ TEST(Verify, EndsWhenInterrupted) {
   EXPECT_LT(report.devices[0].statistics.rays, 1'000'000u);
 }
 
-/// A scene of every kind with a hit list that is plain: rays from outside through the middle of things.
+/// A scene of every kind with a hit list that is plain: rays from outside through the middle of
+/// things.
 class Faults : public testing::Test {
  protected:
-  Faults() : scene_(torture_scene(5, 0)), check_(scene_, devices()), comparison_(scene_, check_.reference()) {
+  Faults()
+      : scene_(torture_scene(5, 0)),
+        check_(scene_, devices()),
+        comparison_(scene_, check_.reference()) {
     const RaySource source(scene_, check_.reference(), 5);
     std::vector<RayRecord> rays;
     for (std::uint64_t i = 0; i < 4000; ++i) rays.push_back(source.ray(i).ray);
     std::mutex mutex;
     std::map<std::size_t, Answer> ordered;
     check_.check(rays, [&](const SceneCheck::Checked& ray) {
-      if (!ray.outcomes[0].disagreements.empty() || !ray.outcomes[0].grazed.empty() || ray.found[0].list.size() < 2 ||
-          grazes(ray.expected))
+      if (!ray.outcomes[0].disagreements.empty() || !ray.outcomes[0].grazed.empty() ||
+          ray.found[0].list.size() < 2 || grazes(ray.expected))
         return;
       const std::lock_guard lock(mutex);
-      ordered[ray.ray] = {ray.expected, ray.found[0].nearest, {ray.found[0].list.begin(), ray.found[0].list.end()}};
+      ordered[ray.ray] = {
+          ray.expected, ray.found[0].nearest, {ray.found[0].list.begin(), ray.found[0].list.end()}};
     });
     for (auto& [number, answer] : ordered) answers_.push_back(std::move(answer));
   }
@@ -165,24 +176,28 @@ class Faults : public testing::Test {
   bool grazes(const Expected& expected) const {
     return std::ranges::any_of(expected.hits, [&](const reference::SceneHit& hit) {
       const LocalRay local = comparison_.bounds().local(hit.index, expected.ray);
-      return std::holds_alternative<reference::Csg>(*local.primitive) || std::abs(local.value(0)) <= local.bound ||
+      return std::holds_alternative<reference::Csg>(*local.primitive) ||
+             std::abs(local.value(0)) <= local.bound ||
              reference::comes_within(*local.primitive, local.ray, local.bound);
     });
   }
 
-  /// In how many of the answers that `spoil` applies to (returns true) the fault is found. A fault may have several names.
+  /// In how many of the answers that `spoil` applies to (returns true) the fault is found. A fault
+  /// may have several names.
   struct Noticed {
     int spoiled = 0, found = 0;
     double share() const { return spoiled == 0 ? 0 : static_cast<double>(found) / spoiled; }
   };
-  Noticed notice(const std::vector<Fault>& faults, const std::function<bool(Answer&)>& spoil) const {
+  Noticed notice(const std::vector<Fault>& faults,
+                 const std::function<bool(Answer&)>& spoil) const {
     Noticed out;
     for (Answer answer : answers_) {
       if (!spoil(answer)) continue;
       ++out.spoiled;
       const Outcome outcome = comparison_.compare(answer.expected, {answer.nearest, answer.list});
-      out.found += std::ranges::any_of(outcome.disagreements,
-                                       [&](const Disagreement& d) { return std::ranges::count(faults, d.fault) > 0; });
+      out.found += std::ranges::any_of(outcome.disagreements, [&](const Disagreement& d) {
+        return std::ranges::count(faults, d.fault) > 0;
+      });
     }
     EXPECT_GT(out.spoiled, 100);
     return out;
@@ -197,7 +212,8 @@ class Faults : public testing::Test {
 TEST_F(Faults, NoneAreSeenInWhatIsRight) {
   ASSERT_GT(answers_.size(), 500u);
   for (const Answer& answer : answers_)
-    EXPECT_TRUE(comparison_.compare(answer.expected, {answer.nearest, answer.list}).disagreements.empty());
+    EXPECT_TRUE(
+        comparison_.compare(answer.expected, {answer.nearest, answer.list}).disagreements.empty());
 }
 
 TEST_F(Faults, AMissingCrossingIsNoticed) {
@@ -290,16 +306,19 @@ TEST_F(Faults, AnotherSurfaceIsNoticed) {
     const auto& first = a.expected.hits[0];
     const auto& primitive = check_.reference().placed(first.index).primitive;
     const int count = reference::surface_count(primitive);
-    // Opposite faces; caps and sides may go over into each other smoothly, and csg surfaces may lie on each other.
+    // Opposite faces; caps and sides may go over into each other smoothly, and csg surfaces may lie
+    // on each other.
     if (!std::holds_alternative<reference::Box>(primitive)) return false;
     for (PickRecord& pick : a.list)
-      if (std::abs(pick.t - first.t) <= 1e-3 * first.t) pick.surface = (pick.surface ^ 1u) % static_cast<uint>(count);
+      if (std::abs(pick.t - first.t) <= 1e-3 * first.t)
+        pick.surface = (pick.surface ^ 1u) % static_cast<uint>(count);
     return true;
   };
   EXPECT_GT(notice({Fault::surface}, spoil).share(), 0.95);
 }
 TEST_F(Faults, AnotherPlaceIsNoticed) {
-  // A thousandth of t, where that is far more than the bound: the surfaces of a ray through several things are far apart.
+  // A thousandth of t, where that is far more than the bound: the surfaces of a ray through several
+  // things are far apart.
   EXPECT_GT(notice({Fault::t, Fault::order, Fault::hit},
                    [](Answer& a) {
                      for (PickRecord& pick : a.list) pick.t *= 1.001f;
@@ -317,7 +336,8 @@ TEST_F(Faults, AnotherPlaceIsNoticed) {
 }
 TEST_F(Faults, AnotherPointIsNoticed) {
   const auto move = [](Answer& a, float bounds) {
-    for (int k = 0; k < 3; ++k) a.list[0].point[k] += bounds * a.list[0].error * a.list[0].normal[k];
+    for (int k = 0; k < 3; ++k)
+      a.list[0].point[k] += bounds * a.list[0].error * a.list[0].normal[k];
   };
   // The allowance holds the rounding of the scene beside the point's own error.
   EXPECT_GT(notice({Fault::point}, [&](Answer& a) { return move(a, 50), true; }).share(), 0.95);
@@ -366,7 +386,8 @@ TEST_F(Faults, AnotherUvIsNoticed) {
             0.9);
 }
 
-// Rays so close to the plane of a ring that either side of it is right: between them they pass its hole.
+// Rays so close to the plane of a ring that either side of it is right: between them they pass its
+// hole.
 TEST(Comparison, TheHoleOfAPartialDiskIsNoDistance) {
   Scene scene;
   scene.materials.emplace_back();
@@ -374,7 +395,14 @@ TEST(Comparison, TheHoleOfAPartialDiskIsNoDistance) {
   SceneCheck check(scene, devices());
   const Comparison comparison(scene, check.reference());
   const auto crosses_at = [](float x) {
-    return RayRecord{.ox = -3, .oy = 0, .oz = 1e-6f * (3 + x), .t_min = 0, .dx = 6, .dy = 0, .dz = -6e-6f, .t_max = HUGE_VALF};
+    return RayRecord{.ox = -3,
+                     .oy = 0,
+                     .oz = 1e-6f * (3 + x),
+                     .t_min = 0,
+                     .dx = 6,
+                     .dy = 0,
+                     .dz = -6e-6f,
+                     .t_max = HUGE_VALF};
   };
   int compared = 0;
   check.check(std::vector{crosses_at(0.95f)}, [&](const SceneCheck::Checked& ray) {
@@ -385,14 +413,16 @@ TEST(Comparison, TheHoleOfAPartialDiskIsNoDistance) {
     const Outcome outcome = comparison.compare(other, ray.found[0]);
     EXPECT_TRUE(outcome.disagreements.empty()) << outcome.disagreements.front().text;
     ASSERT_EQ(outcome.matches.size(), 1u);
-    const double off = outcome.matches[0].deviations[static_cast<std::size_t>(Quantity::t)].in_bounds;
+    const double off =
+        outcome.matches[0].deviations[static_cast<std::size_t>(Quantity::t)].in_bounds;
     EXPECT_NEAR(off, 1.9e-6 / comparison.bounds().local(0, other.ray).bound, 1e-3);
     ++compared;
   });
   EXPECT_EQ(compared, 1);
 }
 
-// A patch folded so that its two sides are closer than the bound: which of them the ray meets first is for rounding to say.
+// A patch folded so that its two sides are closer than the bound: which of them the ray meets first
+// is for rounding to say.
 TEST(Comparison, SidesOfAFoldMayComeInEitherOrder) {
   Scene scene;
   scene.materials.emplace_back();
@@ -441,7 +471,8 @@ TEST(Cases, KeepTheBitsOfTheirRays) {
   save_cases(folder, {failure, of_file});
   const std::vector<Case> cases = load_cases(folder);
   ASSERT_EQ(cases.size(), 2u);
-  for (const Case& one : cases) EXPECT_EQ(std::memcmp(&one.ray, &failure.ray, sizeof(RayRecord)), 0);
+  for (const Case& one : cases)
+    EXPECT_EQ(std::memcmp(&one.ray, &failure.ray, sizeof(RayRecord)), 0);
   EXPECT_EQ(cases[0].scene.seed, 3u);
   EXPECT_EQ(cases[0].scene.round, 4u);
   EXPECT_EQ(cases[1].scene.file, std::filesystem::absolute("some.pbrt").string());
@@ -465,17 +496,30 @@ TEST(Cases, BadOnesAreRefused) {
   EXPECT_THAT(refused(""), HasSubstr("not a case"));
   EXPECT_THAT(refused("[1, 2]"), HasSubstr("not a case"));
   EXPECT_THAT(refused(R"({"format": 3})"), HasSubstr("not a case"));
-  EXPECT_THAT(refused(head + R"("torture": {"seed": -1.5}})"), HasSubstr("seed is a whole number from 0 up, not -1.5"));
-  EXPECT_THAT(refused(head + R"("torture": {"seed": 1, "round": "2"}})"), HasSubstr("round is a whole number"));
+  EXPECT_THAT(refused(head + R"("torture": {"seed": -1.5}})"),
+              HasSubstr("seed is a whole number from 0 up, not -1.5"));
+  EXPECT_THAT(refused(head + R"("torture": {"seed": 1, "round": "2"}})"),
+              HasSubstr("round is a whole number"));
   EXPECT_THAT(refused(head + R"("torture": {"seed": 1}})"), HasSubstr("not a case"));
-  EXPECT_THAT(refused(head + R"("scene": "a", "ray": {"origin": [1, 2, 1e300], "direction": [0, 0, 1]}})"), HasSubstr("finite"));
+  EXPECT_THAT(
+      refused(head + R"("scene": "a", "ray": {"origin": [1, 2, 1e300], "direction": [0, 0, 1]}})"),
+      HasSubstr("finite"));
   EXPECT_THAT(refused(head + R"("scene": 5, "ray": {}})"), HasSubstr("not a case"));
-  EXPECT_THAT(refused(head + R"("scene": "a", "ray": {"origin": ["1", "2"], "direction": [0, 0, 1]}})"), HasSubstr("not a case"));
-  EXPECT_THAT(refused(head + R"("scene": "a", "ray": {"origin": ["1", "2", "x"], "direction": [0, 0, 1]}})"),
-              HasSubstr("finite"));
-  EXPECT_THAT(refused(head + R"("scene": "a", "ray": {"origin": ["1", "2", "nan"], "direction": [0, 0, 1]}})"),
-              HasSubstr("finite"));
-  EXPECT_EQ(refused(head + R"("scene": "a", "ray": {"origin": ["1", "2", "0x1p-3"], "direction": [0, 0, 1]}})"), "taken");
+  EXPECT_THAT(
+      refused(head + R"("scene": "a", "ray": {"origin": ["1", "2"], "direction": [0, 0, 1]}})"),
+      HasSubstr("not a case"));
+  EXPECT_THAT(
+      refused(head +
+              R"("scene": "a", "ray": {"origin": ["1", "2", "x"], "direction": [0, 0, 1]}})"),
+      HasSubstr("finite"));
+  EXPECT_THAT(
+      refused(head +
+              R"("scene": "a", "ray": {"origin": ["1", "2", "nan"], "direction": [0, 0, 1]}})"),
+      HasSubstr("finite"));
+  EXPECT_EQ(
+      refused(head +
+              R"("scene": "a", "ray": {"origin": ["1", "2", "0x1p-3"], "direction": [0, 0, 1]}})"),
+      "taken");
   EXPECT_THROW(load_cases(folder / "none"), InputError);
   EXPECT_THROW(load_cases(test::temporary_folder()), InputError);
 }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Changes of a live scene: what it is after them, and after they are taken back, against the same changes by hand and the scene
-// lowered afresh.
+// Changes of a live scene: what it is after them, and after they are taken back, against the same
+// changes by hand and the scene lowered afresh.
 #include "view/editor.h"
 
 #include <gmock/gmock.h>
@@ -27,8 +27,10 @@ using testing::ThrowsMessage;
 TEST(Editor, MovesShapesAndInstances) {
   LiveScene live(some_scene());
   Editor editor(live);
-  const glm::dmat4 by = glm::rotate(glm::translate(glm::dmat4(1), {0.25, 0.5, 0.75}), 0.5, {0, 0, 1});
-  const glm::dmat4 shape = live.scene().shapes[3].world_from_object, instance = live.scene().instances[1].world_from_object;
+  const glm::dmat4 by =
+      glm::rotate(glm::translate(glm::dmat4(1), {0.25, 0.5, 0.75}), 0.5, {0, 0, 1});
+  const glm::dmat4 shape = live.scene().shapes[3].world_from_object,
+                   instance = live.scene().instances[1].world_from_object;
   editor.make(Move{{3, 6}, by});
   EXPECT_EQ(live.scene().shapes[3].world_from_object, by * shape);
   EXPECT_EQ(live.scene().instances[1].world_from_object, by * instance);
@@ -45,7 +47,8 @@ TEST(Editor, MovesShapesAndInstances) {
 TEST(Editor, ReshapesCapsulesInTheWorld) {
   LiveScene live(some_scene());
   Editor editor(live);
-  editor.make(Reshape{3, 0, {-1, 0, 0}, {0, 0, 2}, 0.25, 0.5});  // of an object whose origin is at -1, 0, 0
+  editor.make(
+      Reshape{3, 0, {-1, 0, 0}, {0, 0, 2}, 0.25, 0.5});  // of an object whose origin is at -1, 0, 0
   const Capsule now = capsule_at(live.scene(), {std::nullopt, 3}, 0);
   EXPECT_EQ(now.p0, glm::vec3(0, 0, 0));
   EXPECT_EQ(now.p1, glm::vec3(1, 0, 2));
@@ -58,7 +61,8 @@ TEST(Editor, ReshapesCapsulesInTheWorld) {
 TEST(Editor, TakesAGestureBackAsOne) {
   LiveScene live(some_scene());
   Editor editor(live);
-  const glm::dmat4 before = live.scene().shapes[1].world_from_object, step = glm::translate(glm::dmat4(1), {0.1, 0, 0});
+  const glm::dmat4 before = live.scene().shapes[1].world_from_object,
+                   step = glm::translate(glm::dmat4(1), {0.1, 0, 0});
   editor.make(Move{{1}, step});
   editor.make(Move{{1}, step}, true);
   editor.make(Move{{1}, step}, true);
@@ -103,7 +107,8 @@ TEST(Editor, DuplicatesAndDeletes) {
   EXPECT_TRUE(std::holds_alternative<SphereShape>(live.scene().shapes[5].geometry));
   EXPECT_TRUE(std::holds_alternative<CapsulesShape>(live.scene().shapes[6].geometry));
   EXPECT_EQ(live.scene().shapes[5].world_from_object[3].z, 1);
-  EXPECT_EQ(live.scene().instances[2].world_from_object[3].z, live.scene().instances[0].world_from_object[3].z + 1);
+  EXPECT_EQ(live.scene().instances[2].world_from_object[3].z,
+            live.scene().instances[0].world_from_object[3].z + 1);
   EXPECT_EQ(editor.rearrangements(), 1u);
   EXPECT_EQ(editor.renumberings(), 1u);
   editor.make(Delete{{0, 2, 3, 8}});
@@ -140,16 +145,29 @@ TEST(Editor, RefusesWhatCannotBe) {
   LiveScene live(some_scene());
   Editor editor(live);
   const std::vector<std::uint64_t> first = picture_of(live);
-  const glm::dmat4 flat = glm::scale(glm::dmat4(1), {1, 0, 1}), step = glm::translate(glm::dmat4(1), {1, 0, 0});
-  EXPECT_THAT([&] { editor.make(Move{{7}, step}); }, ThrowsMessage<InputError>(HasSubstr("no thing 7, of 7")));
+  const glm::dmat4 flat = glm::scale(glm::dmat4(1), {1, 0, 1}),
+                   step = glm::translate(glm::dmat4(1), {1, 0, 0});
+  EXPECT_THAT(
+      [&] {
+        editor.make(Move{{7}, step});
+      },
+      ThrowsMessage<InputError>(HasSubstr("no thing 7, of 7")));
   EXPECT_THROW(editor.make(Move{{1, 3}, flat}), InputError);
   EXPECT_THROW(editor.make(Move{{1, 99}, step}), InputError);
   EXPECT_THROW(editor.make(Reshape{3, 1, {}, {0, 0, 1}, 1, 1}), InputError);
   EXPECT_THROW(editor.make(Reshape{1, 0, {}, {0, 0, 1}, 1, 1}), InputError);
   EXPECT_THROW(editor.make(Reshape{6, 0, {}, {0, 0, 1}, 1, 1}), InputError);
   EXPECT_THROW(editor.make(Reshape{3, 0, {}, {0, 0, 1}, -1, 1}), InputError);
-  EXPECT_THAT([&] { editor.make(Paint{{1}, 0, 9}); }, ThrowsMessage<InputError>(HasSubstr("material")));
-  EXPECT_THAT([&] { editor.make(Paint{{1}, 5, 0}); }, ThrowsMessage<InputError>(HasSubstr("surface")));
+  EXPECT_THAT(
+      [&] {
+        editor.make(Paint{{1}, 0, 9});
+      },
+      ThrowsMessage<InputError>(HasSubstr("material")));
+  EXPECT_THAT(
+      [&] {
+        editor.make(Paint{{1}, 5, 0});
+      },
+      ThrowsMessage<InputError>(HasSubstr("surface")));
   EXPECT_THROW(editor.make(Paint{{5}, std::nullopt, 0}), InputError);
   EXPECT_FALSE(editor.can_undo());
   EXPECT_EQ(live.scene().shapes.size(), 5u);
@@ -181,7 +199,8 @@ void make_by_hand(Scene& scene, const Change& change) {
       const bool is_shape = id < shapes;
       if (is_shape) {
         scene.shapes.push_back(Shape(scene.shapes[id]));
-        scene.shapes.back().world_from_object = glm::translate(glm::dmat4(1), copy->by) * scene.shapes.back().world_from_object;
+        scene.shapes.back().world_from_object =
+            glm::translate(glm::dmat4(1), copy->by) * scene.shapes.back().world_from_object;
       } else {
         scene.instances.push_back(Instance(scene.instances[id - shapes]));
         scene.instances.back().world_from_object =
@@ -205,8 +224,12 @@ TEST(Editor, FiveHundredChangesAreAsByHand) {
   std::vector<Scene> by_hand{live.scene()};  // after each change
   const std::vector<std::uint64_t> first = picture_of(live);
   std::mt19937 engine(20);
-  const auto below = [&](std::size_t count) { return static_cast<std::uint32_t>(engine() % count); };
-  const auto uniform = [&](double low, double high) { return low + (high - low) * static_cast<double>(engine()) / 4294967296.0; };
+  const auto below = [&](std::size_t count) {
+    return static_cast<std::uint32_t>(engine() % count);
+  };
+  const auto uniform = [&](double low, double high) {
+    return low + (high - low) * static_cast<double>(engine()) / 4294967296.0;
+  };
   int refused = 0;
   for (int i = 0; i < 500; ++i) {
     const Scene& scene = live.scene();
@@ -214,7 +237,8 @@ TEST(Editor, FiveHundredChangesAreAsByHand) {
     std::vector<std::uint32_t> ids{below(things)};
     if (below(3) == 0 && ids[0] + 1 < things) ids.push_back(ids[0] + 1);
     const glm::dvec3 by(uniform(-1, 1), uniform(-1, 1), uniform(-1, 1));
-    Change change = Move{ids, glm::rotate(glm::translate(glm::dmat4(1), 0.3 * by), uniform(-0.5, 0.5), glm::normalize(by))};
+    Change change = Move{ids, glm::rotate(glm::translate(glm::dmat4(1), 0.3 * by),
+                                          uniform(-0.5, 0.5), glm::normalize(by))};
     switch (below(8)) {
       case 0:
         change = Paint{{below(scene.shapes.size())}, std::nullopt, below(scene.materials.size())};
@@ -242,7 +266,9 @@ TEST(Editor, FiveHundredChangesAreAsByHand) {
         break;
     }
     Scene next = by_hand.back();
-    if (live.scene().shapes.size() != next.shapes.size() || live.scene().instances.size() != next.instances.size()) FAIL() << i;
+    if (live.scene().shapes.size() != next.shapes.size() ||
+        live.scene().instances.size() != next.instances.size())
+      FAIL() << i;
     const auto now = static_cast<std::uint32_t>(next.shapes.size() + next.instances.size());
     const bool is_there = std::visit(
         [&](const auto& it) {

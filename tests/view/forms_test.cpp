@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Forms: every field of every row of the lists, set, refused and taken back; parts that come and go; what is hidden. Against the
-// same scenes as text.
+// Forms: every field of every row of the lists, set, refused and taken back; parts that come and
+// go; what is hidden. Against the same scenes as text.
 #include "view/forms.h"
 
 #include <fmt/format.h>
@@ -28,7 +28,8 @@ using testing::HasSubstr;
 using testing::ThrowsMessage;
 using Kind = FormSubject::Kind;
 
-std::string scene_text_with(const std::string& material, const std::string& more = "", const std::string& light = "") {
+std::string scene_text_with(const std::string& material, const std::string& more = "",
+                            const std::string& light = "") {
   return fmt::format(R"(
 Integrator "path" "integer maxdepth" [ 3 ]
 LookAt 4 -5 3  0 0 0.3  0 0 1
@@ -62,7 +63,8 @@ Shape "sphere" "float radius" [ 0.15 ]
 constexpr std::uint32_t it = 2, ball = 1;  // the material, and the thing that has it
 const std::string plain = R"("string type" "diffuse")";
 
-Scene scene_with(const std::string& material, const std::string& more = "", const std::string& light = "") {
+Scene scene_with(const std::string& material, const std::string& more = "",
+                 const std::string& light = "") {
   return test::scene_of_text(scene_text_with(material, more, light));
 }
 
@@ -73,24 +75,32 @@ std::vector<std::uint64_t> picture_of(const FlatScene& flat, const FlatView& vie
   const Film film = renderer.film().read();
   return {film.words().begin(), film.words().end()};
 }
-std::vector<std::uint64_t> picture_of(const LiveScene& live) { return picture_of(live.flat(), live.view()); }
-std::vector<std::uint64_t> picture_of(const Scene& scene) { return picture_of(lower(scene), lower_view(scene)); }
+std::vector<std::uint64_t> picture_of(const LiveScene& live) {
+  return picture_of(live.flat(), live.view());
+}
+std::vector<std::uint64_t> picture_of(const Scene& scene) {
+  return picture_of(lower(scene), lower_view(scene));
+}
 
 /// As it is kept, without where its statements stood.
 std::string text_of(const Scene& scene) {
   std::string out;
-  write_pbrt(scene, std::filesystem::temp_directory_path(), [&](std::string_view piece) { out += piece; });
+  write_pbrt(scene, std::filesystem::temp_directory_path(),
+             [&](std::string_view piece) { out += piece; });
   return out;
 }
 
-Json field_of(const LiveScene& live, const ViewEdit& view, const FormSubject& part, const std::string& name) {
+Json field_of(const LiveScene& live, const ViewEdit& view, const FormSubject& part,
+              const std::string& name) {
   const Json form = form_text(live.scene(), view, part);
   for (const Json& field : form["fields"])
     if (field["name"] == name) return field;
   return nullptr;
 }
 
-std::vector<std::string> kinds_of(const char* list) { return lists_text()[list].get<std::vector<std::string>>(); }
+std::vector<std::string> kinds_of(const char* list) {
+  return lists_text()[list].get<std::vector<std::string>>();
+}
 
 /// A value that the field may have, which it has not now; none where it is not to be set.
 std::optional<Value> another(const Json& field) {
@@ -99,7 +109,10 @@ std::optional<Value> another(const Json& field) {
   if (type == "number") {
     const double now = field["value"];
     for (const double share : {0.3, 0.6})
-      if (const double to = std::round(1e4 * (std::max(low, -8.0) + share * (std::min(high, 8.0) - std::max(low, -8.0)))) / 1e4;
+      if (const double to =
+              std::round(1e4 * (std::max(low, -8.0) +
+                                share * (std::min(high, 8.0) - std::max(low, -8.0)))) /
+              1e4;
           to != now)
         return to;
   }
@@ -109,7 +122,8 @@ std::optional<Value> another(const Json& field) {
   if (type == "option") return 3.5;
   if (type == "point") return std::vector<double>{0.25, -0.5, 2};
   if (type == "direction") return std::vector<double>{0, 3, -4};
-  if (type == "spectrum") return Value(std::in_place_type<Spectrum>, RgbSpectrum{{0.25, 0.5, 0.75}, ColorSpace::srgb});
+  if (type == "spectrum")
+    return Value(std::in_place_type<Spectrum>, RgbSpectrum{{0.25, 0.5, 0.75}, ColorSpace::srgb});
   if (type == "choice" && field["name"] != "kind")
     for (const Json& option : field["options"])
       if (option != field["value"]) return option.get<std::string>();
@@ -122,9 +136,12 @@ std::vector<Value> bad(const Json& field) {
   std::vector<Value> out{std::vector<double>{1, 2}, std::string("nonsense\n"), TextureChoice{99}};
   if (type != "flag") out.emplace_back(true);
   if (field.contains("low")) out.emplace_back(field["low"].get<double>() - 1);
-  if (field.contains("high") && type != "spectrum") out.emplace_back(field["high"].get<double>() + 1);
-  if (type == "spectrum") out.emplace_back(std::in_place_type<Spectrum>, RgbSpectrum{{0.5, -1, 0}, ColorSpace::srgb});
-  if (type == "spectrum" && field.contains("high")) out.emplace_back(std::in_place_type<Spectrum>, ConstantSpectrum{1.5});
+  if (field.contains("high") && type != "spectrum")
+    out.emplace_back(field["high"].get<double>() + 1);
+  if (type == "spectrum")
+    out.emplace_back(std::in_place_type<Spectrum>, RgbSpectrum{{0.5, -1, 0}, ColorSpace::srgb});
+  if (type == "spectrum" && field.contains("high"))
+    out.emplace_back(std::in_place_type<Spectrum>, ConstantSpectrum{1.5});
   if (type == "option") out.emplace_back(0.0);
   if (type == "direction") out.emplace_back(std::vector<double>{0, 0, 0});
   return out;
@@ -139,7 +156,12 @@ void try_form(LiveScene& live, Editor& editor, const FormSubject& part) {
     const std::string name = field["name"];
     SCOPED_TRACE(name);
     for (const Value& wrong : bad(field)) {
-      EXPECT_THAT([&] { editor.make(Set{part, name, wrong}); }, ThrowsMessage<InputError>(HasSubstr(name))) << wrong.index();
+      EXPECT_THAT(
+          [&] {
+            editor.make(Set{part, name, wrong});
+          },
+          ThrowsMessage<InputError>(HasSubstr(name)))
+          << wrong.index();
       EXPECT_FALSE(editor.can_undo());
     }
     EXPECT_EQ(text_of(editor.document()), before);
@@ -171,11 +193,13 @@ TEST(Forms, SetEveryFieldOfEveryMaterial) {
     try_form(live, editor, {Kind::material, it});
     seen.insert(kind);
   }
-  for (const char* kind : {"diffuse", "conductor", "dielectric", "mix", "hair", "principled", "coateddiffuse"})
+  for (const char* kind :
+       {"diffuse", "conductor", "dielectric", "mix", "hair", "principled", "coateddiffuse"})
     EXPECT_TRUE(seen.contains(kind)) << kind;
   LiveScene live(scene_with(plain));
   Editor editor(live);
-  EXPECT_THROW(editor.make(Set{{Kind::material, it}, "kind", std::string("interface")}), InputError);
+  EXPECT_THROW(editor.make(Set{{Kind::material, it}, "kind", std::string("interface")}),
+               InputError);
 }
 
 // What pbrt's documentation says a material of the kind is when nothing more is said.
@@ -186,7 +210,8 @@ TEST(Forms, NewMaterialsAreWhatFilesHaveWithoutParameters) {
     LiveScene live(scene_with(plain));
     Editor editor(live);
     editor.make(Add{Kind::material, kind});
-    ASSERT_EQ(editor.made(), std::vector<std::uint32_t>{static_cast<std::uint32_t>(live.scene().materials.size() - 1)});
+    ASSERT_EQ(editor.made(), std::vector<std::uint32_t>{
+                                 static_cast<std::uint32_t>(live.scene().materials.size() - 1)});
     const Scene fresh = scene_with(fmt::format(R"("string type" "{}")", kind));
     const FormSubject made{Kind::material, editor.made()[0]}, theirs{Kind::material, it};
     const Json mine = form_text(live.scene(), editor.view(), made)["fields"];
@@ -202,7 +227,9 @@ TEST(Forms, GiveThePictureOfTheSceneAsText) {
     Set set;
     const char* to;
   };
-  const auto spectrum = [](Spectrum value) { return Value(std::in_place_type<Spectrum>, std::move(value)); };
+  const auto spectrum = [](Spectrum value) {
+    return Value(std::in_place_type<Spectrum>, std::move(value));
+  };
   const FormSubject part{Kind::material, it};
   const std::vector<Case> cases{
       {R"("string type" "diffuse")",
@@ -214,7 +241,9 @@ TEST(Forms, GiveThePictureOfTheSceneAsText) {
       {R"("string type" "diffuse" "texture reflectance" [ "board" ])",
        {part, "reflectance", spectrum(ConstantSpectrum{0.25})},
        R"("string type" "diffuse" "spectrum reflectance" [ 400 0.25 700 0.25 ])"},
-      {R"("string type" "diffuse")", {part, "kind", std::string("dielectric")}, R"("string type" "dielectric")"},
+      {R"("string type" "diffuse")",
+       {part, "kind", std::string("dielectric")},
+       R"("string type" "dielectric")"},
       {R"("string type" "dielectric")",
        {part, "eta", spectrum(*named_spectrum("glass-BK7"))},
        R"("string type" "dielectric" "spectrum eta" [ "glass-BK7" ])"},
@@ -227,7 +256,9 @@ TEST(Forms, GiveThePictureOfTheSceneAsText) {
       {R"("string type" "conductor")",
        {part, "k", spectrum(*named_spectrum("metal-Ag-k"))},
        R"("string type" "conductor" "spectrum k" [ "metal-Ag-k" ])"},
-      {R"("string type" "principled")", {part, "metallic", 0.75}, R"("string type" "principled" "float metallic" [ 0.75 ])"},
+      {R"("string type" "principled")",
+       {part, "metallic", 0.75},
+       R"("string type" "principled" "float metallic" [ 0.75 ])"},
       {R"("string type" "coateddiffuse")",
        {part, "thickness", 0.5},
        R"("string type" "coateddiffuse" "float thickness" [ 0.5 ])"},
@@ -279,8 +310,9 @@ TEST(Forms, SetEveryFieldOfLightsTexturesShapesAndSettings) {
       Editor editor(live);
       editor.make(Add{Kind::texture, kind});
       made = editor.made().at(0);
-      editor.make(
-          Set{{Kind::material, it}, live.scene().textures[made].is_float ? "displacement" : "reflectance", TextureChoice{made}});
+      editor.make(Set{{Kind::material, it},
+                      live.scene().textures[made].is_float ? "displacement" : "reflectance",
+                      TextureChoice{made}});
     }
     Editor editor(live);
     try_form(live, editor, {Kind::texture, made});
@@ -290,7 +322,8 @@ Shape "cylinder" "point3 p0" [ 0 0 1 ] "point3 p1" [ 0 1 1 ] "float radius" [ 0.
   const auto lamp = static_cast<std::uint32_t>(live.scene().shapes.size() - 1);
   {
     Editor editor(live);
-    for (const Kind kind : {Kind::camera, Kind::film, Kind::filter, Kind::sampler, Kind::integrator})
+    for (const Kind kind :
+         {Kind::camera, Kind::film, Kind::filter, Kind::sampler, Kind::integrator})
       try_form(live, editor, {kind});
     try_form(live, editor, {Kind::emission, lamp});
     try_form(live, editor, {Kind::emission, ball});
@@ -306,7 +339,9 @@ Shape "cylinder" "point3 p0" [ 0 0 1 ] "point3 p1" [ 0 1 1 ] "float radius" [ 0.
     }
     const Bounds bounds = bounds_of(other.scene().shapes[made]);
     for (int i = 0; i < 3; ++i) EXPECT_NEAR((bounds.min[i] + bounds.max[i]) / 2, i + 1, 1e-6);
-    EXPECT_NEAR(std::max({bounds.max.x - bounds.min.x, bounds.max.y - bounds.min.y, bounds.max.z - bounds.min.z}), 1, 1e-6);
+    EXPECT_NEAR(std::max({bounds.max.x - bounds.min.x, bounds.max.y - bounds.min.y,
+                          bounds.max.z - bounds.min.z}),
+                1, 1e-6);
     EXPECT_EQ(other.scene().shapes[made].material, 1u);
     EXPECT_TRUE(picture_of(other) == picture_of(other.scene()));
   }
@@ -374,7 +409,8 @@ TEST(Forms, SetTheCameraOfTheDocument) {
 }
 
 TEST(Forms, NameLightsThatComeAndGo) {
-  LiveScene live(scene_with(plain, "", R"(LightSource "spot" "point3 from" [ 0 0 5 ] "point3 to" [ 0 0 0 ])"));
+  LiveScene live(
+      scene_with(plain, "", R"(LightSource "spot" "point3 from" [ 0 0 5 ] "point3 to" [ 0 0 0 ])"));
   Editor editor(live);
   const auto first = picture_of(live);
   editor.make(Remove{{Kind::light, 1}});
@@ -384,7 +420,8 @@ TEST(Forms, NameLightsThatComeAndGo) {
   EXPECT_TRUE(picture_of(live) == first);
   // Another kind keeps its place.
   editor.make(Set{{Kind::light, 1}, "kind", std::string("point")});
-  EXPECT_TRUE(picture_of(live) == picture_of(scene_with(plain, "", R"(LightSource "point" "point3 from" [ 0 0 5 ])")));
+  EXPECT_TRUE(picture_of(live) ==
+              picture_of(scene_with(plain, "", R"(LightSource "point" "point3 from" [ 0 0 5 ])")));
 }
 
 TEST(Hiding, IsThePictureWithoutAndKeepsTheDocument) {
@@ -432,7 +469,8 @@ ObjectInstance "twig")";
 
 // The scene's other materials are textured, and the ball holds a medium.
 TEST(Forms, LeaveWhatShapesReferToInPlace) {
-  LiveScene live(scene_with(R"("string type" "dielectric")", R"(MakeNamedMedium "fog" "string type" "homogeneous"
+  LiveScene live(scene_with(R"("string type" "dielectric")",
+                            R"(MakeNamedMedium "fog" "string type" "homogeneous"
 MediumInterface "fog" ""
 AreaLightSource "diffuse"
 Shape "sphere" "float radius" [ 0.3 ])"));
@@ -444,7 +482,8 @@ Shape "sphere" "float radius" [ 0.3 ])"));
 
 TEST(Forms, OfferNoShapeThatIsNone) {
   const std::vector<std::string> kinds = kinds_of("shape");
-  for (const char* kind : {"capsule", "tapered capsule", "sphere", "disk", "cylinder", "cone", "box"})
+  for (const char* kind :
+       {"capsule", "tapered capsule", "sphere", "disk", "cylinder", "cone", "box"})
     EXPECT_THAT(kinds, testing::Contains(kind));
   EXPECT_THAT(kinds, testing::Not(testing::Contains("polyhedron")));
   EXPECT_THAT(kinds, testing::Not(testing::Contains("csg")));

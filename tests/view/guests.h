@@ -23,7 +23,8 @@ inline constexpr int width = 96, height = 64;
 
 struct Place {
   explicit Place(const std::string& address)
-      : authority(address.substr(7, address.find('/', 7) - 7)), path(address.substr(address.find('/', 7))) {}
+      : authority(address.substr(7, address.find('/', 7) - 7)),
+        path(address.substr(address.find('/', 7))) {}
   boost::asio::ip::tcp::endpoint endpoint() const {
     return {boost::asio::ip::make_address("127.0.0.1"),
             static_cast<std::uint16_t>(std::stoi(authority.substr(authority.find(':') + 1)))};
@@ -40,9 +41,10 @@ class Guest {
  public:
   explicit Guest(const Place& place) : stream_(context_) {
     boost::beast::get_lowest_layer(stream_).connect(place.endpoint());
-    stream_.set_option(boost::beast::websocket::stream_base::decorator([&](boost::beast::websocket::request_type& request) {
-      request.set(boost::beast::http::field::origin, "http://" + place.authority);
-    }));
+    stream_.set_option(boost::beast::websocket::stream_base::decorator(
+        [&](boost::beast::websocket::request_type& request) {
+          request.set(boost::beast::http::field::origin, "http://" + place.authority);
+        }));
     stream_.read_message_max(0);
     stream_.handshake(place.authority, place.path + "socket");
   }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// What outlives a session: saved files against the live scene, journals that were cut off, altered, left by a process that was
-// killed, or are of another content.
+// What outlives a session: saved files against the live scene, journals that were cut off, altered,
+// left by a process that was killed, or are of another content.
 #include "view/keep.h"
 
 #include <gmock/gmock.h>
@@ -38,7 +38,9 @@ std::string text_of(const fs::path& file) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-void put(const fs::path& file, const std::string& text) { std::ofstream(file, std::ios::binary) << text; }
+void put(const fs::path& file, const std::string& text) {
+  std::ofstream(file, std::ios::binary) << text;
+}
 
 fs::path scene_file(const std::string& name = "scene.pbrt") {
   const fs::path file = test::temporary_folder() / name;
@@ -48,7 +50,8 @@ fs::path scene_file(const std::string& name = "scene.pbrt") {
 
 std::vector<std::string> names_in(const fs::path& folder) {
   std::vector<std::string> out;
-  for (const auto& entry : fs::directory_iterator(folder)) out.push_back(entry.path().filename().string());
+  for (const auto& entry : fs::directory_iterator(folder))
+    out.push_back(entry.path().filename().string());
   std::ranges::sort(out);
   return out;
 }
@@ -61,12 +64,14 @@ std::string move_line(std::uint32_t id, double x) {
                         {"matrix", {1, 0, 0, x, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}}}
       .dump();
 }
-constexpr const char *undo = R"({"type":"undo","again":false})", *redo = R"({"type":"undo","again":true})";
+constexpr const char *undo = R"({"type":"undo","again":false})",
+                     *redo = R"({"type":"undo","again":true})";
 
 /// A session of a scene's file, that ends as if it were killed.
 struct Sitting {
   explicit Sitting(const fs::path& file)
-      : keeper(std::make_unique<Keeper>(file)), live(import_scene(keeper->base(), FileImageReader())) {
+      : keeper(std::make_unique<Keeper>(file)),
+        live(import_scene(keeper->base(), FileImageReader())) {
     keeper->has_read({});
     keeping.emplace(live, editor, std::move(keeper));
   }
@@ -114,7 +119,9 @@ TEST(Journal, EndsWhereItIsTornOrAltered) {
     std::string other = whole;
     other[at] ^= 1;
     put(file, other);
-    EXPECT_EQ(Journal::read(file).size(), static_cast<std::size_t>(std::ranges::count(whole.substr(0, at), '\n'))) << at;
+    EXPECT_EQ(Journal::read(file).size(),
+              static_cast<std::size_t>(std::ranges::count(whole.substr(0, at), '\n')))
+        << at;
   }
   // A line that is left out, lines in another order.
   const std::size_t second = whole.find('\n') + 1, third = whole.find('\n', second) + 1;
@@ -208,7 +215,8 @@ TEST(Keeping, NothingStaysOfASessionThatSaved) {
 
 TEST(Keeping, UndoGoesBackBeyondASaveAlsoAfterAKill) {
   const fs::path file = scene_file();
-  const std::vector<std::uint64_t> first = picture_of(LiveScene(import_scene(file, FileImageReader())));
+  const std::vector<std::uint64_t> first =
+      picture_of(LiveScene(import_scene(file, FileImageReader())));
   {
     Sitting run(file);
     run.say(move_line(1, 0.5));
@@ -328,7 +336,8 @@ TEST(Keeping, ASecondSessionLeavesTheFirstOnesJournalAlone) {
   };
   is_second();
   is_second();  // the one before has gone, and has left the first one's lock
-  EXPECT_THAT(names_in(file.parent_path()), ElementsAre(".scene.pbrt.unsaved", "of the second.pbrt", "scene.pbrt"));
+  EXPECT_THAT(names_in(file.parent_path()),
+              ElementsAre(".scene.pbrt.unsaved", "of the second.pbrt", "scene.pbrt"));
   first->say(move_line(1, 0.25));
   first.reset();  // killed
   Sitting run(file);
@@ -339,7 +348,8 @@ TEST(Keeping, ASecondSessionLeavesTheFirstOnesJournalAlone) {
 TEST(Keeping, FilesOfAnyNameCount) {
   const fs::path folder = test::temporary_folder(), file = folder / "whole.pbrt";
   // Journals are JSON: names that are no UTF-8 are found again all the same.
-  for (const std::string name : {"K\xfcgel.pbrt", "\xed\xa0\x80 \xc3\xbc.pbrt", "bytes:\xff.pbrt", "K\xc3\xbcgel.pbrt"}) {
+  for (const std::string name :
+       {"K\xfcgel.pbrt", "\xed\xa0\x80 \xc3\xbc.pbrt", "bytes:\xff.pbrt", "K\xc3\xbcgel.pbrt"}) {
     put(folder / name, "Shape \"sphere\" \"float radius\" 1\n");
     put(file, "WorldBegin\nInclude \"" + name + "\"\nLightSource \"infinite\"\n");
     const auto session = [&] {
@@ -370,7 +380,8 @@ TEST(Keeping, ChangesOfAnotherContentAreAskedAbout) {
   }
   std::string other = test::some_text;
   other.replace(other.find("0.6"), 3, "0.5");
-  other.erase(other.find("AttributeBegin\n  AreaLight"), other.find("ObjectBegin") - other.find("AttributeBegin\n  AreaLight"));
+  other.erase(other.find("AttributeBegin\n  AreaLight"),
+              other.find("ObjectBegin") - other.find("AttributeBegin\n  AreaLight"));
   put(file, other);
   {
     Sitting run(file);
@@ -417,7 +428,8 @@ TEST(Keeping, TheSameFileReadOtherwiseIsAnotherContent) {
 }
 
 TEST(Keeping, FilesThatTheSceneNamesCountToo) {
-  const fs::path folder = test::temporary_folder(), file = folder / "whole.pbrt", part = folder / "part.pbrt";
+  const fs::path folder = test::temporary_folder(), file = folder / "whole.pbrt",
+                 part = folder / "part.pbrt";
   put(part, "Shape \"sphere\" \"float radius\" 1\n");
   put(file, "WorldBegin\nInclude \"part.pbrt\"\nLightSource \"infinite\"\n");
   {
@@ -502,9 +514,11 @@ TEST(Keeping, SavesBesideTheSceneAlone) {
   fs::create_symlink("/tmp", file.parent_path() / "link.pbrt");
   fs::create_directory(file.parent_path() / "folder.pbrt");
   Sitting run(file);
-  for (const std::string& name : {std::string(), std::string("../x"), std::string("/tmp/x"), std::string("a/b"),
-                                  std::string(".."), std::string(".hidden"), std::string("..\\x"), std::string("a\nb"),
-                                  std::string("a\0b", 3), std::string("link"), std::string("folder"), std::string("link.pbrt/x")})
+  for (const std::string& name :
+       {std::string(), std::string("../x"), std::string("/tmp/x"), std::string("a/b"),
+        std::string(".."), std::string(".hidden"), std::string("..\\x"), std::string("a\nb"),
+        std::string("a\0b", 3), std::string("link"), std::string("folder"),
+        std::string("link.pbrt/x")})
     EXPECT_THAT([&] { run.save(name); }, ThrowsMessage<InputError>(HasSubstr("name: '"))) << name;
   EXPECT_THAT(names_in(file.parent_path()), ElementsAre("folder.pbrt", "link.pbrt", "neuron.pbrt"));
   EXPECT_EQ(run.save("ends.in.swc")["name"], "ends.in.swc.pbrt");
@@ -519,7 +533,8 @@ TEST(Keeping, NamesOtherFormatsAsPbrt) {
   EXPECT_EQ(cell.save({}, false)["name"], "cell.pbrt");
   for (const char* name : {"rods", "cell"}) {
     const Sitting& run = name[0] == 'r' ? rods : cell;
-    EXPECT_EQ(test::fresh_picture_of(import_scene(folder / (std::string(name) + ".pbrt"), FileImageReader()), 1),
+    EXPECT_EQ(test::fresh_picture_of(
+                  import_scene(folder / (std::string(name) + ".pbrt"), FileImageReader()), 1),
               picture_of(run.live, 1));
   }
 }
@@ -528,7 +543,8 @@ TEST(Keeping, AFailedSaveLeavesAllAsItWas) {
   const fs::path file = scene_file();
   Sitting run(file);
   run.say(move_line(1, 0.5));
-  EXPECT_ANY_THROW(run.keeping->save({{}, false, true}, look_of_scene(run.live.scene()), [] { return true; }));
+  EXPECT_ANY_THROW(
+      run.keeping->save({{}, false, true}, look_of_scene(run.live.scene()), [] { return true; }));
   EXPECT_EQ(text_of(file), test::some_text);
   EXPECT_THAT(names_in(file.parent_path()), ElementsAre(".scene.pbrt.unsaved", "scene.pbrt"));
   EXPECT_TRUE(run.told()["unsaved"]);
@@ -576,8 +592,12 @@ TEST(KeptToken, StaysForOneAddressAndScene) {
 
 /// A change of a scene as a message.
 std::string random_line(const Scene& scene, std::mt19937& engine) {
-  const auto below = [&](std::size_t count) { return static_cast<std::uint32_t>(engine() % count); };
-  const auto uniform = [&](double low, double high) { return low + (high - low) * static_cast<double>(engine()) / 4294967296.0; };
+  const auto below = [&](std::size_t count) {
+    return static_cast<std::uint32_t>(engine() % count);
+  };
+  const auto uniform = [&](double low, double high) {
+    return low + (high - low) * static_cast<double>(engine()) / 4294967296.0;
+  };
   const auto things = static_cast<std::uint32_t>(scene.shapes.size() + scene.instances.size());
   std::vector<std::uint32_t> ids{below(things)};
   if (below(3) == 0 && ids[0] + 1 < things) ids.push_back(ids[0] + 1);
@@ -585,7 +605,10 @@ std::string random_line(const Scene& scene, std::mt19937& engine) {
   const std::uint32_t shape = below(scene.shapes.size());
   switch (below(9)) {
     case 0:
-      out.update({{"what", "paint"}, {"ids", {shape}}, {"surface", nullptr}, {"material", below(scene.materials.size())}});
+      out.update({{"what", "paint"},
+                  {"ids", {shape}},
+                  {"surface", nullptr},
+                  {"material", below(scene.materials.size())}});
       break;
     case 1:
       out.update({{"what", "paint"},
@@ -596,7 +619,9 @@ std::string random_line(const Scene& scene, std::mt19937& engine) {
     case 2:
     case 3:
       if (things < 20) {
-        out.update({{"what", "duplicate"}, {"ids", ids}, {"by", {uniform(-1, 1), uniform(-1, 1), uniform(-1, 1)}}});
+        out.update({{"what", "duplicate"},
+                    {"ids", ids},
+                    {"by", {uniform(-1, 1), uniform(-1, 1), uniform(-1, 1)}}});
         break;
       }
       [[fallthrough]];
@@ -611,16 +636,19 @@ std::string random_line(const Scene& scene, std::mt19937& engine) {
     case 6:
       if (std::holds_alternative<CapsulesShape>(scene.shapes[shape].geometry)) {
         out.update({{"what", "reshape"}, {"id", shape}, {"capsule", 0}});
-        for (const char* end : {"p0", "p1"}) out[end] = {uniform(-2, 2), uniform(-2, 2), uniform(0, 2)};
+        for (const char* end : {"p0", "p1"})
+          out[end] = {uniform(-2, 2), uniform(-2, 2), uniform(0, 2)};
         for (const char* radius : {"radius0", "radius1"}) out[radius] = uniform(0.05, 0.5);
         break;
       }
       [[fallthrough]];
     default: {
-      const double angle = uniform(-0.5, 0.5), c = std::cos(angle), s = std::sin(angle), size = uniform(0.9, 1.1);
+      const double angle = uniform(-0.5, 0.5), c = std::cos(angle), s = std::sin(angle),
+                   size = uniform(0.9, 1.1);
       out.update({{"what", "move"}, {"ids", ids}});
-      out["matrix"] = {size * c, -size * s, 0,    uniform(-0.3, 0.3), size * s, size * c, 0, uniform(-0.3, 0.3),
-                       0,        0,         size, uniform(-0.2, 0.2), 0,        0,        0, 1};
+      out["matrix"] = {
+          size * c, -size * s, 0,    uniform(-0.3, 0.3), size * s, size * c, 0, uniform(-0.3, 0.3),
+          0,        0,         size, uniform(-0.2, 0.2), 0,        0,        0, 1};
     }
   }
   return out.dump();
@@ -646,7 +674,8 @@ TEST(Keeping, FiveHundredChangesAreInTheSavedFile) {
       ASSERT_EQ(picture_of(run->live, 4), shown) << i;
       ASSERT_EQ(run->editor.can_undo(), undoable);
     }
-    ASSERT_EQ(run->save(i % 20 == 9 ? std::optional<std::string>("copy") : std::nullopt)["type"], "saved");
+    ASSERT_EQ(run->save(i % 20 == 9 ? std::optional<std::string>("copy") : std::nullopt)["type"],
+              "saved");
     const fs::path saved = file.parent_path() / run->told()["name"].get<std::string>();
     ASSERT_EQ(test::fresh_picture_of(import_scene(saved, FileImageReader()), 4), shown) << i;
   }

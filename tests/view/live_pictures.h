@@ -48,7 +48,8 @@ ObjectInstance "twig"
 
 inline Scene some_scene() { return test::scene_of_text(some_text); }
 
-inline std::vector<std::uint64_t> picture_of(const FlatScene& flat, const FlatView& view, std::uint32_t samples = 2) {
+inline std::vector<std::uint64_t> picture_of(const FlatScene& flat, const FlatView& view,
+                                             std::uint32_t samples = 2) {
   DeviceScene scene(test::test_device(), flat);
   Renderer renderer(scene, view);
   renderer.pass(renderer.layout().window, 0, samples, {});

@@ -69,7 +69,8 @@ TEST(Orthographic, ShowsBallsAsDisksWhateverTheirDistance) {
     for (int x = 0; x < 64; ++x)
       for (const std::uint32_t ball : {0u, 1u}) {
         const double far = std::hypot(x + 0.5 - (ball == 0 ? 48 : 16), y + 0.5 - 24);
-        const bool is_seen = film.number(Layer::object, static_cast<std::size_t>(64 * y + x)) == ball;
+        const bool is_seen =
+            film.number(Layer::object, static_cast<std::size_t>(64 * y + x)) == ball;
         if (far < 11) {
           EXPECT_TRUE(is_seen) << x << ' ' << y << ' ' << ball;
         }
@@ -106,7 +107,8 @@ TEST(Orthographic, FocusesAtOneDistance) {
   const Film blurred = film_of(looked_at(look, 1, 0));
   int near = 0, far = 0;
   for (std::size_t pixel = 0; pixel < 64 * 48; ++pixel) {
-    const std::uint32_t a = sharp.number(Layer::object, pixel), b = blurred.number(Layer::object, pixel);
+    const std::uint32_t a = sharp.number(Layer::object, pixel),
+                        b = blurred.number(Layer::object, pixel);
     near += (a == 0) != (b == 0);
     far += (a == 1) != (b == 1);
   }
@@ -119,7 +121,8 @@ TEST(Orthographic, IsKeptInFiles) {
   look.orthographic = 1.5;
   const Scene scene = looked_at(look, 1, 0);
   std::string written;
-  write_pbrt(scene, std::filesystem::temp_directory_path(), [&](std::string_view piece) { written += piece; });
+  write_pbrt(scene, std::filesystem::temp_directory_path(),
+             [&](std::string_view piece) { written += piece; });
   EXPECT_NE(written.find("Camera \"orthographic\""), std::string::npos);
   const Scene again = test::scene_of_text(written);
   EXPECT_EQ(fov_of(again.camera), 0);
@@ -152,9 +155,11 @@ TEST(Pairs, AreCamerasMovedByHand) {
     // With a window that is moved so that what is 6 away stays: 0.25 / (6 tan 20 degrees).
     look.convergence = 6;
     Scene by_hand = looked_at(moved, 1, 0);
-    const double shift = (eye == 0 ? -0.25 : 0.25) / (6 * std::tan(fov_of(by_hand.camera) / 2)), x = 64.0 / 48;
+    const double shift = (eye == 0 ? -0.25 : 0.25) / (6 * std::tan(fov_of(by_hand.camera) / 2)),
+                 x = 64.0 / 48;
     by_hand.camera.screen_window = {-x - shift, x - shift, -1, 1};
-    const RayRecord hand = ray_of_pixel(by_hand, 3, 7), ours = ray_of_pixel(looked_at(look, 1, eye), 3, 7);
+    const RayRecord hand = ray_of_pixel(by_hand, 3, 7),
+                    ours = ray_of_pixel(looked_at(look, 1, eye), 3, 7);
     EXPECT_NEAR(hand.dx, ours.dx, 1e-6);
     EXPECT_NEAR(hand.dz, ours.dz, 1e-6);
     look.convergence = 0;

@@ -11,8 +11,9 @@ namespace caplet::view {
 namespace {
 
 std::string look(const std::string& name, const std::string& value) {
-  std::string out = R"({"type":"look","width":640,"height":480,"world_from_camera":[1,2,3,4,5,6,7,8,9,10,11,12,0,0,0,1],)"
-                    R"("fov":0.5,"lens_radius":0.25,"focal_distance":3)";
+  std::string out =
+      R"({"type":"look","width":640,"height":480,"world_from_camera":[1,2,3,4,5,6,7,8,9,10,11,12,0,0,0,1],)"
+      R"("fov":0.5,"lens_radius":0.25,"focal_distance":3)";
   return out + (name.empty() ? "" : fmt::format(R"(,"{}":{})", name, value)) +
          "}";  // of two fields of a name the last one counts
 }
@@ -38,7 +39,8 @@ TEST(Messages, SayHowOneLooks) {
 }
 
 TEST(Messages, AskAndSee) {
-  const Ask asked = std::get<Ask>(parse_message(R"({"type":"ask","number":17,"x":3,"y":4,"all":true,"reference":false})"));
+  const Ask asked = std::get<Ask>(
+      parse_message(R"({"type":"ask","number":17,"x":3,"y":4,"all":true,"reference":false})"));
   EXPECT_EQ(asked.number, 17);
   EXPECT_EQ(asked.x, 3);
   EXPECT_EQ(asked.y, 4);
@@ -63,18 +65,22 @@ TEST(Messages, NameTheFieldThatIsWrong) {
                                     {"world_from_camera", "[1,2]"},
                                     {"world_from_camera", "3"}})
     EXPECT_NE(refusal(look(name, value)), "") << name << value;
-  EXPECT_NE(refusal(look("world_from_camera", "[1,2,3,4,5,6,7,8,9,10,11,1e13,0,0,0,1]")).find("world_from_camera[11]"),
+  EXPECT_NE(refusal(look("world_from_camera", "[1,2,3,4,5,6,7,8,9,10,11,1e13,0,0,0,1]"))
+                .find("world_from_camera[11]"),
             std::string::npos);
   EXPECT_NE(refusal(look("fov", "true")).find("fov"), std::string::npos);
-  EXPECT_NE(refusal(R"({"type":"ask","number":1,"x":0,"y":0,"all":1,"reference":false})").find("all"), std::string::npos);
+  EXPECT_NE(
+      refusal(R"({"type":"ask","number":1,"x":0,"y":0,"all":1,"reference":false})").find("all"),
+      std::string::npos);
   EXPECT_NE(refusal(R"({"type":"seen"})").find("seen: is missing"), std::string::npos);
 }
 
 TEST(Messages, AreRefusedWhateverTheyAre) {
   for (const std::string& text :
        {std::string(), std::string("{"), std::string("[]"), std::string("3"), std::string("{}"),
-        std::string(R"({"type":"other"})"), std::string(R"({"type":["look"]})"), std::string("\xff\xfe{}"),
-        std::string(30000, '['), R"({"type":)" + std::string(30000, '{'), std::string("{\"type\":\"look\"}\0x", 18)})
+        std::string(R"({"type":"other"})"), std::string(R"({"type":["look"]})"),
+        std::string("\xff\xfe{}"), std::string(30000, '['), R"({"type":)" + std::string(30000, '{'),
+        std::string("{\"type\":\"look\"}\0x", 18)})
     EXPECT_NE(refusal(text), "") << text.substr(0, 40);
 }
 

@@ -55,10 +55,13 @@ ObjectInstance "{0}"
                      name);
 }
 
-/// A guest's JSON is parsed strictly: one broken byte in anything that is told ends the test, as a server that throws does.
-void expect_names(const Scene& scene, std::unique_ptr<Keeper> keeper, const std::string& valid, const std::string& what) {
+/// A guest's JSON is parsed strictly: one broken byte in anything that is told ends the test, as a
+/// server that throws does.
+void expect_names(const Scene& scene, std::unique_ptr<Keeper> keeper, const std::string& valid,
+                  const std::string& what) {
   const bool keeps = keeper != nullptr;
-  const Viewer viewer(LiveScene(Scene(scene)), test::test_device(), options_of(1), std::move(keeper));
+  const Viewer viewer(LiveScene(Scene(scene)), test::test_device(), options_of(1),
+                      std::move(keeper));
   Guest guest(Place(viewer.address()));
   const json hello = json::parse(guest.until("scene"));
   for (const json& thing : hello.at("things")) EXPECT_EQ(thing.at("name"), valid) << what;
@@ -68,7 +71,8 @@ void expect_names(const Scene& scene, std::unique_ptr<Keeper> keeper, const std:
   EXPECT_EQ(hello.at("name"), valid + ".pbrt") << what;
   guest.look(scene);
   guest.until_samples(1);
-  guest.say({{"type", "ask"}, {"number", 1}, {"x", 48}, {"y", 32}, {"all", true}, {"reference", true}});
+  guest.say(
+      {{"type", "ask"}, {"number", 1}, {"x", 48}, {"y", 32}, {"all", true}, {"reference", true}});
   const json pick = json::parse(guest.until("answer")).at("pick");
   ASSERT_GE(pick.at("crossings").size(), 1u) << what;
   for (const char* list : {"crossings", "reference"})
@@ -82,12 +86,18 @@ void expect_names(const Scene& scene, std::unique_ptr<Keeper> keeper, const std:
     guest.say({{"type", "form"}, {"number", 3}, {"of", kind}, {"part", 0}});
     EXPECT_TRUE(json::parse(guest.until("answer")).at("form").is_object()) << what << ", " << kind;
   }
-  guest.say({{"type", "edit"}, {"what", "hide"}, {"goes_on", false}, {"ids", {0}}, {"others", false}, {"number", 4}});
+  guest.say({{"type", "edit"},
+             {"what", "hide"},
+             {"goes_on", false},
+             {"ids", {0}},
+             {"others", false},
+             {"number", 4}});
   EXPECT_EQ(json::parse(guest.until("edited")).at("parts").at("hidden").at(0), valid) << what;
   guest.until("made");
   if (!keeps) return;
   guest.say({{"type", "save"}, {"name", nullptr}, {"camera", false}, {"replace", false}});
-  EXPECT_THAT(json::parse(guest.until("save_asks")).at("why").get<std::string>(), HasSubstr(valid)) << what;
+  EXPECT_THAT(json::parse(guest.until("save_asks")).at("why").get<std::string>(), HasSubstr(valid))
+      << what;
   // The name that the page shows is that of the scene's own file.
   guest.say({{"type", "save"}, {"name", valid + ".pbrt"}, {"camera", false}, {"replace", true}});
   EXPECT_EQ(json::parse(guest.until("saved")).at("name"), valid + ".pbrt") << what;
@@ -95,13 +105,15 @@ void expect_names(const Scene& scene, std::unique_ptr<Keeper> keeper, const std:
 
 TEST(Pages, HaveNamesInEveryBrokenEncoding) {
   for (const test::Broken& broken : test::broken_utf8) {
-    const fs::path folder = test::temporary_folder(), file = folder / (std::string(broken.bytes) + ".pbrt");
+    const fs::path folder = test::temporary_folder(),
+                   file = folder / (std::string(broken.bytes) + ".pbrt");
     std::ofstream(file, std::ios::binary) << text_named(broken.bytes);
     auto keeper = std::make_unique<Keeper>(file);
     const Scene scene = import_scene(keeper->base(), FileImageReader());
     keeper->has_read({file.string()});
     expect_names(scene, std::move(keeper), broken.valid, broken.what);
-    EXPECT_EQ(std::distance(fs::directory_iterator(folder), fs::directory_iterator()), 1) << broken.what;
+    EXPECT_EQ(std::distance(fs::directory_iterator(folder), fs::directory_iterator()), 1)
+        << broken.what;
     EXPECT_EQ(import_scene(file, FileImageReader()).shapes.at(0).name, broken.valid) << broken.what;
   }
 }
@@ -111,10 +123,13 @@ TEST(Pages, HaveNamesThatNoImporterHasSeen) {
   Scene scene = test::scene_of_text(text_named("x"));
   for (const char* name : {"K\xfcgel", "a\xed\xa0\x80"}) {
     for (Shape& shape : scene.shapes) shape.name = name;
-    scene.objects[0].name = scene.objects[0].shapes[0].name = scene.materials[0].name = scene.textures[0].name = name;
+    scene.objects[0].name = scene.objects[0].shapes[0].name = scene.materials[0].name =
+        scene.textures[0].name = name;
     scene.media[0].name = name;
     scene.source = std::string("/somewhere/") + name + ".pbrt";
-    expect_names(scene, nullptr, name[0] == 'K' ? "K\xef\xbf\xbdgel" : "a\xef\xbf\xbd\xef\xbf\xbd\xef\xbf\xbd", name);
+    expect_names(scene, nullptr,
+                 name[0] == 'K' ? "K\xef\xbf\xbdgel" : "a\xef\xbf\xbd\xef\xbf\xbd\xef\xbf\xbd",
+                 name);
   }
 }
 
@@ -125,7 +140,8 @@ TEST(Pages, HaveZerosAndControlCharactersInNames) {
   for (char c = 0; c < 32; ++c) name += c;
   name += "\x7f\xc2\x9b";
   for (Shape& shape : scene.shapes) shape.name = name;
-  scene.objects[0].name = scene.objects[0].shapes[0].name = scene.materials[0].name = scene.textures[0].name = name;
+  scene.objects[0].name = scene.objects[0].shapes[0].name = scene.materials[0].name =
+      scene.textures[0].name = name;
   scene.source = "/somewhere/" + name + ".pbrt";
   expect_names(scene, nullptr, name, "control characters");
 }
@@ -150,7 +166,8 @@ TEST(Pages, NeverSeeALookThatWasRefused) {
   guest.look(scene, 0.25);
   const json looked = json::parse(other.until("looked"));
   const std::uint32_t view = guest.until_samples(1).view;
-  json bad{{"type", "look"}, {"width", 64}, {"height", 48}, {"fov", 0.7}, {"lens_radius", 0}, {"focal_distance", 1}};
+  json bad{{"type", "look"}, {"width", 64},      {"height", 48},
+           {"fov", 0.7},     {"lens_radius", 0}, {"focal_distance", 1}};
   bad["world_from_camera"] = std::vector<double>(16, 0.0);
   guest.say(bad);
   EXPECT_THAT(guest.until("error"), HasSubstr("singular"));
@@ -158,10 +175,12 @@ TEST(Pages, NeverSeeALookThatWasRefused) {
   guest.say(bad);
   EXPECT_THAT(guest.until("error"), HasSubstr("singular"));
   Guest late(Place(viewer.address()));
-  EXPECT_EQ(json::parse(late.until("scene")).at("camera").at("world_from_camera"), looked.at("world_from_camera"));
+  EXPECT_EQ(json::parse(late.until("scene")).at("camera").at("world_from_camera"),
+            looked.at("world_from_camera"));
   // The first that the other page hears of again is a look that was taken.
   guest.look(scene, 0.5);
-  EXPECT_EQ(json::parse(other.until("looked")).at("world_from_camera")[3], scene.camera.world_from_camera[3].x + 0.5);
+  EXPECT_EQ(json::parse(other.until("looked")).at("world_from_camera")[3],
+            scene.camera.world_from_camera[3].x + 0.5);
   EXPECT_GT(guest.until_samples(1, view).view, view);
 }
 
@@ -175,12 +194,15 @@ TEST(Pages, PickWithTheEyeThatTheyAskFor) {
   const glm::dmat4& at = scene.camera.world_from_camera;
   const glm::dvec3 right = glm::normalize(glm::dvec3(at[0]));
   for (const int eye : {0, 1, -1}) {  // the last says nothing of it
-    json ask{{"type", "ask"}, {"number", eye + 2}, {"x", 40}, {"y", 30}, {"all", false}, {"reference", false}};
+    json ask{{"type", "ask"}, {"number", eye + 2}, {"x", 40},
+             {"y", 30},       {"all", false},      {"reference", false}};
     if (eye >= 0) ask["eye"] = eye;
     guest.say(ask);
     const json ray = json::parse(guest.until("answer")).at("pick").at("ray");
     const glm::dvec3 from = glm::dvec3(at[3]) + (eye == 1 ? 0.5 : -0.5) * separation * right;
-    for (int k = 0; k < 3; ++k) EXPECT_NEAR(ray.at("origin").at(static_cast<std::size_t>(k)).get<double>(), from[k], 1e-6) << eye;
+    for (int k = 0; k < 3; ++k)
+      EXPECT_NEAR(ray.at("origin").at(static_cast<std::size_t>(k)).get<double>(), from[k], 1e-6)
+          << eye;
   }
 }
 

@@ -32,8 +32,8 @@ void take(Shown& shown, const std::string& message) {
   const std::uint32_t flags = word(message, 7), tiles = word(message, 8);
   std::string data(word(message, 9), '\0');
   uLongf size = data.size();
-  ASSERT_EQ(::uncompress(reinterpret_cast<Bytef*>(data.data()), &size, reinterpret_cast<const Bytef*>(message.data()) + 40,
-                         message.size() - 40),
+  ASSERT_EQ(::uncompress(reinterpret_cast<Bytef*>(data.data()), &size,
+                         reinterpret_cast<const Bytef*>(message.data()) + 40, message.size() - 40),
             Z_OK);
   ASSERT_EQ(size, data.size());
   if (flags & 1u) {
@@ -45,16 +45,21 @@ void take(Shown& shown, const std::string& message) {
   std::vector<std::size_t> pixels;
   const int across = (width + 63) / 64;
   for (std::uint32_t i = 0; i < tiles; ++i) {
-    const int x0 = static_cast<int>(word(data, i)) % across * 64, y0 = static_cast<int>(word(data, i)) / across * 64;
+    const int x0 = static_cast<int>(word(data, i)) % across * 64,
+              y0 = static_cast<int>(word(data, i)) / across * 64;
     for (int y = y0; y < std::min(y0 + 64, height); ++y)
-      for (int x = x0; x < std::min(x0 + 64, width); ++x) pixels.push_back(static_cast<std::size_t>(y * width + x));
+      for (int x = x0; x < std::min(x0 + 64, width); ++x)
+        pixels.push_back(static_cast<std::size_t>(y * width + x));
   }
-  const auto byte = [&data](std::size_t at) { return static_cast<unsigned>(static_cast<unsigned char>(data[at])); };
+  const auto byte = [&data](std::size_t at) {
+    return static_cast<unsigned>(static_cast<unsigned char>(data[at]));
+  };
   std::size_t at = 4 * tiles;
   unsigned value = 0;
   for (std::size_t k = 0; k < 3 * pixels.size(); ++k) {
     value = (value + (byte(at + k) << 8 | byte(at + 3 * pixels.size() + k))) & 0xffffu;
-    shown.color[3 * pixels[k % pixels.size()] + k / pixels.size()] = static_cast<std::uint16_t>(value);
+    shown.color[3 * pixels[k % pixels.size()] + k / pixels.size()] =
+        static_cast<std::uint16_t>(value);
   }
   at += 6 * pixels.size();
   if (!(flags & 2u)) {
@@ -66,7 +71,8 @@ void take(Shown& shown, const std::string& message) {
     ids->clear();
     std::uint32_t id = 0;
     for (std::size_t i = 0; i < n; ++i) {
-      id += byte(at + i) << 24 | byte(at + n + i) << 16 | byte(at + 2 * n + i) << 8 | byte(at + 3 * n + i);
+      id += byte(at + i) << 24 | byte(at + n + i) << 16 | byte(at + 2 * n + i) << 8 |
+            byte(at + 3 * n + i);
       ids->push_back(id);
     }
     at += 4 * n;
@@ -80,7 +86,8 @@ Picture some(int width, int height, std::uint32_t seed) {
   out.height = height;
   out.view = 1;
   for (int i = 0; i < 3 * width * height; ++i)
-    out.color.push_back(static_cast<std::uint16_t>((seed = seed * 1664525u + 1013904223u) >> 17 & ~7u));
+    out.color.push_back(
+        static_cast<std::uint16_t>((seed = seed * 1664525u + 1013904223u) >> 17 & ~7u));
   return out;
 }
 
@@ -141,7 +148,8 @@ TEST(Packed, HasIdsOnceAView) {
   Shown shown;
   take(shown, packed(picture, nullptr));
   EXPECT_EQ(shown.objects.size(), 4096u);
-  const std::size_t with = packed(picture, nullptr).size(), without = packed(picture, &picture).size();
+  const std::size_t with = packed(picture, nullptr).size(),
+                    without = packed(picture, &picture).size();
   EXPECT_LT(without, with / 10);
   Picture next = picture;
   next.view = 2;

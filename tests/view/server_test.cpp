@@ -46,7 +46,9 @@ class Served {
     };
     events.joined = [this](ClientId id) { note([&] { last = id, ++joined; }); };
     events.left = [this](ClientId) { note([&] { ++left; }); };
-    events.message = [this](ClientId, const std::string& text) { note([&] { messages.push_back(text); }); };
+    events.message = [this](ClientId, const std::string& text) {
+      note([&] { messages.push_back(text); });
+    };
     events.picture = [this](ClientId, std::uint64_t& shown) -> std::shared_ptr<const std::string> {
       const std::lock_guard lock(mutex_);
       if (shown == version) return {};
@@ -92,7 +94,8 @@ class Served {
 };
 
 /// What it answers to these bytes, until it closes or is silent for a while.
-std::string answer(const Served& to, const std::string& bytes, const std::string& address = "127.0.0.1") {
+std::string answer(const Served& to, const std::string& bytes,
+                   const std::string& address = "127.0.0.1") {
   asio::io_context context;
   beast::tcp_stream stream(context);
   stream.connect(tcp::endpoint(asio::ip::make_address(address), to.server->port()));
@@ -112,16 +115,21 @@ std::string answer(const Served& to, const std::string& bytes, const std::string
   return out;
 }
 
-std::string get(const Served& from, const std::string& target, const std::string& host, const std::string& more = "",
-                const std::string& address = "127.0.0.1") {
-  return answer(from, fmt::format("GET {} HTTP/1.1\r\nHost: {}\r\nConnection: close\r\n{}\r\n", target, host, more), address);
+std::string get(const Served& from, const std::string& target, const std::string& host,
+                const std::string& more = "", const std::string& address = "127.0.0.1") {
+  return answer(
+      from,
+      fmt::format("GET {} HTTP/1.1\r\nHost: {}\r\nConnection: close\r\n{}\r\n", target, host, more),
+      address);
 }
 
 class Socket {
  public:
   /// Throws boost::system::system_error when it is refused.
-  explicit Socket(const Served& to, const std::string& origin = "", const std::string& path = "") : stream_(context_) {
-    beast::get_lowest_layer(stream_).connect(tcp::endpoint(asio::ip::make_address("127.0.0.1"), to.server->port()));
+  explicit Socket(const Served& to, const std::string& origin = "", const std::string& path = "")
+      : stream_(context_) {
+    beast::get_lowest_layer(stream_).connect(
+        tcp::endpoint(asio::ip::make_address("127.0.0.1"), to.server->port()));
     stream_.set_option(websocket::stream_base::decorator([&](websocket::request_type& request) {
       request.set(beast::http::field::origin, origin.empty() ? "http://" + to.authority() : origin);
     }));
@@ -149,23 +157,29 @@ TEST(Server, GivesItsPageToWhoeverHasTheToken) {
   EXPECT_THAT(page, StartsWith("HTTP/1.1 200"));
   EXPECT_THAT(page, HasSubstr("\r\n\r\nthe page"));
   EXPECT_THAT(page, HasSubstr("default-src 'none'"));
-  EXPECT_THAT(get(served, fmt::format("/{}/", token), fmt::format("localhost:{}", served.server->port())),
-              StartsWith("HTTP/1.1 200"));
+  EXPECT_THAT(
+      get(served, fmt::format("/{}/", token), fmt::format("localhost:{}", served.server->port())),
+      StartsWith("HTTP/1.1 200"));
 }
 
 TEST(Server, RefusesOtherTokensHostsAndPaths) {
   const Served served;
   const std::string here = served.authority(), right = fmt::format("/{}/", token);
-  for (const std::string& target : {std::string("/"), std::string("/x/"), std::string("/0123456789abcdef0123456789abcdee/"),
-                                    std::string("//"), "/" + std::string(token), std::string("*")})
+  for (const std::string& target :
+       {std::string("/"), std::string("/x/"), std::string("/0123456789abcdef0123456789abcdee/"),
+        std::string("//"), "/" + std::string(token), std::string("*")})
     EXPECT_THAT(get(served, target, here), StartsWith("HTTP/1.1 403")) << target;
-  for (const std::string& host : {std::string("evil.example"), fmt::format("evil.example:{}", served.server->port()),
-                                  std::string("127.0.0.1:1"), std::string("127.0.0.1"), std::string()})
+  for (const std::string& host :
+       {std::string("evil.example"), fmt::format("evil.example:{}", served.server->port()),
+        std::string("127.0.0.1:1"), std::string("127.0.0.1"), std::string()})
     EXPECT_THAT(get(served, right, host), StartsWith("HTTP/1.1 403")) << host;
-  for (const char* path : {"../../etc/passwd", "%2e%2e/%2e%2e/etc/passwd", "page/index.html", "socket/.."})
+  for (const char* path :
+       {"../../etc/passwd", "%2e%2e/%2e%2e/etc/passwd", "page/index.html", "socket/.."})
     EXPECT_THAT(get(served, right + path, here), StartsWith("HTTP/1.1 404")) << path;
-  EXPECT_THAT(answer(served, fmt::format("POST {} HTTP/1.1\r\nHost: {}\r\nConnection: close\r\n\r\n", right, here)),
-              StartsWith("HTTP/1.1 405"));
+  EXPECT_THAT(
+      answer(served,
+             fmt::format("POST {} HTTP/1.1\r\nHost: {}\r\nConnection: close\r\n\r\n", right, here)),
+      StartsWith("HTTP/1.1 405"));
 }
 
 TEST(Server, RefusesHostsThatAreNoneOrSeveral) {
@@ -174,25 +188,33 @@ TEST(Server, RefusesHostsThatAreNoneOrSeveral) {
   const unsigned port = served.server->port();
   for (const std::string& host :
        {fmt::format("127.0.0.1:1:{}", port), fmt::format("127.0.0.1:{0}:{0}", port),
-        fmt::format("evil.example:127.0.0.1:{}", port), fmt::format("127.0.0.1:{}x", port), fmt::format("127.0.0.1:+{}", port),
-        fmt::format("127.0.0.1: {}", port), fmt::format("127.0.0.1:{}", port + 65536), fmt::format("[::1:{}", port),
-        fmt::format("[::1]{}", port), fmt::format("[::1]x:{}", port), fmt::format("::1:{}", port), fmt::format(":{}", port),
-        fmt::format("[]:{}", port), fmt::format("a@127.0.0.1:{}", port), fmt::format("127.0.0.1:{},evil.example", port),
-        std::string("127.0.0.1:")})
+        fmt::format("evil.example:127.0.0.1:{}", port), fmt::format("127.0.0.1:{}x", port),
+        fmt::format("127.0.0.1:+{}", port), fmt::format("127.0.0.1: {}", port),
+        fmt::format("127.0.0.1:{}", port + 65536), fmt::format("[::1:{}", port),
+        fmt::format("[::1]{}", port), fmt::format("[::1]x:{}", port), fmt::format("::1:{}", port),
+        fmt::format(":{}", port), fmt::format("[]:{}", port), fmt::format("a@127.0.0.1:{}", port),
+        fmt::format("127.0.0.1:{},evil.example", port), std::string("127.0.0.1:")})
     EXPECT_THAT(get(served, right, host), StartsWith("HTTP/1.1 403")) << host;
   EXPECT_THAT(get(served, right, fmt::format("[::1]:{}", port)), StartsWith("HTTP/1.1 200"));
   // RFC 9112, section 3.2: several are answered by 400.
   for (const std::string& other : {here, std::string("evil.example")})
     for (const auto& [first, second] : {std::pair(here, other), std::pair(other, here)})
-      EXPECT_THAT(get(served, right, first, fmt::format("Host: {}\r\n", second)), StartsWith("HTTP/1.1 400")) << other;
-  EXPECT_THAT(answer(served, fmt::format("GET {} HTTP/1.0\r\n\r\n", right)), StartsWith("HTTP/1.1 403"));
+      EXPECT_THAT(get(served, right, first, fmt::format("Host: {}\r\n", second)),
+                  StartsWith("HTTP/1.1 400"))
+          << other;
+  EXPECT_THAT(answer(served, fmt::format("GET {} HTTP/1.0\r\n\r\n", right)),
+              StartsWith("HTTP/1.1 403"));
   // A second Origin does not open a socket, whichever comes first.
   const auto opens = [&](const std::string& origins) {
-    return answer(served, fmt::format("GET {}socket HTTP/1.1\r\nHost: {}\r\nConnection: Upgrade\r\nUpgrade: websocket\r\n"
-                                      "Sec-WebSocket-Version: 13\r\nSec-WebSocket-Key: AAAAAAAAAAAAAAAAAAAAAA==\r\n{}\r\n",
-                                      right, here, origins));
+    return answer(
+        served,
+        fmt::format(
+            "GET {}socket HTTP/1.1\r\nHost: {}\r\nConnection: Upgrade\r\nUpgrade: websocket\r\n"
+            "Sec-WebSocket-Version: 13\r\nSec-WebSocket-Key: AAAAAAAAAAAAAAAAAAAAAA==\r\n{}\r\n",
+            right, here, origins));
   };
-  const std::string own = fmt::format("Origin: http://{}\r\n", here), evil = "Origin: http://evil.example\r\n";
+  const std::string own = fmt::format("Origin: http://{}\r\n", here),
+                    evil = "Origin: http://evil.example\r\n";
   EXPECT_THAT(opens(own), StartsWith("HTTP/1.1 101"));
   for (const std::string& origins : {own + evil, evil + own, own + own, std::string()})
     EXPECT_THAT(opens(origins), StartsWith("HTTP/1.1 403")) << origins;
@@ -202,17 +224,22 @@ TEST(Server, EndsAConnectionThatDoesNotNameTheToken) {
   const Served served;
   // One request, whatever else waits behind it.
   const std::string wrong = fmt::format("GET /x/ HTTP/1.1\r\nHost: {}\r\n\r\n", served.authority());
-  const std::string right = fmt::format("GET /{}/ HTTP/1.1\r\nHost: {}\r\n\r\n", token, served.authority());
-  EXPECT_THAT(answer(served, wrong + right), testing::AllOf(StartsWith("HTTP/1.1 403"), testing::Not(HasSubstr("200 OK"))));
+  const std::string right =
+      fmt::format("GET /{}/ HTTP/1.1\r\nHost: {}\r\n\r\n", token, served.authority());
+  EXPECT_THAT(answer(served, wrong + right),
+              testing::AllOf(StartsWith("HTTP/1.1 403"), testing::Not(HasSubstr("200 OK"))));
   EXPECT_THAT(answer(served, right + right), HasSubstr("the pageHTTP/1.1 200"));
 }
 
 TEST(Server, EndsWhatIsNoRequest) {
   const Served served;
-  const std::string right = fmt::format("GET /{}/ HTTP/1.1\r\nHost: {}\r\n", token, served.authority());
+  const std::string right =
+      fmt::format("GET /{}/ HTTP/1.1\r\nHost: {}\r\n", token, served.authority());
   EXPECT_THAT(answer(served, "hello\r\n\r\n"), StartsWith("HTTP/1.1 400"));
-  EXPECT_THAT(answer(served, right + "X: " + std::string(20000, 'x') + "\r\n\r\n"), StartsWith("HTTP/1.1 431"));
-  EXPECT_THAT(answer(served, right + "Content-Length: 1000000000\r\n\r\n" + std::string(1000, 'x')), StartsWith("HTTP/1.1 413"));
+  EXPECT_THAT(answer(served, right + "X: " + std::string(20000, 'x') + "\r\n\r\n"),
+              StartsWith("HTTP/1.1 431"));
+  EXPECT_THAT(answer(served, right + "Content-Length: 1000000000\r\n\r\n" + std::string(1000, 'x')),
+              StartsWith("HTTP/1.1 413"));
   EXPECT_THAT(answer(served, std::string(100000, '\0')), testing::Not(HasSubstr("200")));
 }
 
@@ -303,7 +330,8 @@ TEST(Server, EndsClientsBeyondTheirLimits) {
   {
     Socket deaf(served);
     ASSERT_TRUE(served.becomes([&] { return served.joined == 5; }));
-    for (int i = 0; i < 200; ++i) served.server->send(served.last, std::make_shared<const std::string>(100000, 'x'));
+    for (int i = 0; i < 200; ++i)
+      served.server->send(served.last, std::make_shared<const std::string>(100000, 'x'));
     EXPECT_TRUE(served.becomes([&] { return served.left == 5; }));
   }
   {
@@ -313,7 +341,8 @@ TEST(Server, EndsClientsBeyondTheirLimits) {
   }
   Socket fine(served);
   fine.say("still here");
-  EXPECT_TRUE(served.becomes([&] { return !served.messages.empty() && served.messages.back() == "still here"; }));
+  EXPECT_TRUE(served.becomes(
+      [&] { return !served.messages.empty() && served.messages.back() == "still here"; }));
 }
 
 TEST(Server, HoldsAHundredConnections) {
@@ -330,7 +359,8 @@ TEST(Server, HoldsAHundredConnections) {
   for (int i = 0; i < 100; ++i) {
     silent.emplace_back(context);
     beast::error_code error;
-    silent.back().connect(tcp::endpoint(asio::ip::make_address("127.0.0.1"), served.server->port()), error);
+    silent.back().connect(tcp::endpoint(asio::ip::make_address("127.0.0.1"), served.server->port()),
+                          error);
   }
   clients[0]->say("still here");
   EXPECT_TRUE(served.becomes([&] { return served.messages.size() == 1; }));
@@ -352,7 +382,8 @@ class Holders {
   Holders(const Served& of, int count) {
     for (int i = 0; i < count; ++i) {
       sockets_.emplace_back(context_);
-      sockets_.back().connect(tcp::endpoint(asio::ip::make_address("127.0.0.1"), of.server->port()));
+      sockets_.back().connect(
+          tcp::endpoint(asio::ip::make_address("127.0.0.1"), of.server->port()));
     }
   }
   void say(std::string_view bytes) {
@@ -387,7 +418,8 @@ TEST(Server, GivesNobodysPlaceToThoseWithoutTheToken) {
   slow.say("GET / HTTP/1.1\r\nHost: ");
   Socket socket(served);  // throws where there is no place
   EXPECT_TRUE(served.becomes([&] { return served.joined == 1; }));
-  EXPECT_THAT(get(served, fmt::format("/{}/", token), served.authority()), StartsWith("HTTP/1.1 200"));
+  EXPECT_THAT(get(served, fmt::format("/{}/", token), served.authority()),
+              StartsWith("HTTP/1.1 200"));
   EXPECT_LE(silent.open() + slow.open(), static_cast<int>(options.most_strangers_an_address));
   // Nor do they put out who knows it.
   Holders more(served, 64);
@@ -420,10 +452,12 @@ TEST(Server, CountsThoseWhoKnowTheToken) {
   std::vector<std::unique_ptr<Socket>> clients;
   for (int i = 0; i < 3; ++i) clients.push_back(std::make_unique<Socket>(served));
   ASSERT_TRUE(served.becomes([&] { return served.joined == 3; }));
-  EXPECT_THAT(get(served, fmt::format("/{}/", token), served.authority()), StartsWith("HTTP/1.1 503"));
+  EXPECT_THAT(get(served, fmt::format("/{}/", token), served.authority()),
+              StartsWith("HTTP/1.1 503"));
   clients.pop_back();
   ASSERT_TRUE(served.becomes([&] { return served.left == 1; }));
-  EXPECT_THAT(get(served, fmt::format("/{}/", token), served.authority()), StartsWith("HTTP/1.1 200"));
+  EXPECT_THAT(get(served, fmt::format("/{}/", token), served.authority()),
+              StartsWith("HTTP/1.1 200"));
 }
 
 TEST(Server, KeepsAClientThatTakesWhatItIsSent) {
@@ -440,12 +474,14 @@ TEST(Server, KeepsAClientThatTakesWhatItIsSent) {
   EXPECT_EQ(served.left, 0);
 }
 
-/// The address that this machine has towards others, as the kernel chooses it for a datagram; empty where there is no way out.
+/// The address that this machine has towards others, as the kernel chooses it for a datagram; empty
+/// where there is no way out.
 std::string own_address() {
   asio::io_context context;
   asio::ip::udp::socket socket(context, asio::ip::udp::v4());
   beast::error_code error;
-  socket.connect({asio::ip::make_address("198.51.100.1"), 9}, error);  // of an example network: nothing is sent
+  socket.connect({asio::ip::make_address("198.51.100.1"), 9},
+                 error);  // of an example network: nothing is sent
   return error ? std::string() : socket.local_endpoint().address().to_string();
 }
 
@@ -462,21 +498,25 @@ TEST(Server, ThatIsOpenToAllSaysWhereItIs) {
     }
     const std::vector<std::string> addresses = addresses_reached(host);
     ASSERT_FALSE(addresses.empty());
-    EXPECT_EQ(served->server->address(), fmt::format("http://{}/{}/", authority_of(addresses[0], served->server->port()), token));
+    EXPECT_EQ(
+        served->server->address(),
+        fmt::format("http://{}/{}/", authority_of(addresses[0], served->server->port()), token));
     const std::string own = own_address();
     if (!own.empty()) {
       EXPECT_THAT(addresses, testing::Contains(own));
       EXPECT_THAT(addresses, testing::Each(testing::Not(StartsWith("127."))));
     }
     for (const std::string& address : addresses) {
-      const std::string page =
-          get(*served, fmt::format("/{}/", token), authority_of(address, served->server->port()), "", address);
+      const std::string page = get(*served, fmt::format("/{}/", token),
+                                   authority_of(address, served->server->port()), "", address);
       EXPECT_THAT(page, StartsWith("HTTP/1.1 200")) << address;
     }
-    EXPECT_THAT(get(*served, fmt::format("/{}/", token), "evil.example"), StartsWith("HTTP/1.1 403"));
+    EXPECT_THAT(get(*served, fmt::format("/{}/", token), "evil.example"),
+                StartsWith("HTTP/1.1 403"));
   }
   EXPECT_THAT(addresses_reached("192.0.2.7"), testing::ElementsAre("192.0.2.7"));
-  EXPECT_TRUE(is_this_machine_alone("127.0.0.1") && is_this_machine_alone("127.1.2.3") && is_this_machine_alone("::1"));
+  EXPECT_TRUE(is_this_machine_alone("127.0.0.1") && is_this_machine_alone("127.1.2.3") &&
+              is_this_machine_alone("::1"));
   for (const char* open : {"0.0.0.0", "::", "192.0.2.7", "::ffff:127.0.0.1", "12.7.0.0"})
     EXPECT_FALSE(is_this_machine_alone(open));
 }
@@ -485,7 +525,8 @@ TEST(Server, SaysWhyItCannotListen) {
   const Served served;
   ServerOptions taken;
   taken.port = served.server->port();
-  EXPECT_THAT([&] { Server(taken, {}); }, testing::ThrowsMessage<RunError>(HasSubstr("cannot listen at 127.0.0.1:")));
+  EXPECT_THAT([&] { Server(taken, {}); },
+              testing::ThrowsMessage<RunError>(HasSubstr("cannot listen at 127.0.0.1:")));
   ServerOptions name;
   name.host = "no address";
   EXPECT_THAT([&] { Server(name, {}); }, testing::ThrowsMessage<RunError>(HasSubstr("no address")));

@@ -22,14 +22,16 @@ TEST(Shown, IsTheColoursAndIds) {
   const Picture with = shown_of(image, true), without = shown_of(image, false);
   EXPECT_EQ(with.width, 2);
   EXPECT_EQ(with.height, 1);
-  EXPECT_EQ(with.color, (std::vector<std::uint16_t>{to_half(1), to_half(0.5f), to_half(2), to_half(0.25f), to_half(4), 0}));
+  EXPECT_EQ(with.color, (std::vector<std::uint16_t>{to_half(1), to_half(0.5f), to_half(2),
+                                                    to_half(0.25f), to_half(4), 0}));
   EXPECT_EQ(with.objects, (std::vector<std::uint32_t>{3, 9}));
   EXPECT_EQ(with.primitives, (std::vector<std::uint32_t>{5, 7}));
   EXPECT_EQ(without.color, with.color);
   EXPECT_TRUE(without.objects.empty());
 }
 
-// White is white in every space; the green of BT.2020 is, in sRGB, -0.5876 1.1329 -0.1006 (ITU-R BT.2087's matrix, inverted).
+// White is white in every space; the green of BT.2020 is, in sRGB, -0.5876 1.1329 -0.1006 (ITU-R
+// BT.2087's matrix, inverted).
 TEST(Shown, IsInSrgbWhateverTheFilmsSpace) {
   LayeredImage image = image_of({1, 0}, {1, 1}, {1, 0});
   image.space = ColorSpace::rec2020;

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// A viewer as its pages meet it: the picture as a file against a render of the same scene, saving, and guests that mean harm.
+// A viewer as its pages meet it: the picture as a file against a render of the same scene, saving,
+// and guests that mean harm.
 #include "view/viewer.h"
 
 #include <fmt/format.h>
@@ -80,7 +81,8 @@ TEST(Viewer, SavesWhatItsPagesMade) {
     auto keeper = std::make_unique<Keeper>(file);
     Scene scene = import_scene(keeper->base(), FileImageReader());
     first = test::fresh_picture_of(scene);
-    const Viewer viewer(LiveScene(Scene(scene)), test::test_device(), options_of(2), std::move(keeper));
+    const Viewer viewer(LiveScene(Scene(scene)), test::test_device(), options_of(2),
+                        std::move(keeper));
     Guest guest(Place(viewer.address())), other(Place(viewer.address()));
     EXPECT_FALSE(json::parse(guest.until("scene"))["keep"]["unsaved"]);
     guest.look(scene);
@@ -94,14 +96,17 @@ TEST(Viewer, SavesWhatItsPagesMade) {
     EXPECT_TRUE(json::parse(other.until("edited"))["keep"]["unsaved"]);
     EXPECT_GT(guest.until_samples(1, view).view, view);
     guest.say({{"type", "save"}, {"name", nullptr}, {"camera", false}, {"replace", false}});
-    EXPECT_THAT(json::parse(guest.until("save_asks"))["why"].get<std::string>(), HasSubstr("comments"));
+    EXPECT_THAT(json::parse(guest.until("save_asks"))["why"].get<std::string>(),
+                HasSubstr("comments"));
     guest.say({{"type", "save"}, {"name", "../moved"}, {"camera", false}, {"replace", true}});
-    EXPECT_THAT(json::parse(guest.until("error"))["text"].get<std::string>(), HasSubstr("plain name"));
+    EXPECT_THAT(json::parse(guest.until("error"))["text"].get<std::string>(),
+                HasSubstr("plain name"));
     guest.say({{"type", "save"}, {"name", "moved"}, {"camera", false}, {"replace", false}});
     EXPECT_EQ(json::parse(other.until("saved"))["file"], (folder / "moved.pbrt").string());
     scene.shapes[1].world_from_object[3].x += 0.5;
     moved = test::fresh_picture_of(scene);
-    EXPECT_EQ(test::fresh_picture_of(import_scene(folder / "moved.pbrt", FileImageReader())), moved);
+    EXPECT_EQ(test::fresh_picture_of(import_scene(folder / "moved.pbrt", FileImageReader())),
+              moved);
     guest.say(move);
     while (!json::parse(other.until("edited"))["keep"]["unsaved"]) {
     }
@@ -115,10 +120,12 @@ TEST(Viewer, ThatIsReadOnlySavesNothing) {
   options.read_only = true;
   const fs::path folder = test::temporary_folder(), file = folder / "scene.pbrt";
   std::ofstream(file) << test::some_text;
-  const Viewer viewer(LiveScene(test::some_scene()), test::test_device(), options, std::make_unique<Keeper>(file));
+  const Viewer viewer(LiveScene(test::some_scene()), test::test_device(), options,
+                      std::make_unique<Keeper>(file));
   Guest guest(Place(viewer.address()));
-  for (const json& message : {json{{"type", "save"}, {"name", "x"}, {"camera", false}, {"replace", true}},
-                              json{{"type", "discard"}}, json{{"type", "kept"}, {"restore", true}}}) {
+  for (const json& message :
+       {json{{"type", "save"}, {"name", "x"}, {"camera", false}, {"replace", true}},
+        json{{"type", "discard"}}, json{{"type", "kept"}, {"restore", true}}}) {
     guest.say(message);
     EXPECT_THAT(guest.until("error"), HasSubstr("read-only"));
   }
@@ -170,7 +177,8 @@ void send_bytes(const Place& place, const std::string& bytes) {
   asio::write(socket, asio::buffer(bytes), error);
 }
 
-/// Frames of all kinds that are none: reserved codes, no mask, parts of control frames, lengths that are announced alone.
+/// Frames of all kinds that are none: reserved codes, no mask, parts of control frames, lengths
+/// that are announced alone.
 void send_wrong_frames(const Place& place, int count) {
   std::mt19937 engine(7);
   for (int i = 0; i < count; ++i) try {
@@ -222,15 +230,18 @@ TEST(Viewer, GoesOnWhateverItsGuestsDo) {
       beast::error_code error;
       silent.back().connect(place.endpoint(), error);
     }
-    for (const std::string& target : {std::string("/../../etc/passwd"), place.path + "../../etc/passwd", place.path + "%2e%2e/x",
-                                      "/" + std::string(5000, 'a') + "/"})
-      for (int i = 0; i < 20; ++i) send_bytes(place, fmt::format("GET {} HTTP/1.1\r\nHost: {}\r\n\r\n", target, place.authority));
+    for (const std::string& target :
+         {std::string("/../../etc/passwd"), place.path + "../../etc/passwd",
+          place.path + "%2e%2e/x", "/" + std::string(5000, 'a') + "/"})
+      for (int i = 0; i < 20; ++i)
+        send_bytes(place,
+                   fmt::format("GET {} HTTP/1.1\r\nHost: {}\r\n\r\n", target, place.authority));
     for (int i = 0; i < 20; ++i)
-      send_bytes(
-          place,
-          fmt::format("GET {}socket HTTP/1.1\r\nHost: {}\r\nOrigin: http://evil.example\r\nConnection: Upgrade\r\n"
-                      "Upgrade: websocket\r\nSec-WebSocket-Version: 13\r\nSec-WebSocket-Key: AAAAAAAAAAAAAAAAAAAAAA==\r\n\r\n",
-                      place.path, place.authority));
+      send_bytes(place, fmt::format("GET {}socket HTTP/1.1\r\nHost: {}\r\nOrigin: "
+                                    "http://evil.example\r\nConnection: Upgrade\r\n"
+                                    "Upgrade: websocket\r\nSec-WebSocket-Version: "
+                                    "13\r\nSec-WebSocket-Key: AAAAAAAAAAAAAAAAAAAAAA==\r\n\r\n",
+                                    place.path, place.authority));
     send_bytes(place, std::string(std::size_t{8} << 20, 'x'));
   });
   // Meanwhile there are pictures of each view.
@@ -254,7 +265,8 @@ TEST(Viewer, GoesOnWhateverItsGuestsDo) {
               static_cast<double>(most - std::min<std::size_t>(most, before)) / 1e6);
 #if !defined(__SANITIZE_ADDRESS__)
   // Each of the deaf may leave so much waiting as the server allows; 64 MiB are for all else.
-  EXPECT_LT(most, before + deaf.size() * ServerOptions{}.most_waiting_bytes + (std::size_t{64} << 20));
+  EXPECT_LT(most,
+            before + deaf.size() * ServerOptions{}.most_waiting_bytes + (std::size_t{64} << 20));
 #endif
   guest.look(scene, -1);
   EXPECT_GT(guest.until_samples(1, view).view, view);

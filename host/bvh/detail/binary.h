@@ -30,7 +30,8 @@ struct Box {
   /// Returns half the surface area; 0 when empty. It is in double, so that no finite box overflows.
   double area() const {
     if (!(min[0] <= max[0])) return 0;
-    const double x = double(max[0]) - double(min[0]), y = double(max[1]) - double(min[1]), z = double(max[2]) - double(min[2]);
+    const double x = double(max[0]) - double(min[0]), y = double(max[1]) - double(min[1]),
+                 z = double(max[2]) - double(min[2]);
     return x * y + y * z + z * x;
   }
 };
@@ -43,15 +44,17 @@ struct BinaryNode {
 };
 
 struct BinaryTree {
-  std::unique_ptr<Reference[]> items;  // in leaf order; `primitive` is the index into the references given
-  std::uint32_t count = 0;             // of them
+  std::unique_ptr<Reference[]>
+      items;                // in leaf order; `primitive` is the index into the references given
+  std::uint32_t count = 0;  // of them
   std::unique_ptr<BinaryNode[]> nodes;
   std::uint32_t node_count = 0;
 };
 
 /// Builds the tree. Node 0 is the root. Numbers of the other nodes depend on timing; the tree's
 /// shape does not.
-BinaryTree build_binary(std::span<const Reference> references, std::uint32_t single_group, Effort effort);
+BinaryTree build_binary(std::span<const Reference> references, std::uint32_t single_group,
+                        Effort effort);
 
 /// Returns the wide nodes of least cost over the binary tree.
 Tree collapse(const BinaryTree& binary);

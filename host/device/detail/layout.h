@@ -29,7 +29,8 @@ std::vector<RecordLayout> host_layout();
 /// Returns one line for each size or offset in which the device differs from `expected`; it is
 /// empty when they agree. Runs kernels/probe/layout.cl. Throws RunError when it does not build or
 /// run.
-std::vector<std::string> compare_layout(const Device& device, const std::vector<RecordLayout>& expected);
+std::vector<std::string> compare_layout(const Device& device,
+                                        const std::vector<RecordLayout>& expected);
 /// Compares with the host.
 std::vector<std::string> compare_layout(const Device& device);
 

@@ -18,7 +18,8 @@ struct Tile {
 std::string create_packet(const std::string& name, const LayeredImage& image);
 /// Returns the values of a tile within the data window: all channels in turn, with ids as floats.
 std::string update_packet(const std::string& name, const LayeredImage& image, const Tile& tile);
-/// Returns the tiles of the data window in which `now` differs from `before`; all of them if `before` has no channels.
+/// Returns the tiles of the data window in which `now` differs from `before`; all of them if
+/// `before` has no channels.
 std::vector<Tile> changed_tiles(const LayeredImage& before, const LayeredImage& now);
 
 }  // namespace caplet::tev

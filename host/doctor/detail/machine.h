@@ -17,13 +17,17 @@ bool has_nvidia(const Surroundings& machine);
 /// Reports GPU nodes in /dev that this user may not open.
 Findings check_permissions(const Surroundings& machine);
 
-/// Reports an NVIDIA GPU without a registered OpenCL driver. `loadable`: libnvidia-opencl.so.1 can be loaded.
-Findings check_nvidia(const Surroundings& machine, const Registry& registry, const Loader& loader, bool loadable);
+/// Reports an NVIDIA GPU without a registered OpenCL driver. `loadable`: libnvidia-opencl.so.1 can
+/// be loaded.
+Findings check_nvidia(const Surroundings& machine, const Registry& registry, const Loader& loader,
+                      bool loadable);
 
 /// Reports a GPU node of AMD or Intel where no platform offers a GPU.
-Findings check_unused_gpus(const Surroundings& machine, const std::vector<PlatformFacts>& platforms);
+Findings check_unused_gpus(const Surroundings& machine,
+                           const std::vector<PlatformFacts>& platforms);
 
-/// Reports the free memory of the host, within the limits of its control group, and the address space (ulimit -v).
+/// Reports the free memory of the host, within the limits of its control group, and the address
+/// space (ulimit -v).
 Findings check_memory(const Surroundings& machine);
 
 /// Reports the place and size of Caplet's cache, and whether it is writable.
@@ -32,7 +36,8 @@ Findings check_cache(const Surroundings& machine, const std::filesystem::path& f
 /// Reports a missing /sys, as in some containers, without which PoCL ends the process.
 Findings check_sys(const Surroundings& machine);
 
-/// Reports PoCL's cache: $POCL_CACHE_DIR, else $XDG_CACHE_HOME/pocl/kcache, else $HOME/.cache/pocl/kcache, else in /tmp.
+/// Reports PoCL's cache: $POCL_CACHE_DIR, else $XDG_CACHE_HOME/pocl/kcache, else
+/// $HOME/.cache/pocl/kcache, else in /tmp.
 Findings check_pocl_cache(const Surroundings& machine);
 /// Reports the cache of the driver that came with this program.
 Findings check_bundled_cache(const Surroundings& machine);

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Names of a scene's parts in a file: their own names, where they are not empty and unique among the parts of the kind.
+// Names of a scene's parts in a file: their own names, where they are not empty and unique among
+// the parts of the kind.
 #pragma once
 
 #include <cstdint>
@@ -20,7 +21,8 @@ class NameList {
   std::string take(const std::string& wanted, const std::string& kind) {
     if (!wanted.empty() && taken_.insert(wanted).second) return wanted;
     for (;; ++next_)
-      if (std::string name = (wanted.empty() ? kind : wanted) + " " + std::to_string(next_); taken_.insert(name).second)
+      if (std::string name = (wanted.empty() ? kind : wanted) + " " + std::to_string(next_);
+          taken_.insert(name).second)
         return name;
   }
   void free(const std::string& name) { taken_.erase(name); }

@@ -32,8 +32,8 @@ struct Stream {
   }
 };
 
-/// One statement: `head` and its parameters, in order. A parameter in another colour space than the stream's is written before
-/// the statement (Attribute `target`).
+/// One statement: `head` and its parameters, in order. A parameter in another colour space than the
+/// stream's is written before the statement (Attribute `target`).
 class Statement {
  public:
   Statement(std::string head, const char* target, const SourceLocation& where)
@@ -44,18 +44,28 @@ class Statement {
     add("integer", name, text_of([&](Text& to) { to << value; }));
   }
   void boolean(const std::string& name, bool value) { add("bool", name, value ? "true" : "false"); }
-  void text(const std::string& name, std::string_view value) { add("string", name, quoted(value, where_)); }
+  void text(const std::string& name, std::string_view value) {
+    add("string", name, quoted(value, where_));
+  }
   void texts(const std::string& name, const std::vector<std::string>& values);
-  void texture(const std::string& name, std::string_view value) { add("texture", name, quoted(value, where_)); }
+  void texture(const std::string& name, std::string_view value) {
+    add("texture", name, quoted(value, where_));
+  }
   void numbers(const char* type, const std::string& name, std::initializer_list<double> values);
-  void point(const std::string& name, const glm::dvec3& p) { numbers("point3", name, {p.x, p.y, p.z}); }
-  void vector(const std::string& name, const glm::dvec3& v) { numbers("vector3", name, {v.x, v.y, v.z}); }
+  void point(const std::string& name, const glm::dvec3& p) {
+    numbers("point3", name, {p.x, p.y, p.z});
+  }
+  void vector(const std::string& name, const glm::dvec3& v) {
+    numbers("vector3", name, {v.x, v.y, v.z});
+  }
   void spectrum(const std::string& name, const Spectrum& value);
-  /// Writes a path of the scene so that it is valid from the written file's folder. Throws InputError when it is empty.
-  void file(const std::string& name, const std::string& path, const char* what, const Stream& stream);
+  /// Writes a path of the scene so that it is valid from the written file's folder. Throws
+  /// InputError when it is empty.
+  void file(const std::string& name, const std::string& path, const char* what,
+            const Stream& stream);
   /// Adds `count` values that `write` writes one by one, when the statement is written.
-  void list(const char* type, const std::string& name, std::size_t count, std::function<void(Text&, std::size_t)> write,
-            std::optional<ColorSpace> space = {});
+  void list(const char* type, const std::string& name, std::size_t count,
+            std::function<void(Text&, std::size_t)> write, std::optional<ColorSpace> space = {});
   /// Puts the statement in a block, after this line.
   void within(const std::string& line) { before_ += line; }
 
@@ -69,7 +79,8 @@ class Statement {
     std::size_t count = 0;  // of a list
     std::function<void(Text&, std::size_t)> list = {};
   };
-  void add(const char* type, const std::string& name, std::string value, std::optional<ColorSpace> space = {});
+  void add(const char* type, const std::string& name, std::string value,
+           std::optional<ColorSpace> space = {});
   static void write(const Parameter& parameter, Stream& stream);
   void finite(double value, const std::string& name) const;
 

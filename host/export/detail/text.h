@@ -55,20 +55,22 @@ inline std::string number_text(double value) {
   return text_of([&](Text& text) { text << value; });
 }
 
-/// Quotes and escapes text. Throws InputError at `where` for control characters that no text may have.
+/// Quotes and escapes text. Throws InputError at `where` for control characters that no text may
+/// have.
 std::string quoted(std::string_view text, const SourceLocation& where);
 
 /// Returns `[ 16 numbers ]`, column by column.
 std::string matrix_text(const glm::dmat4& matrix);
 
-/// Returns degrees that readers convert to these radians, with as few digits as possible. Where there are none, it returns the
-/// nearest, which is off by a unit in the last place.
+/// Returns degrees that readers convert to these radians, with as few digits as possible. Where
+/// there are none, it returns the nearest, which is off by a unit in the last place.
 double degrees_of(double radians);
 
 /// Returns the number that readers subtract from `degrees` to get these radians, in the same way.
 double degrees_below(double degrees, double radians);
 
-/// Returns a transform whose inverse, as readers compute it, is `inverse`: a statement with the end of its line.
+/// Returns a transform whose inverse, as readers compute it, is `inverse`: a statement with the end
+/// of its line.
 std::string inverse_text(const glm::dmat4& inverse);
 
 }  // namespace caplet::pbrt_text

@@ -21,8 +21,10 @@ namespace caplet::image_files {
 struct Module {
   static constexpr std::uint32_t current = 1;
   std::uint32_t version;
-  std::string (*read_linear)(const std::filesystem::path& path, const SizeCheck& check, Pixels& out);
-  std::string (*read_stored)(const std::filesystem::path& path, const SizeCheck& check, StoredPixels& out);
+  std::string (*read_linear)(const std::filesystem::path& path, const SizeCheck& check,
+                             Pixels& out);
+  std::string (*read_stored)(const std::filesystem::path& path, const SizeCheck& check,
+                             StoredPixels& out);
   bool (*can_write)(const std::filesystem::path& path);
   std::string (*can_hold)(const std::filesystem::path& path, int width, int height, bool& out);
   bool (*can_write_alpha)(const std::filesystem::path& path);

@@ -22,9 +22,11 @@ bool is_png(const std::filesystem::path& path);
 /// These return the error, without the file's name, or an empty text, as the functions of Module
 /// do.
 std::string read_png_linear(const std::filesystem::path& path, const SizeCheck& check, Pixels& out);
-std::string read_png_stored(const std::filesystem::path& path, const SizeCheck& check, StoredPixels& out);
+std::string read_png_stored(const std::filesystem::path& path, const SizeCheck& check,
+                            StoredPixels& out);
 /// Encodes `values`: sRGB, `channels` (3 or 4) bytes a pixel, row-major from the top; alpha is not
 /// multiplied in. `out`: the file's bytes.
-std::string encode_png(int width, int height, int channels, const std::vector<std::uint8_t>& values, std::string& out);
+std::string encode_png(int width, int height, int channels, const std::vector<std::uint8_t>& values,
+                       std::string& out);
 
 }  // namespace caplet::image_files

@@ -12,12 +12,13 @@
 
 namespace caplet {
 
-/// Bezier control points x y z with the radius as w. The tube is the union of the balls, that is, what a circle sweeps.
+/// Bezier control points x y z with the radius as w. The tube is the union of the balls, that is,
+/// what a circle sweeps.
 using CubicTube = std::array<glm::dvec4, 4>;
 
-/// Adds the end points of the chords of consecutive cubics. The distance of each point of a curve from its point on the chord,
-/// plus the difference of radii, is at most the tolerance: this bounds the distance between the union of the curve's balls and
-/// the capsules.
+/// Adds the end points of the chords of consecutive cubics. The distance of each point of a curve
+/// from its point on the chord, plus the difference of radii, is at most the tolerance: this bounds
+/// the distance between the union of the curve's balls and the capsules.
 class CubicChain {
  public:
   explicit CubicChain(CapsulesShape& out) : out_(out) {}

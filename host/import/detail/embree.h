@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Scenes in the formats that Embree's tutorials read: XML with a companion file of numbers, and the viewer's .ecs. Conventions:
-// docs/formats/embree.md.
+// Scenes in the formats that Embree's tutorials read: XML with a companion file of numbers, and the
+// viewer's .ecs. Conventions: docs/formats/embree.md.
 #pragma once
 
 #include <cstdint>
@@ -23,17 +23,22 @@
 
 namespace caplet::embree {
 
-/// An XML file and its lists of numbers, which are in the elements or in the companion file NAME.bin or NAME.xml.bin.
+/// An XML file and its lists of numbers, which are in the elements or in the companion file
+/// NAME.bin or NAME.xml.bin.
 class SceneFile {
  public:
-  explicit SceneFile(const std::filesystem::path& path, const SourceLocation& named_at = {}) : xml_(path, named_at) {}
+  explicit SceneFile(const std::filesystem::path& path, const SourceLocation& named_at = {})
+      : xml_(path, named_at) {}
 
   const std::filesystem::path& path() const { return xml_.path(); }
   pugi::xml_node root() const { return xml_.root(); }
   SourceLocation place(pugi::xml_node node) const { return xml_.place(node); }
-  [[noreturn]] void fail(pugi::xml_node node, const std::string& message) const { throw InputError(place(node), message); }
+  [[noreturn]] void fail(pugi::xml_node node, const std::string& message) const {
+    throw InputError(place(node), message);
+  }
 
-  /// Returns an element's numbers, `width` per row; none without an element. Finite unless `with_nan`. Throws InputError.
+  /// Returns an element's numbers, `width` per row; none without an element. Finite unless
+  /// `with_nan`. Throws InputError.
   std::vector<float> floats(pugi::xml_node node, std::size_t width, bool with_nan = false);
   std::vector<std::uint32_t> indices(pugi::xml_node node, std::size_t width);
   std::vector<std::uint32_t> bytes(pugi::xml_node node);
@@ -65,12 +70,15 @@ class Notes {
 /// What shapes take from a material.
 using MeshMaterial = MtlMaterial;
 
-/// Makes the shapes of a geometry element in its own coordinates; other elements give none. Throws InputError.
+/// Makes the shapes of a geometry element in its own coordinates; other elements give none. Throws
+/// InputError.
 bool is_geometry(std::string_view name);
-std::vector<Shape> shapes_of(SceneFile& file, pugi::xml_node node, const MeshMaterial& look, Notes& notes);
+std::vector<Shape> shapes_of(SceneFile& file, pugi::xml_node node, const MeshMaterial& look,
+                             Notes& notes);
 
 /// Adds a <material> to the scene. Throws InputError.
-MeshMaterial read_material(SceneFile& file, pugi::xml_node node, const std::string& name, Scene& scene, MeshImages& images, Notes& notes);
+MeshMaterial read_material(SceneFile& file, pugi::xml_node node, const std::string& name,
+                           Scene& scene, MeshImages& images, Notes& notes);
 
 /// A light of an element or of the viewer's options: E, I or L. It shines along z of its own space.
 struct LightElement {

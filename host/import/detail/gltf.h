@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// A glTF 2.0 file: checked access to its JSON, its buffers and its materials (Khronos, "glTF 2.0 Specification").
+// A glTF 2.0 file: checked access to its JSON, its buffers and its materials (Khronos, "glTF 2.0
+// Specification").
 #pragma once
 
 #include <cstdint>
@@ -21,8 +22,8 @@
 
 namespace caplet::gltf {
 
-/// A file as text or GLB. Missing members take the given default. Members of another type, out of range or not finite throw
-/// InputError.
+/// A file as text or GLB. Missing members take the given default. Members of another type, out of
+/// range or not finite throw InputError.
 class File {
  public:
   using Json = nlohmann::json;
@@ -39,7 +40,9 @@ class File {
   const Json& list(const char* name) const { return list_of(json, name); }
   const Json& list_of(const Json& object, const char* name) const;
   const Json& object(const Json& of, const char* name) const;
-  const Json& extension(const Json& of, const char* name) const { return object(object(of, "extensions"), name); }
+  const Json& extension(const Json& of, const char* name) const {
+    return object(object(of, "extensions"), name);
+  }
   std::string text(const Json& of, const char* name, const std::string& otherwise) const;
   double number(const Json& of, const char* name, double otherwise) const;
   bool flag(const Json& of, const char* name, bool otherwise) const;
@@ -49,13 +52,15 @@ class File {
     if (values.empty()) return otherwise;
     if (values.size() != static_cast<std::size_t>(Vector::length()))
       fail(std::string(name) + " has another number of components");
-    for (glm::length_t k = 0; k < Vector::length(); ++k) otherwise[k] = number_value(values[static_cast<std::size_t>(k)], name);
+    for (glm::length_t k = 0; k < Vector::length(); ++k)
+      otherwise[k] = number_value(values[static_cast<std::size_t>(k)], name);
     return otherwise;
   }
   double number_value(const Json& value, const char* what) const;
   /// Returns an index below `count`.
   std::size_t index_value(const Json& value, std::size_t count, const char* what) const;
-  std::optional<std::size_t> index(const Json& of, const char* name, std::size_t count, const char* what) const;
+  std::optional<std::size_t> index(const Json& of, const char* name, std::size_t count,
+                                   const char* what) const;
   /// Returns the node's `matrix`, or the product of its translation, rotation and scale.
   glm::dmat4 transform_of(const Json& node) const;
 
@@ -80,7 +85,9 @@ class File {
   std::string bytes_;
   std::string_view binary_;  // the binary chunk of a GLB
   std::map<std::size_t, std::string> buffers_;
-  std::uintmax_t held_ = 0, taken_ = 0;  // bytes of the file and its buffers, and bytes that accessors have read
+  std::uintmax_t held_ = 0,
+                 taken_ =
+                     0;  // bytes of the file and its buffers, and bytes that accessors have read
 };
 
 /// What a shape takes from a glTF material.
@@ -92,7 +99,8 @@ struct MeshMaterial {
 
 class Materials {
  public:
-  Materials(File& file, Scene& scene, const ImageReader& reader) : file_(file), scene_(scene), reader_(reader) {}
+  Materials(File& file, Scene& scene, const ImageReader& reader)
+      : file_(file), scene_(scene), reader_(reader) {}
   /// Makes the material at its first use; without an index it is the default material.
   const MeshMaterial& look(std::optional<std::size_t> material);
 
@@ -106,7 +114,8 @@ class Materials {
   std::shared_ptr<const TextureImage> image(std::size_t index, bool is_srgb);
   /// Returns the image that a texture reference names, and its sampler; no value without a texture.
   std::optional<std::pair<std::size_t, Sampler>> lookup(const Json& of, const char* name);
-  std::uint32_t add_texture(std::shared_ptr<const TextureImage> image, const Sampler& sampler, bool is_float);
+  std::uint32_t add_texture(std::shared_ptr<const TextureImage> image, const Sampler& sampler,
+                            bool is_float);
 
   File& file_;
   Scene& scene_;

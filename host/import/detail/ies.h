@@ -12,8 +12,9 @@
 
 namespace caplet {
 
-/// Returns the candela in all directions: the file's numbers times its multiplier and ballast factors. Reads type C with
-/// TILT=NONE, and fills in the directions that a file leaves to symmetry. Throws InputError at the first error.
+/// Returns the candela in all directions: the file's numbers times its multiplier and ballast
+/// factors. Reads type C with TILT=NONE, and fills in the directions that a file leaves to
+/// symmetry. Throws InputError at the first error.
 IesProfile parse_ies(const std::string& name, std::string_view text);
 IesProfile read_ies(const std::filesystem::path& path);
 

@@ -14,10 +14,12 @@
 
 namespace caplet {
 
-#define IMPORTER(function, name, ...) \
-  Scene function(const std::filesystem::path& path, const ImageReader& images, const ImportOptions& options = {});
-#define FULL_IMPORTER(function, name, ...) \
-  Imported function(const std::filesystem::path& path, const ImageReader& images, const ImportOptions& options = {});
+#define IMPORTER(function, name, ...)                                          \
+  Scene function(const std::filesystem::path& path, const ImageReader& images, \
+                 const ImportOptions& options = {});
+#define FULL_IMPORTER(function, name, ...)                                        \
+  Imported function(const std::filesystem::path& path, const ImageReader& images, \
+                    const ImportOptions& options = {});
 #include "import/importers.def"
 #undef IMPORTER
 #undef FULL_IMPORTER

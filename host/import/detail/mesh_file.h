@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Helpers of importers of meshes: words of lines with their places, the up axis, materials and images by name. Conventions:
-// docs/formats/meshes.md.
+// Helpers of importers of meshes: words of lines with their places, the up axis, materials and
+// images by name. Conventions: docs/formats/meshes.md.
 #pragma once
 
 #include <array>
@@ -45,15 +45,18 @@ class LineWords {
   std::vector<std::string_view> words_;
 };
 
-/// Returns the rotation that takes the axis of --up (x, y or z; `usual` by default) to y, which is up in the scene.
+/// Returns the rotation that takes the axis of --up (x, y or z; `usual` by default) to y, which is
+/// up in the scene.
 glm::dmat4 world_from_file(const ImportOptions& options, const char* usual);
 
 /// Caches images by path and encoding. Throws InputError at `where`.
 class MeshImages {
  public:
   MeshImages(Scene& scene, const ImageReader& reader) : scene_(scene), reader_(reader) {}
-  /// Returns the index in Scene::textures of an image over uv, as spectra or as floats (the red or only channel).
-  std::uint32_t texture(const std::filesystem::path& path, bool is_float, bool is_srgb, const SourceLocation& where);
+  /// Returns the index in Scene::textures of an image over uv, as spectra or as floats (the red or
+  /// only channel).
+  std::uint32_t texture(const std::filesystem::path& path, bool is_float, bool is_srgb,
+                        const SourceLocation& where);
 
  private:
   Scene& scene_;
@@ -68,33 +71,43 @@ std::uint32_t add_plain_material(Scene& scene);
 /// Converts sRGB to linear, both from 0 to 1.
 float linear_of_srgb(float value);
 
-/// Converts a file's numbers to a linear colour: sRGB from 0 to 1, or to 255 where the greatest in the file (`most`) is above 1.
+/// Converts a file's numbers to a linear colour: sRGB from 0 to 1, or to 255 where the greatest in
+/// the file (`most`) is above 1.
 glm::vec3 decoded_color(const glm::vec3& numbers, float most);
 
-/// Makes an image of the corners' linear colours, three per triangle. Gives the mesh texture coordinates that interpolate them,
-/// and each triangle vertices of its own.
+/// Makes an image of the corners' linear colours, three per triangle. Gives the mesh texture
+/// coordinates that interpolate them, and each triangle vertices of its own.
 ImagemapTexture texture_of_corners(TriangleMeshShape& mesh, const std::vector<glm::vec3>& colors);
 
-/// Gives a mesh its own material: the colour of its former one times those of the corners, linear, three per triangle. Returns
-/// false and changes nothing where the colour is a texture or the material has none that a texture can replace.
+/// Gives a mesh its own material: the colour of its former one times those of the corners, linear,
+/// three per triangle. Returns false and changes nothing where the colour is a texture or the
+/// material has none that a texture can replace.
 bool color_corners(Scene& scene, Shape& shape, std::vector<glm::vec3> colors);
 
 /// Makes a shape of a mesh and its material.
-Shape mesh_shape(TriangleMeshShape mesh, std::string name, std::uint32_t material, const SourceLocation& where);
+Shape mesh_shape(TriangleMeshShape mesh, std::string name, std::uint32_t material,
+                 const SourceLocation& where);
 
-/// Triangulates a polygon and keeps its orientation: a fan where it is convex (seen along the greatest axis of its normal), else
-/// by ears (Meisters 1975, doi:10.2307/2319703). Self-intersecting polygons, and those of more than 2,000 corners, become fans.
+/// Triangulates a polygon and keeps its orientation: a fan where it is convex (seen along the
+/// greatest axis of its normal), else by ears (Meisters 1975, doi:10.2307/2319703).
+/// Self-intersecting polygons, and those of more than 2,000 corners, become fans.
 std::vector<std::array<std::uint32_t, 3>> triangles_of(std::span<const glm::vec3> corners);
 
-/// Parse the meshes of a file in memory, or of an OBJ file without its materials, in the file's coordinates. `colors` receives
-/// the colours of corners, linear, three per triangle. They throw InputError.
+/// Parse the meshes of a file in memory, or of an OBJ file without its materials, in the file's
+/// coordinates. `colors` receives the colours of corners, linear, three per triangle. They throw
+/// InputError.
 TriangleMeshShape parse_stl(std::string_view bytes, const std::string& file);
-TriangleMeshShape parse_off(std::string_view bytes, const std::string& file, std::vector<glm::vec3>* colors = nullptr);
-std::vector<TriangleMeshShape> read_obj_meshes(const std::filesystem::path& path, const SourceLocation& where);
-/// Reads a COLLADA file's meshes as its nodes place them, in metres. The up axis is ignored, as in ROS.
-std::vector<TriangleMeshShape> read_dae_meshes(const std::filesystem::path& path, const SourceLocation& where);
+TriangleMeshShape parse_off(std::string_view bytes, const std::string& file,
+                            std::vector<glm::vec3>* colors = nullptr);
+std::vector<TriangleMeshShape> read_obj_meshes(const std::filesystem::path& path,
+                                               const SourceLocation& where);
+/// Reads a COLLADA file's meshes as its nodes place them, in metres. The up axis is ignored, as in
+/// ROS.
+std::vector<TriangleMeshShape> read_dae_meshes(const std::filesystem::path& path,
+                                               const SourceLocation& where);
 
-/// The values of a material in an MTL file: linear colours, numbers by their names there, and map files from its folder.
+/// The values of a material in an MTL file: linear colours, numbers by their names there, and map
+/// files from its folder.
 struct MtlValues {
   std::string name;
   int line = 0;
@@ -112,10 +125,12 @@ struct MtlMaterial {
   std::optional<TextureOperand> alpha;
 };
 /// Adds the materials of an MTL file to the scene and returns them by name. Throws InputError.
-std::map<std::string, MtlMaterial> read_mtl(const std::filesystem::path& path, const SourceLocation& named_at, Scene& scene,
+std::map<std::string, MtlMaterial> read_mtl(const std::filesystem::path& path,
+                                            const SourceLocation& named_at, Scene& scene,
                                             MeshImages& images);
-/// Adds the material of such values to the scene; maps are sought in `folder`. Throws InputError at `where`.
-MtlMaterial make_mtl(const MtlValues& values, const SourceLocation& where, const std::filesystem::path& folder, Scene& scene,
-                     MeshImages& images);
+/// Adds the material of such values to the scene; maps are sought in `folder`. Throws InputError at
+/// `where`.
+MtlMaterial make_mtl(const MtlValues& values, const SourceLocation& where,
+                     const std::filesystem::path& folder, Scene& scene, MeshImages& images);
 
 }  // namespace caplet

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Reads the text of MJCF, MuJoCo's models (MuJoCo's XML reference describes the format): included files, defaults, poses and
-// attributes.
+// Reads the text of MJCF, MuJoCo's models (MuJoCo's XML reference describes the format): included
+// files, defaults, poses and attributes.
 #pragma once
 
 #include <array>
@@ -59,12 +59,17 @@ class Element {
   bool has(const char* name) const { return static_cast<bool>(attribute(name)); }
   std::string text(const char* name, const std::string& otherwise = {}) const;
   bool yes(const char* name, bool otherwise) const;
-  /// Returns `otherwise` with its first numbers replaced by the attributes', outer classes first; each has at least `least`.
-  std::vector<double> numbers(const char* name, std::size_t least, std::vector<double> otherwise) const;
-  double number(const char* name, double otherwise) const { return numbers(name, 1, {otherwise})[0]; }
+  /// Returns `otherwise` with its first numbers replaced by the attributes', outer classes first;
+  /// each has at least `least`.
+  std::vector<double> numbers(const char* name, std::size_t least,
+                              std::vector<double> otherwise) const;
+  double number(const char* name, double otherwise) const {
+    return numbers(name, 1, {otherwise})[0];
+  }
   glm::dvec3 vector(const char* name, glm::dvec3 otherwise) const;
   /// Returns the index of the attribute's value in `choices`.
-  std::size_t choice(const char* name, std::initializer_list<const char*> choices, std::size_t otherwise) const;
+  std::size_t choice(const char* name, std::initializer_list<const char*> choices,
+                     std::size_t otherwise) const;
   /// Returns an angle in radians.
   double angle(const char* name, double otherwise) const;
 
@@ -75,7 +80,8 @@ class Element {
 
  private:
   template <class Use>
-  void levels(Use&& use) const;  // visits nodes that may have attributes, nearest first, until `use` is true
+  void levels(Use&& use)
+      const;  // visits nodes that may have attributes, nearest first, until `use` is true
   const Model* model_;
   pugi::xml_node node_;
   const char* tag_;
@@ -90,9 +96,11 @@ glm::dmat4 placed(const glm::dvec3& position, const glm::dquat& rotation);
 class Model {
  public:
   /// `above`: the models that are being read, without this one's file.
-  Model(const std::filesystem::path& path, const SourceLocation& named_at, std::set<std::string> above);
+  Model(const std::filesystem::path& path, const SourceLocation& named_at,
+        std::set<std::string> above);
 
-  /// Calls use(child) for the elements in `of`; elements of an included file come where it is included.
+  /// Calls use(child) for the elements in `of`; elements of an included file come where it is
+  /// included.
   template <class Use>
   void each(pugi::xml_node of, Use&& use) const {
     for (const pugi::xml_node child : of.children()) {
@@ -124,7 +132,8 @@ class Model {
   Element asset(const char* kind, const std::string& name, const SourceLocation& user) const;
   /// Returns the model that an asset names. It is read at its first use.
   const Model& attached(const std::string& name, const SourceLocation& user) const;
-  std::filesystem::path file(const Element& of, const std::string& name, const std::filesystem::path& folder) const;
+  std::filesystem::path file(const Element& of, const std::string& name,
+                             const std::filesystem::path& folder) const;
   const std::map<std::string, pugi::xml_node>& assets(const char* kind) const;
 
  private:
@@ -135,8 +144,9 @@ class Model {
 
   std::filesystem::path folder_;
   mutable std::map<const void*, std::unique_ptr<XmlFile>> files_;  // by document
-  mutable std::map<const void*, pugi::xml_node> includes_;         // the root of the included file, by element
-  mutable std::set<std::string> seen_;                             // files that were included
+  mutable std::map<const void*, pugi::xml_node>
+      includes_;                        // the root of the included file, by element
+  mutable std::set<std::string> seen_;  // files that were included
   std::set<std::string> above_;
   std::string name_;
   pugi::xml_node root_;
@@ -157,15 +167,19 @@ class Assets {
   /// Sets a geom's fields from a mesh or height field.
   void mesh(const Model& model, const std::string& name, RobotGeom& geom);
   void height_field(const Model& model, const std::string& name, RobotGeom& geom);
-  /// Returns how a solid is fitted to a mesh by its inertia setting; no value for a fit to the hull, which is not supported.
-  static std::optional<MeshFit> fit(const Model& model, const std::string& name, const SourceLocation& user);
+  /// Returns how a solid is fitted to a mesh by its inertia setting; no value for a fit to the
+  /// hull, which is not supported.
+  static std::optional<MeshFit> fit(const Model& model, const std::string& name,
+                                    const SourceLocation& user);
   /// Returns the material that a mesh names; empty without one.
-  static std::string mesh_material(const Model& model, const std::string& name, const SourceLocation& user);
+  static std::string mesh_material(const Model& model, const std::string& name,
+                                   const SourceLocation& user);
   /// Returns the first texture of type skybox, or null.
   std::shared_ptr<const EnvironmentImage> sky(const Model& model);
 
  private:
-  std::shared_ptr<const RobotTexture> texture(const Model& model, const std::string& name, const SourceLocation& user);
+  std::shared_ptr<const RobotTexture> texture(const Model& model, const std::string& name,
+                                              const SourceLocation& user);
   /// Counts the bytes that an element generates. Throws InputError beyond most_made.
   void make(const Element& of, std::size_t bytes);
   Robot& robot_;
@@ -181,24 +195,29 @@ struct Pixels {
   int width = 0, height = 0;
   std::vector<std::uint8_t> rgb;
 };
-/// The six faces of a cube map: right, left, up, down, front and back, each as seen from within with z up.
+/// The six faces of a cube map: right, left, up, down, front and back, each as seen from within
+/// with z up.
 struct Cube {
   std::array<Pixels, 6> faces;
 };
 /// Make built-in textures and read those of files. They throw InputError.
 Pixels flat_texture(const Element& of, const ImageReader& images);
 Cube cube_texture(const Element& of, const ImageReader& images);
-/// Converts a sky, whose up face is at z, to latitude-longitude with z up; it has twice as many columns as rows.
+/// Converts a sky, whose up face is at z, to latitude-longitude with z up; it has twice as many
+/// columns as rows.
 Pixels around(const Cube& cube, int height);
-/// Converts a geom's cube map, whose up face is at y and whose front is at z, to the layout of spherical mapping: columns by the
-/// angle from z, rows from below by the angle around z; `width` columns.
+/// Converts a geom's cube map, whose up face is at y and whose front is at z, to the layout of
+/// spherical mapping: columns by the angle from z, rows from below by the angle around z; `width`
+/// columns.
 Pixels by_angles(const Cube& cube, int width);
 std::shared_ptr<const TextureImage> texture_image(const Pixels& pixels);
 
-/// Reads a skin as a mesh, posed by the bodies that move it (`body` returns the pose of a body by its name, or null). If a model
-/// is attached in part (not `is_whole`), skins of missing bodies are not drawn.
-void read_skin(const Model& model, pugi::xml_node node, const std::function<const glm::dmat4*(const std::string&)>& body,
-               bool is_whole, Robot& robot, Assets& assets);
+/// Reads a skin as a mesh, posed by the bodies that move it (`body` returns the pose of a body by
+/// its name, or null). If a model is attached in part (not `is_whole`), skins of missing bodies are
+/// not drawn.
+void read_skin(const Model& model, pugi::xml_node node,
+               const std::function<const glm::dmat4*(const std::string&)>& body, bool is_whole,
+               Robot& robot, Assets& assets);
 
 /// Reads the bodies of a model in the pose, with everything in them.
 void read_bodies(const Model& model, const Pose& pose, Robot& robot, Assets& assets);

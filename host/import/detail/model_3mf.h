@@ -44,16 +44,18 @@ struct Part {
   double millimetres = 1;  // per unit of length
   std::map<std::uint32_t, pugi::xml_node> objects;
   std::map<std::uint32_t, std::vector<glm::dvec4>> colors;  // linear, with alpha
-  std::map<std::uint32_t, std::string> other_properties;    // properties that are not read, by element name
+  std::map<std::uint32_t, std::string>
+      other_properties;  // properties that are not read, by element name
 };
 
 /// Makes materials of the scene from the colours of resources.
 class Colors {
  public:
   explicit Colors(Scene& scene) : scene_(scene) {}
-  /// Returns the colour of property `index` of resource `id`, if it has one. Throws InputError at `node` for missing ones.
-  std::optional<glm::dvec4> of(const Part& part, std::optional<std::uint32_t> id, std::optional<std::uint32_t> index,
-                               pugi::xml_node node);
+  /// Returns the colour of property `index` of resource `id`, if it has one. Throws InputError at
+  /// `node` for missing ones.
+  std::optional<glm::dvec4> of(const Part& part, std::optional<std::uint32_t> id,
+                               std::optional<std::uint32_t> index, pugi::xml_node node);
   /// Returns the colour if all are equal, else their mean in steps of 1/31.
   static std::optional<glm::dvec4> mean(const std::vector<std::optional<glm::dvec4>>& colors);
   std::uint32_t material(const std::optional<glm::dvec4>& color);
@@ -66,7 +68,8 @@ class Colors {
 };
 
 /// Appends the shapes of an object's beam lattice. Throws InputError.
-void add_lattice(const Part& part, pugi::xml_node object, pugi::xml_node lattice, const std::vector<glm::vec3>& points,
-                 const std::string& name, Colors& colors, std::vector<Shape>& shapes);
+void add_lattice(const Part& part, pugi::xml_node object, pugi::xml_node lattice,
+                 const std::vector<glm::vec3>& points, const std::string& name, Colors& colors,
+                 std::vector<Shape>& shapes);
 
 }  // namespace caplet::model_3mf

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// A molecule as its file states it, in any format: atoms, residues, chains and explicit bonds. Lengths are in angstroms.
-// Conventions: docs/formats/molecules.md.
+// A molecule as its file states it, in any format: atoms, residues, chains and explicit bonds.
+// Lengths are in angstroms. Conventions: docs/formats/molecules.md.
 #pragma once
 
 #include <cstdint>
@@ -61,39 +61,46 @@ struct Molecule {
   std::vector<std::string> chains;
   std::vector<Residue> residues;  // the atoms of a residue are consecutive
   std::vector<Atom> atoms;
-  std::vector<std::string> atom_names;  // the name of each atom, "CA"; empty for formats without names
-  std::vector<Bond> bonds;              // those that the file states
-  bool bonds_are_complete = false;      // no further bonds are sought by distance
-  ComponentBonds components;            // those in the file
+  std::vector<std::string>
+      atom_names;                   // the name of each atom, "CA"; empty for formats without names
+  std::vector<Bond> bonds;          // those that the file states
+  bool bonds_are_complete = false;  // no further bonds are sought by distance
+  ComponentBonds components;        // those in the file
   std::map<std::string, std::vector<AssemblyPart>> assemblies;
   bool has_b_factors = false;
   std::uint32_t frames = 1;  // models or frames of the file
 };
 
-/// Readers, each of one family of files. `path` is for messages; `text` is the file's text, decompressed. The options model,
-/// altloc, select, hydrogens and water choose what is kept. They throw InputError with the file's places.
+/// Readers, each of one family of files. `path` is for messages; `text` is the file's text,
+/// decompressed. The options model, altloc, select, hydrogens and water choose what is kept. They
+/// throw InputError with the file's places.
 Molecule read_pdb(std::string_view text, const std::string& path, const ImportOptions& options);
 Molecule read_mmcif(std::string_view text, const std::string& path, const ImportOptions& options);
 Molecule read_sdf(std::string_view text, const std::string& path, const ImportOptions& options);
 Molecule read_xyz(std::string_view text, const std::string& path, const ImportOptions& options);
 
-/// Reads a crystal of the core CIF dictionary, whose atoms are at fractions of a cell; no value for other documents. `--assembly
-/// cell` fills the cell by the file's operators or its space group's. Throws InputError.
-std::optional<Molecule> read_crystal(gemmi::cif::Document& document, const std::string& path, const ImportOptions& options);
+/// Reads a crystal of the core CIF dictionary, whose atoms are at fractions of a cell; no value for
+/// other documents. `--assembly cell` fills the cell by the file's operators or its space group's.
+/// Throws InputError.
+std::optional<Molecule> read_crystal(gemmi::cif::Document& document, const std::string& path,
+                                     const ImportOptions& options);
 
-/// Returns the atomic number of a symbol in any case ("Fe", "FE"), of "26", or of a symbol with digits after it ("C12"); else 0.
+/// Returns the atomic number of a symbol in any case ("Fe", "FE"), of "26", or of a symbol with
+/// digits after it ("C12"); else 0.
 std::uint8_t element_of(std::string_view symbol);
 float covalent_radius(std::uint8_t element);       // Cordero et al. 2008, doi:10.1039/b801115j
 float van_der_waals_radius(std::uint8_t element);  // Bondi 1964, Alvarez 2013, as gemmi lists them
 glm::dvec3 element_color(std::uint8_t element);    // Jmol's colours, linear sRGB
 const char* element_name(std::uint8_t element);    // "Fe"
 
-/// Reads the components of an mmCIF file, such as one of the chemical component dictionary. Throws InputError.
+/// Reads the components of an mmCIF file, such as one of the chemical component dictionary. Throws
+/// InputError.
 ComponentBonds component_bonds_of(std::string_view text, const std::string& path);
 
-/// Returns all bonds of a molecule, sorted and without duplicates: those that the file states, those of residues with a known
-/// component, and all others by distance: more than 0.4 and less than the sum of the covalent radii and 0.45 angstroms, except
-/// between two hydrogens or between different alternative places. If more than 256 atoms share a cell of the search, it warns and
+/// Returns all bonds of a molecule, sorted and without duplicates: those that the file states,
+/// those of residues with a known component, and all others by distance: more than 0.4 and less
+/// than the sum of the covalent radii and 0.45 angstroms, except between two hydrogens or between
+/// different alternative places. If more than 256 atoms share a cell of the search, it warns and
 /// finds none by distance.
 std::vector<Bond> all_bonds(const Molecule& molecule, const std::string& path);
 

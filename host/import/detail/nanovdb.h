@@ -10,8 +10,10 @@
 
 namespace caplet {
 
-/// Reads the named grid of a NanoVDB file: 32-bit floats, uncompressed or compressed by ZIP. Returns null when no grid has the
-/// name. Throws InputError at `where` for a file that cannot be read.
-SparseGridPointer read_nanovdb(const std::string& file, const std::string& grid, const SourceLocation& where);
+/// Reads the named grid of a NanoVDB file: 32-bit floats, uncompressed or compressed by ZIP.
+/// Returns null when no grid has the name. Throws InputError at `where` for a file that cannot be
+/// read.
+SparseGridPointer read_nanovdb(const std::string& file, const std::string& grid,
+                               const SourceLocation& where);
 
 }  // namespace caplet

@@ -9,8 +9,8 @@
 
 namespace caplet {
 
-/// While an instance exists, files that options name may be read. Files that the user names may lie anywhere; those that a
-/// scene's statement names must lie where the scene's other files may.
+/// While an instance exists, files that options name may be read. Files that the user names may lie
+/// anywhere; those that a scene's statement names must lie where the scene's other files may.
 class OptionFiles {
  public:
   explicit OptionFiles(const ImportOptions& options) {

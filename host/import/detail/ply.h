@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// PLY meshes (G. Turk 1994): ascii, binary of either byte order, gzipped. Polygons are triangulated.
+// PLY meshes (G. Turk 1994): ascii, binary of either byte order, gzipped. Polygons are
+// triangulated.
 #pragma once
 
 #include <cstddef>
@@ -16,14 +17,16 @@
 
 namespace caplet {
 
-/// Reads a mesh. Vertices keep their order and are neither merged nor split; faces keep order and winding. Normals or texture
-/// coordinates that are not finite at all vertices are dropped with a warning. `where` is the statement that names the file.
-/// Throws InputError when the file is missing, broken, or contradicts its header. `colors` receives linear colours of corners,
-/// three per triangle, if the file has colours of vertices or else of faces.
+/// Reads a mesh. Vertices keep their order and are neither merged nor split; faces keep order and
+/// winding. Normals or texture coordinates that are not finite at all vertices are dropped with a
+/// warning. `where` is the statement that names the file. Throws InputError when the file is
+/// missing, broken, or contradicts its header. `colors` receives linear colours of corners, three
+/// per triangle, if the file has colours of vertices or else of faces.
 TriangleMeshShape read_ply(const std::filesystem::path& path, const SourceLocation& where,
                            std::vector<glm::vec3>* colors = nullptr);
 /// Does the same from bytes; `file` is the name for messages.
-TriangleMeshShape parse_ply(const std::string& file, const std::string& bytes, std::vector<glm::vec3>* colors = nullptr);
+TriangleMeshShape parse_ply(const std::string& file, const std::string& bytes,
+                            std::vector<glm::vec3>* colors = nullptr);
 
 namespace ply {
 
@@ -46,7 +49,9 @@ struct Header {
   std::vector<Element> elements;
   std::size_t size = 0;  // bytes; the body starts here
   int lines = 0;
-  std::size_t vertex = 0, face = 0, indices = 0;  // indices of the vertex and face elements, and of the faces' list of vertices
+  std::size_t vertex = 0, face = 0,
+              indices =
+                  0;  // indices of the vertex and face elements, and of the faces' list of vertices
 };
 
 std::size_t size_of(Type type);
@@ -57,17 +62,21 @@ bool is_index_list(const Property& property);
 /// Reads and checks the header, and the counts against the file's size. Throws InputError.
 Header parse_header(const std::string& file, std::string_view bytes);
 
-/// What a file's vertices and faces hold. Normals, texture coordinates and colours are empty where the file has none.
+/// What a file's vertices and faces hold. Normals, texture coordinates and colours are empty where
+/// the file has none.
 struct Body {
   std::vector<glm::vec3> positions, normals;
   std::vector<glm::vec2> uvs;
-  std::vector<std::uint32_t> lengths, corners;        // numbers of corners of each face, and the vertices of all faces
+  std::vector<std::uint32_t> lengths,
+      corners;  // numbers of corners of each face, and the vertices of all faces
   std::vector<glm::vec3> vertex_colors, face_colors;  // linear
 };
 
-/// Reads the body, with colours of vertices or else of faces if they are asked for. Throws InputError unless every value of the
-/// body is present and readable, positions are finite and indices are in range.
-Body read_body(const std::string& file, std::string_view bytes, const Header& header, bool with_colors);
+/// Reads the body, with colours of vertices or else of faces if they are asked for. Throws
+/// InputError unless every value of the body is present and readable, positions are finite and
+/// indices are in range.
+Body read_body(const std::string& file, std::string_view bytes, const Header& header,
+               bool with_colors);
 
 }  // namespace ply
 

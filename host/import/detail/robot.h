@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// A robot as its file states it, in any format: geoms, their poses, their materials, lights and cameras. Lengths are in metres, z
-// is up. Conventions: docs/formats/robots.md.
+// A robot as its file states it, in any format: geoms, their poses, their materials, lights and
+// cameras. Lengths are in metres, z is up. Conventions: docs/formats/robots.md.
 #pragma once
 
 #include <filesystem>
@@ -31,9 +31,11 @@ enum class GeomKind { sphere, capsule, cylinder, box, mesh, plane, ellipsoid };
 
 using MeshParts = std::vector<TriangleMeshShape>;
 
-/// How a solid is fitted to a mesh: to the box of its inertia, or to its extent along the inertia's axes.
+/// How a solid is fitted to a mesh: to the box of its inertia, or to its extent along the inertia's
+/// axes.
 struct MeshFit {
-  /// How mass is measured: volumes from the centre of the faces, all positive or signed, or the surface.
+  /// How mass is measured: volumes from the centre of the faces, all positive or signed, or the
+  /// surface.
   enum class Mass { legacy, exact, shell } mass = Mass::legacy;
   bool by_extent = false;
   double scale = 1;
@@ -56,8 +58,8 @@ struct RobotGeom {
   SourceLocation where;
 };
 
-/// A texture of a geom, mapped by the direction from its centre, or by its x and y (or the texture coordinates of a mesh that has
-/// some).
+/// A texture of a geom, mapped by the direction from its centre, or by its x and y (or the texture
+/// coordinates of a mesh that has some).
 struct RobotTexture {
   std::shared_ptr<const TextureImage> image;
   bool by_direction = false;  // latitude-longitude, z up
@@ -101,14 +103,17 @@ struct Robot {
 struct Pose {
   explicit Pose(const ImportOptions& options);
   std::optional<std::string> keyframe;
-  std::map<std::string, std::vector<double>> joints;  // metres and radians; ball joints: w x y z; free joints: x y z w x y z
+  std::map<std::string, std::vector<double>>
+      joints;  // metres and radians; ball joints: w x y z; free joints: x y z w x y z
 };
 
 /// Caches meshes by file.
 class MeshFiles {
  public:
-  /// Returns the meshes of an STL, OBJ, PLY, OFF, MSH or DAE file in the file's coordinates. Throws InputError.
-  std::shared_ptr<const MeshParts> read(const std::filesystem::path& path, const SourceLocation& where);
+  /// Returns the meshes of an STL, OBJ, PLY, OFF, MSH or DAE file in the file's coordinates. Throws
+  /// InputError.
+  std::shared_ptr<const MeshParts> read(const std::filesystem::path& path,
+                                        const SourceLocation& where);
 
  private:
   std::map<std::string, std::shared_ptr<const MeshParts>> meshes_;
@@ -120,7 +125,8 @@ bool is_mesh_file(const std::filesystem::path& path);
 Robot read_urdf(const std::filesystem::path& path, const Pose& pose);
 Robot read_mjcf(const std::filesystem::path& path, const Pose& pose, const ImageReader& images);
 
-/// Sets the size and place of a geom that is fitted to a mesh. Returns false where the mesh is empty.
+/// Sets the size and place of a geom that is fitted to a mesh. Returns false where the mesh is
+/// empty.
 bool fit(RobotGeom& geom, const MeshParts& parts);
 
 /// Returns ".stl" for a.STL.

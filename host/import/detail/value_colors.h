@@ -13,14 +13,14 @@
 
 namespace caplet {
 
-/// Makes at most `steps` diffuse materials of the colour map, from `low` to `high`, named "WHAT VALUE", and a grey one for
-/// missing values.
+/// Makes at most `steps` diffuse materials of the colour map, from `low` to `high`, named "WHAT
+/// VALUE", and a grey one for missing values.
 class ValueColors {
  public:
   ValueColors() = default;
   ValueColors(Scene& scene, std::string what, double low, double high, int steps);
-  /// Returns the material of the nearest step; values beyond the range take that of its end, NaN the grey one. `line` is the line
-  /// of the file that a new material is attributed to.
+  /// Returns the material of the nearest step; values beyond the range take that of its end, NaN
+  /// the grey one. `line` is the line of the file that a new material is attributed to.
   std::uint32_t of(double value, int line = 0);
 
  private:

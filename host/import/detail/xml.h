@@ -49,7 +49,7 @@ void each_word(std::string_view text, const Work& work) {
 }
 
 /// Reads blank-separated finite numbers, at least `least` and at most `most`. Throws InputError.
-std::vector<double> numbers_of(std::string_view text, std::size_t least, std::size_t most, const SourceLocation& where,
-                               const std::string& what);
+std::vector<double> numbers_of(std::string_view text, std::size_t least, std::size_t most,
+                               const SourceLocation& where, const std::string& what);
 
 }  // namespace caplet

@@ -14,8 +14,9 @@
 
 namespace caplet {
 
-/// Reads whole files of an archive, one at a time. All functions throw InputError for a file that is no archive, is broken,
-/// encrypted or packed other than by deflate, and when more than most_unpacked of the archive was read.
+/// Reads whole files of an archive, one at a time. All functions throw InputError for a file that
+/// is no archive, is broken, encrypted or packed other than by deflate, and when more than
+/// most_unpacked of the archive was read.
 class ZipFile {
  public:
   explicit ZipFile(const std::filesystem::path& path);

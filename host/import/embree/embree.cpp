@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// The graph of an Embree scene: groups, transforms and references to named elements. Elements become shapes, or instances where
-// they occur more than once.
+// The graph of an Embree scene: groups, transforms and references to named elements. Elements
+// become shapes, or instances where they occur more than once.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -43,7 +43,9 @@ using NodePtr = std::shared_ptr<const Node>;
 void add_child(Node& to, NodePtr child) {
   if (!child) return;
   to.height = std::max(to.height, child->height + 1);
-  if (to.height > kHighest) throw InputError(to.where, fmt::format("more than {} elements lie within each other", kHighest));
+  if (to.height > kHighest)
+    throw InputError(to.where,
+                     fmt::format("more than {} elements lie within each other", kHighest));
   to.children.push_back(std::move(child));
 }
 
@@ -62,8 +64,10 @@ class EmbreeReader {
     } else {
       viewer = read_ecs(path, notes_);
       for (const auto& [one, where] : viewer.files) {
-        if (!is_file(one, where)) throw InputError(where, "there is no file '" + one.string() + "'");
-        if (!is_xml(one)) throw InputError(where, "'" + one.string() + "' is no XML: it is not read");
+        if (!is_file(one, where))
+          throw InputError(where, "there is no file '" + one.string() + "'");
+        if (!is_xml(one))
+          throw InputError(where, "'" + one.string() + "' is no XML: it is not read");
         roots.push_back(file(one, where, 0));
       }
     }
@@ -71,7 +75,8 @@ class EmbreeReader {
     scene_.world_from_file = glm::dmat3(world);
     for (const NodePtr& root : roots) visit(*root, world);
     place();
-    if (scene_.shapes.empty() && scene_.instances.empty()) throw InputError({scene_.source, 0, 0}, "holds no geometry");
+    if (scene_.shapes.empty() && scene_.instances.empty())
+      throw InputError({scene_.source, 0, 0}, "holds no geometry");
     const std::size_t before = scene_.shapes.size();
     for (const auto& [light, place] : lights_) add_light(*light, place, scene_);
     for (const LightElement& light : viewer.lights) add_light(light, world, scene_);
@@ -101,10 +106,12 @@ class EmbreeReader {
     fs::path same = fs::weakly_canonical(path, error);
     if (error) same = path;
     if (const auto found = files_.find(same); found != files_.end()) {
-      if (!found->second) throw InputError(named_at, "'" + path.string() + "' names itself, or a file that names it");
+      if (!found->second)
+        throw InputError(named_at, "'" + path.string() + "' names itself, or a file that names it");
       return found->second;
     }
-    if (files_.size() == kMostXmlFiles) throw InputError(named_at, fmt::format("more than {} files", kMostXmlFiles));
+    if (files_.size() == kMostXmlFiles)
+      throw InputError(named_at, fmt::format("more than {} files", kMostXmlFiles));
     files_[same] = nullptr;
     SceneFile scene_file(path, named_at);
     const pugi::xml_node root = scene_file.root();
@@ -128,7 +135,8 @@ class EmbreeReader {
     const std::string id = node.attribute("id").value();
     if (name == "ref") {
       const auto found = nodes_.find(id);
-      if (found == nodes_.end()) from.fail(node, "there is nothing of the id '" + id + "' before it");
+      if (found == nodes_.end())
+        from.fail(node, "there is nothing of the id '" + id + "' before it");
       return found->second;
     }
     if (name == "assign") return assign(from, node, id, depth);
@@ -141,7 +149,8 @@ class EmbreeReader {
     const std::string_view type = node.attribute("type").value();
     pugi::xml_node child = node.first_child();
     while (child && child.type() != pugi::node_element) child = child.next_sibling();
-    if (!child || (type != "material" && type != "scene")) from.fail(node, "assigns neither a material nor a scene");
+    if (!child || (type != "material" && type != "scene"))
+      from.fail(node, "assigns neither a material nor a scene");
     if (type == "material")
       looks_[id] = look(from, child, node.attribute("name").value());
     else
@@ -160,9 +169,11 @@ class EmbreeReader {
       out->light = read_light(from, node);
       return out;
     }
-    if (name == "Group" || name == "Flatten" || name == "TimeRange" || name.starts_with("Convert")) {
+    if (name == "Group" || name == "Flatten" || name == "TimeRange" ||
+        name.starts_with("Convert")) {
       children(from, node, *out, depth);
-    } else if (name == "Transform" || name == "MultiTransform" || name == "Transform2" || name == "TransformAnimation") {
+    } else if (name == "Transform" || name == "MultiTransform" || name == "Transform2" ||
+               name == "TransformAnimation") {
       transform(from, node, *out, depth);
     } else if (name == "Animation" || name == "Animation2") {
       notes_.add("what moves is drawn as at its first moment", out->where);
@@ -173,7 +184,8 @@ class EmbreeReader {
       out->view = camera(from, node);
     } else if (name == "AnimatedPerspectiveCamera") {
       notes_.add("what moves is drawn as at its first moment", out->where);
-      if (const pugi::xml_node first = node.child("PerspectiveCamera")) out->view = camera(from, first);
+      if (const pugi::xml_node first = node.child("PerspectiveCamera"))
+        out->view = camera(from, first);
     } else if (name == "xml" || name == "extern" || name == "extern_combine" || name == "obj") {
       add_child(*out, other(from, node, depth));
     } else if (name == "SubdivisionMesh" || name == "FurBall" || name == "AnimatedLight") {
@@ -185,7 +197,8 @@ class EmbreeReader {
     return out;
   }
 
-  /// Reads one transform, or all those of a MultiTransform. Of the transforms at several times the first is used.
+  /// Reads one transform, or all those of a MultiTransform. Of the transforms at several times the
+  /// first is used.
   void transform(SceneFile& from, pugi::xml_node node, Node& to, int depth) {
     bool is_first = true, is_nowhere = false;
     for (const pugi::xml_node child : node.children()) {
@@ -207,7 +220,8 @@ class EmbreeReader {
             glm::dmat4& one = to.places.emplace_back(1);
             for (int column = 0; column < 4; ++column)
               for (int row = 0; row < 3; ++row)
-                one[column][row] = static_cast<double>(m[i + static_cast<std::size_t>(3 * column + row)]);
+                one[column][row] =
+                    static_cast<double>(m[i + static_cast<std::size_t>(3 * column + row)]);
           }
         }
         for (const pugi::xml_node one : child.children())
@@ -225,7 +239,8 @@ class EmbreeReader {
 
   static View camera(const SceneFile& from, pugi::xml_node node) {
     const auto vector = [&](const char* name) {
-      const std::vector<double> v = numbers_of(node.attribute(name).value(), 3, 3, from.place(node), name);
+      const std::vector<double> v =
+          numbers_of(node.attribute(name).value(), 3, 3, from.place(node), name);
       return glm::dvec3(v[0], v[1], v[2]);
     };
     View out;
@@ -244,7 +259,8 @@ class EmbreeReader {
       if (!plain_) plain_ = add_plain_material(scene_);
       return {*plain_, {}, {}};
     }
-    const MeshMaterial out = read_material(from, node, name.empty() ? id : name, scene_, images_, notes_);
+    const MeshMaterial out =
+        read_material(from, node, name.empty() ? id : name, scene_, images_, notes_);
     if (!id.empty()) looks_[id] = out;
     return out;
   }
@@ -258,28 +274,33 @@ class EmbreeReader {
     if (!is_file(path, where)) from.fail(node, "there is no file '" + path.string() + "'");
     const Format& format = format_of(path);
     if (format.name == "embree") return file(path, where, depth);
-    if (format.name != "obj" && format.name != "ply" && format.name != "stl" && format.name != "off")
-      from.fail(node, "'" + path.string() + "': files of the format " + format.name + " are not read within a scene of Embree");
+    if (format.name != "obj" && format.name != "ply" && format.name != "stl" &&
+        format.name != "off")
+      from.fail(node, "'" + path.string() + "': files of the format " + format.name +
+                          " are not read within a scene of Embree");
     Imported part = format.import(path, reader_, {});
     auto out = std::make_shared<Node>();
     out->where = where;
     const std::size_t before = scene_.shapes.size();
     append(scene_, std::move(part.scene));
-    out->shapes.assign(std::make_move_iterator(scene_.shapes.begin() + static_cast<std::ptrdiff_t>(before)),
-                       std::make_move_iterator(scene_.shapes.end()));
+    out->shapes.assign(
+        std::make_move_iterator(scene_.shapes.begin() + static_cast<std::ptrdiff_t>(before)),
+        std::make_move_iterator(scene_.shapes.end()));
     scene_.shapes.resize(before);
     return out;
   }
 
   void visit(const Node& node, const glm::dmat4& world) {
-    if (++visited_ > kMostVisited) throw InputError(node.where, fmt::format("more than {} elements are placed", kMostVisited));
+    if (++visited_ > kMostVisited)
+      throw InputError(node.where, fmt::format("more than {} elements are placed", kMostVisited));
     if (node.view && !view_) see(*node.view, world, node.where);
     if (node.light) lights_.emplace_back(&*node.light, world);
     if (!node.shapes.empty()) {
       const auto [at, fresh] = placed_index_.try_emplace(&node, placed_.size());
       if (fresh) placed_.push_back({&node, {}});
       placed_[at->second].places.push_back(world);
-      if (++placements_ > kMostPlaced) throw InputError(node.where, fmt::format("more than {} shapes are placed", kMostPlaced));
+      if (++placements_ > kMostPlaced)
+        throw InputError(node.where, fmt::format("more than {} shapes are placed", kMostPlaced));
     }
     if (node.places.empty())
       for (const NodePtr& child : node.children) visit(*child, world);
@@ -310,7 +331,8 @@ class EmbreeReader {
       object.name = shapes[0].name;
       object.where = one.node->where;
       object.shapes = std::move(shapes);
-      for (const glm::dmat4& place : one.places) scene_.instances.push_back({index, place, one.node->where});
+      for (const glm::dmat4& place : one.places)
+        scene_.instances.push_back({index, place, one.node->where});
       scene_.objects.push_back(std::move(object));
     }
   }
@@ -341,7 +363,8 @@ class EmbreeReader {
 
 }  // namespace embree
 
-Imported import_embree(const fs::path& path, const ImageReader& images, const ImportOptions& options) {
+Imported import_embree(const fs::path& path, const ImageReader& images,
+                       const ImportOptions& options) {
   return embree::EmbreeReader(path, images, options).read(path);
 }
 

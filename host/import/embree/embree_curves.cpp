@@ -41,7 +41,8 @@ constexpr Element elements[] = {{"Hair", {Basis::bezier, true, false, true}},
                                 {"ConeSegments", {Basis::cone, false, false, false}}};
 
 Curves curves_of(const SceneFile& file, pugi::xml_node node) {
-  const std::string_view name = node.name(), basis = node.attribute("basis").value(), type = node.attribute("type").value();
+  const std::string_view name = node.name(), basis = node.attribute("basis").value(),
+                         type = node.attribute("type").value();
   for (const Element& element : elements)
     if (name == element.name) return element.curves;
   constexpr std::pair<const char*, Basis> bases[] = {{"linear", Basis::linear},
@@ -50,22 +51,29 @@ Curves curves_of(const SceneFile& file, pugi::xml_node node) {
                                                      {"hermite", Basis::hermite},
                                                      {"catmull_rom", Basis::catmull_rom}};
   Curves out;
-  const auto* found = std::ranges::find(bases, basis, [](const auto& row) { return std::string_view(row.first); });
+  const auto* found =
+      std::ranges::find(bases, basis, [](const auto& row) { return std::string_view(row.first); });
   if (found == std::end(bases))
-    file.fail(node, fmt::format("basis=\"{}\" is none of linear, bezier, bspline, hermite, catmull_rom", basis.substr(0, 40)));
+    file.fail(node,
+              fmt::format("basis=\"{}\" is none of linear, bezier, bspline, hermite, catmull_rom",
+                          basis.substr(0, 40)));
   out.basis = found->second;
   out.is_flat = type == "flat" || type == "ribbon";
   out.is_oriented = type == "normal_oriented" && out.basis != Basis::linear;
   const bool is_surface = type == "surface" && out.basis != Basis::linear;
   if (!out.is_flat && !out.is_oriented && type != "round" && !is_surface)
-    file.fail(node, fmt::format("type=\"{}\" is none of round, flat, normal_oriented", type.substr(0, 40)));
+    file.fail(node, fmt::format("type=\"{}\" is none of round, flat, normal_oriented",
+                                type.substr(0, 40)));
   return out;
 }
 
-std::size_t vertices_of(Basis basis) { return basis == Basis::linear || basis == Basis::cone || basis == Basis::hermite ? 2 : 4; }
+std::size_t vertices_of(Basis basis) {
+  return basis == Basis::linear || basis == Basis::cone || basis == Basis::hermite ? 2 : 4;
+}
 
 /// Returns the list at the first time step of an animated element.
-pugi::xml_node first_list(pugi::xml_node node, const std::string& name, const SceneFile& file, Notes& notes) {
+pugi::xml_node first_list(pugi::xml_node node, const std::string& name, const SceneFile& file,
+                          Notes& notes) {
   const pugi::xml_node animated = node.child(("animated_" + name).c_str());
   if (!animated) return node.child(name.c_str());
   notes.add("what moves is drawn as at its first moment", file.place(animated));
@@ -96,17 +104,21 @@ std::vector<Vector> rows(SceneFile& file, pugi::xml_node node) {
 
 class CurveSet {
  public:
-  CurveSet(SceneFile& file, pugi::xml_node node, Notes& notes) : file_(file), node_(node), notes_(notes) {}
+  CurveSet(SceneFile& file, pugi::xml_node node, Notes& notes)
+      : file_(file), node_(node), notes_(notes) {}
 
   std::vector<Shape> read(const MeshMaterial& look) {
     const Curves curves = curves_of(file_, node_);
     basis_ = curves.basis;
     if (curves.is_flat) notes_.add("flat curves are drawn as round ones", file_.place(node_));
-    if (curves.is_oriented) notes_.add("curves that are oriented by normals are drawn as round ones", file_.place(node_));
+    if (curves.is_oriented)
+      notes_.add("curves that are oriented by normals are drawn as round ones", file_.place(node_));
     const pugi::xml_node positions = first_list(node_, "positions", file_, notes_);
     points_ = rows4(file_, positions, basis_ == Basis::bspline);
-    const std::vector<std::uint32_t> indices = file_.indices(node_.child("indices"), curves.in_pairs ? 2 : 1);
-    if (basis_ == Basis::hermite) tangents_ = rows4(file_, first_list(node_, "tangents", file_, notes_), false);
+    const std::vector<std::uint32_t> indices =
+        file_.indices(node_.child("indices"), curves.in_pairs ? 2 : 1);
+    if (basis_ == Basis::hermite)
+      tangents_ = rows4(file_, first_list(node_, "tangents", file_, notes_), false);
     if (basis_ == Basis::hermite && tangents_.size() != points_.size())
       file_.fail(node_, fmt::format("{} tangents of {} points", tangents_.size(), points_.size()));
     const std::vector<std::uint32_t> flags = file_.bytes(node_.child("flags"));
@@ -114,7 +126,8 @@ class CurveSet {
     for (std::size_t i = 0; i < indices.size(); i += step) {
       const std::size_t first = indices[i], count = vertices_of(basis_);
       if (first >= points_.size() || points_.size() - first < count)
-        file_.fail(node_, fmt::format("the curve from point {} on takes {} points; there are {}", first, count, points_.size()));
+        file_.fail(node_, fmt::format("the curve from point {} on takes {} points; there are {}",
+                                      first, count, points_.size()));
       if (basis_ == Basis::cone)
         cone(first, i < flags.size() ? flags[i] : 0);
       else
@@ -127,8 +140,10 @@ class CurveSet {
   std::vector<Shape> read_points(const MeshMaterial& look) {
     const std::string_view type = node_.attribute("type").value();
     if (type != "sphere" && type != "disc" && type != "oriented")
-      file_.fail(node_, fmt::format("type=\"{}\" is none of sphere, disc, oriented", type.substr(0, 40)));
-    if (type != "sphere") notes_.add("points that are discs are drawn as balls", file_.place(node_));
+      file_.fail(node_,
+                 fmt::format("type=\"{}\" is none of sphere, disc, oriented", type.substr(0, 40)));
+    if (type != "sphere")
+      notes_.add("points that are discs are drawn as balls", file_.place(node_));
     points_ = rows4(file_, first_list(node_, "positions", file_, notes_), false);
     for (const dvec4& p : points_) segment(p, p, {});
     return shapes(look);
@@ -137,7 +152,9 @@ class CurveSet {
  private:
   dvec4 point(std::size_t i) const {
     const dvec4& p = points_[i];
-    if (!(p.w >= 0)) file_.fail(node_, fmt::format("the radius of point {} is {}", i, p.w < 0 ? "negative" : "no number"));
+    if (!(p.w >= 0))
+      file_.fail(node_, fmt::format("the radius of point {} is {}", i,
+                                    p.w < 0 ? "negative" : "no number"));
     for (int k = 0; k < 3; ++k)
       if (std::isnan(p[k])) file_.fail(node_, fmt::format("point {} is no number", i));
     return p;
@@ -166,11 +183,16 @@ class CurveSet {
       return {p0, p0 + tangents_[i] / 3.0, p1 - tangents_[i + 1] / 3.0, p1};
     }
     const dvec4 p1 = point(i + 1), p2 = point(i + 2);
-    if (basis_ == Basis::catmull_rom) return {p1, p1 + (p2 - point(i)) / 6.0, p2 - (point(i + 3) - p1) / 6.0, p2};
+    if (basis_ == Basis::catmull_rom)
+      return {p1, p1 + (p2 - point(i)) / 6.0, p2 - (point(i + 3) - p1) / 6.0, p2};
     // At an end, whose point is NaN, the curve continues straight beyond the next point.
-    const auto is_end = [&](std::size_t k) { return std::isnan(points_[k].x) || std::isnan(points_[k].w); };
-    const dvec4 p0 = is_end(i) ? 2.0 * p1 - p2 : point(i), p3 = is_end(i + 3) ? 2.0 * p2 - p1 : point(i + 3);
-    return {(p0 + 4.0 * p1 + p2) / 6.0, (2.0 * p1 + p2) / 3.0, (p1 + 2.0 * p2) / 3.0, (p1 + 4.0 * p2 + p3) / 6.0};
+    const auto is_end = [&](std::size_t k) {
+      return std::isnan(points_[k].x) || std::isnan(points_[k].w);
+    };
+    const dvec4 p0 = is_end(i) ? 2.0 * p1 - p2 : point(i),
+                p3 = is_end(i + 3) ? 2.0 * p2 - p1 : point(i + 3);
+    return {(p0 + 4.0 * p1 + p2) / 6.0, (2.0 * p1 + p2) / 3.0, (p1 + 2.0 * p2) / 3.0,
+            (p1 + 4.0 * p2 + p3) / 6.0};
   }
 
   /// Ends a strand: consecutive curves that are joined end to end. u runs over all of them.
@@ -185,7 +207,8 @@ class CurveSet {
     if (first != strand_next_) end_strand();
     strand_next_ = first + (basis_ == Basis::bezier ? 3 : 1);
     const auto u0 = static_cast<double>(strand_curves_++);
-    if (basis_ == Basis::linear) return segment(point(first), point(first + 1), glm::vec2(u0, u0 + 1));
+    if (basis_ == Basis::linear)
+      return segment(point(first), point(first + 1), glm::vec2(u0, u0 + 1));
     const CubicTube c = tube(first);
     glm::dvec3 low(c[0]), high(c[0]);
     double widest = 0;
@@ -199,11 +222,12 @@ class CurveSet {
     chain.start(c[0]);
     chain.add(c, std::max(2e-3 * widest, 1e-5 * glm::length(high - low)), u0, u0 + 1);
     for (std::size_t i = 0; i < chords.p0.size(); ++i)
-      segment(dvec4(glm::dvec3(chords.p0[i]), chords.radius0[i]), dvec4(glm::dvec3(chords.p1[i]), chords.radius1[i]),
-              chords.u[i]);
+      segment(dvec4(glm::dvec3(chords.p0[i]), chords.radius0[i]),
+              dvec4(glm::dvec3(chords.p1[i]), chords.radius1[i]), chords.u[i]);
   }
 
-  /// Adds a cone. Bits of flags mark a neighbour at the first and at the second end, which then has no cap.
+  /// Adds a cone. Bits of flags mark a neighbour at the first and at the second end, which then has
+  /// no cap.
   void cone(std::size_t first, std::uint32_t flags) {
     constexpr std::uint32_t left = 1, right = 2;
     const dvec4 a = point(first), b = point(first + 1);
@@ -211,7 +235,8 @@ class CurveSet {
       notes_.add("cones without length or thickness are left out", file_.place(node_));
       return;
     }
-    const std::array<Cap, 2> caps{(flags & left) != 0 ? Cap::open : Cap::flat, (flags & right) != 0 ? Cap::open : Cap::flat};
+    const std::array<Cap, 2> caps{(flags & left) != 0 ? Cap::open : Cap::flat,
+                                  (flags & right) != 0 ? Cap::open : Cap::flat};
     if (a.w == b.w)
       cones_.emplace_back(CylinderShape{glm::dvec3(a), glm::dvec3(b), a.w, caps});
     else
@@ -242,13 +267,16 @@ class CurveSet {
   Basis basis_ = Basis::linear;
   std::vector<dvec4> points_, tangents_;
   CapsulesShape capsules_;
-  std::size_t strand_begin_ = 0, strand_curves_ = 0;  // its first capsule, and the number of its curves so far
-  std::size_t strand_next_ = 0;                       // the first point of its next curve
+  std::size_t strand_begin_ = 0,
+              strand_curves_ = 0;  // its first capsule, and the number of its curves so far
+  std::size_t strand_next_ = 0;    // the first point of its next curve
   std::vector<Geometry> cones_;
 };
 
-/// Returns quadrilaterals, each of which Embree splits into two triangles; a grid consists of quadrilaterals.
-std::vector<std::array<std::uint32_t, 4>> quads_of(SceneFile& file, pugi::xml_node node, std::size_t vertices) {
+/// Returns quadrilaterals, each of which Embree splits into two triangles; a grid consists of
+/// quadrilaterals.
+std::vector<std::array<std::uint32_t, 4>> quads_of(SceneFile& file, pugi::xml_node node,
+                                                   std::size_t vertices) {
   std::vector<std::array<std::uint32_t, 4>> out;
   if (std::string_view(node.name()) == "QuadMesh") {
     const std::vector<std::uint32_t> indices = file.indices(node.child("indices"), 4);
@@ -259,31 +287,37 @@ std::vector<std::array<std::uint32_t, 4>> quads_of(SceneFile& file, pugi::xml_no
   // Each row holds the first vertex, the stride between rows, columns and rows.
   const std::vector<std::uint32_t> grids = file.indices(node.child("grids"), 4);
   for (std::size_t i = 0; i < grids.size(); i += 4) {
-    const std::uint64_t first = grids[i], stride = grids[i + 1], columns = grids[i + 2], lines = grids[i + 3];
-    if (columns == 0 || lines == 0 || first >= vertices || stride > vertices || columns > vertices || lines > vertices ||
-        (lines - 1) * stride + columns > vertices - first)
+    const std::uint64_t first = grids[i], stride = grids[i + 1], columns = grids[i + 2],
+                        lines = grids[i + 3];
+    if (columns == 0 || lines == 0 || first >= vertices || stride > vertices ||
+        columns > vertices || lines > vertices || (lines - 1) * stride + columns > vertices - first)
       file.fail(node, fmt::format("grid {} goes on beyond the {} points", i / 4, vertices));
-    if (out.size() + (lines - 1) * (columns - 1) > (std::uint64_t{1} << 27)) file.fail(node, "grids of more than 2^27 cells");
+    if (out.size() + (lines - 1) * (columns - 1) > (std::uint64_t{1} << 27))
+      file.fail(node, "grids of more than 2^27 cells");
     for (std::uint64_t y = 0; y + 1 < lines; ++y)
       for (std::uint64_t x = 0; x + 1 < columns; ++x) {
-        const auto at = static_cast<std::uint32_t>(first + y * stride + x), below = static_cast<std::uint32_t>(at + stride);
+        const auto at = static_cast<std::uint32_t>(first + y * stride + x),
+                   below = static_cast<std::uint32_t>(at + stride);
         out.push_back({at, at + 1, below + 1, below});
       }
   }
   return out;
 }
 
-std::vector<Shape> mesh(SceneFile& file, pugi::xml_node node, const MeshMaterial& look, Notes& notes) {
+std::vector<Shape> mesh(SceneFile& file, pugi::xml_node node, const MeshMaterial& look,
+                        Notes& notes) {
   TriangleMeshShape out;
   out.positions = rows<glm::vec3>(file, first_list(node, "positions", file, notes));
   out.normals = rows<glm::vec3>(file, first_list(node, "normals", file, notes));
   out.uvs = rows<glm::vec2>(file, node.child("texcoords"));
   const std::size_t count = out.positions.size();
-  if ((!out.normals.empty() && out.normals.size() != count) || (!out.uvs.empty() && out.uvs.size() != count))
+  if ((!out.normals.empty() && out.normals.size() != count) ||
+      (!out.uvs.empty() && out.uvs.size() != count))
     file.fail(node, "has another number of normals or texture coordinates than of points");
   if (std::string_view(node.name()) == "TriangleMesh") {
     const std::vector<std::uint32_t> indices = file.indices(node.child("triangles"), 3);
-    for (std::size_t i = 0; i < indices.size(); i += 3) out.triangles.push_back({indices[i], indices[i + 1], indices[i + 2]});
+    for (std::size_t i = 0; i < indices.size(); i += 3)
+      out.triangles.push_back({indices[i], indices[i + 1], indices[i + 2]});
   } else {
     for (const std::array<std::uint32_t, 4>& q : quads_of(file, node, count)) {
       out.triangles.push_back({q[0], q[1], q[3]});
@@ -294,24 +328,29 @@ std::vector<Shape> mesh(SceneFile& file, pugi::xml_node node, const MeshMaterial
     for (const std::uint32_t i : triangle)
       if (i >= count) file.fail(node, fmt::format("point {}: there are {}", i, count));
   if (out.triangles.empty()) return {};
-  Shape shape = mesh_shape(std::move(out), node.attribute("name").empty() ? node.name() : node.attribute("name").value(),
-                           look.material, file.place(node));
+  Shape shape = mesh_shape(
+      std::move(out), node.attribute("name").empty() ? node.name() : node.attribute("name").value(),
+      look.material, file.place(node));
   shape.alpha = look.alpha;
   std::vector<Shape> all;
   all.push_back(std::move(shape));
   return all;
 }
 
-bool is_mesh(std::string_view name) { return name == "TriangleMesh" || name == "QuadMesh" || name == "GridMesh"; }
+bool is_mesh(std::string_view name) {
+  return name == "TriangleMesh" || name == "QuadMesh" || name == "GridMesh";
+}
 
 }  // namespace
 
 bool is_geometry(std::string_view name) {
   return is_mesh(name) || name == "Curves" || name == "Points" ||
-         std::ranges::any_of(elements, [&](const Element& element) { return name == element.name; });
+         std::ranges::any_of(elements,
+                             [&](const Element& element) { return name == element.name; });
 }
 
-std::vector<Shape> shapes_of(SceneFile& file, pugi::xml_node node, const MeshMaterial& look, Notes& notes) {
+std::vector<Shape> shapes_of(SceneFile& file, pugi::xml_node node, const MeshMaterial& look,
+                             Notes& notes) {
   const std::string_view name = node.name();
   if (is_mesh(name)) return mesh(file, node, look, notes);
   CurveSet set(file, node, notes);

@@ -35,7 +35,8 @@ void each_word(pugi::xml_node node, const Work& work) {
 std::uint64_t count_of(const SceneFile& file, pugi::xml_node node, const char* name) {
   const std::string_view text = node.attribute(name).value();
   std::uint64_t value = 0;
-  if (!parse_number(text, value)) file.fail(node, fmt::format("{}=\"{}\" is no count", name, text.substr(0, 40)));
+  if (!parse_number(text, value))
+    file.fail(node, fmt::format("{}=\"{}\" is no count", name, text.substr(0, 40)));
   return value;
 }
 
@@ -58,13 +59,14 @@ std::string_view SceneFile::binary(pugi::xml_node node, std::size_t row) {
     else if (is_there(other, place(node)))
       companion_ = read_file(other, place(node));
     else
-      fail(node, fmt::format("its numbers are in '{}', which is not there (nor is '{}')", one.string(), other.string()));
+      fail(node, fmt::format("its numbers are in '{}', which is not there (nor is '{}')",
+                             one.string(), other.string()));
   }
   const std::uint64_t ofs = count_of(*this, node, "ofs");
   const std::uint64_t size = count_of(*this, node, node.attribute("size").empty() ? "num" : "size");
   if (ofs > companion_->size() || size > (companion_->size() - ofs) / row)
-    fail(node,
-         fmt::format("{} rows of {} bytes from byte {} on: the companion has {} bytes", size, row, ofs, companion_->size()));
+    fail(node, fmt::format("{} rows of {} bytes from byte {} on: the companion has {} bytes", size,
+                           row, ofs, companion_->size()));
   return std::string_view(*companion_).substr(ofs, size * row);
 }
 
@@ -72,7 +74,8 @@ std::vector<float> SceneFile::floats(pugi::xml_node node, std::size_t width, boo
   std::vector<float> out;
   const auto add = [&](float value) {
     if (!(std::abs(value) <= largest_number) && !(with_nan && std::isnan(value)))
-      fail(node, fmt::format("<{}>: number {} is not finite or out of range", node.name(), out.size() + 1));
+      fail(node, fmt::format("<{}>: number {} is not finite or out of range", node.name(),
+                             out.size() + 1));
     out.push_back(value);
   };
   if (is_binary(node)) {
@@ -97,7 +100,8 @@ std::vector<float> SceneFile::floats(pugi::xml_node node, std::size_t width, boo
       fail(node, fmt::format("<{}>: {} is not finite or out of range", node.name(), quoted(word)));
     add(static_cast<float>(value));
   });
-  if (out.size() % width != 0) fail(node, fmt::format("<{}>: {} numbers are no rows of {}", node.name(), out.size(), width));
+  if (out.size() % width != 0)
+    fail(node, fmt::format("<{}>: {} numbers are no rows of {}", node.name(), out.size(), width));
   return out;
 }
 
@@ -111,10 +115,12 @@ std::vector<std::uint32_t> SceneFile::indices(pugi::xml_node node, std::size_t w
   }
   each_word(node, [&](std::string_view word) {
     std::uint32_t value = 0;
-    if (!parse_number(word, value)) fail(node, fmt::format("<{}>: {} is no index", node.name(), quoted(word)));
+    if (!parse_number(word, value))
+      fail(node, fmt::format("<{}>: {} is no index", node.name(), quoted(word)));
     out.push_back(value);
   });
-  if (out.size() % width != 0) fail(node, fmt::format("<{}>: {} indices are no rows of {}", node.name(), out.size(), width));
+  if (out.size() % width != 0)
+    fail(node, fmt::format("<{}>: {} indices are no rows of {}", node.name(), out.size(), width));
   return out;
 }
 
@@ -132,7 +138,8 @@ void Notes::add(const std::string& what, const SourceLocation& where) {
 
 void Notes::tell() const {
   for (const auto& [what, note] : notes_)
-    Diagnostics().warning(note.where, note.count == 1 ? what : fmt::format("{} ({} times)", what, note.count));
+    Diagnostics().warning(note.where,
+                          note.count == 1 ? what : fmt::format("{} ({} times)", what, note.count));
 }
 
 }  // namespace caplet::embree

@@ -22,7 +22,9 @@ namespace caplet::embree {
 
 namespace {
 
-glm::dvec3 vector_of(std::span<const double> numbers) { return {numbers[0], numbers[1], numbers[2]}; }
+glm::dvec3 vector_of(std::span<const double> numbers) {
+  return {numbers[0], numbers[1], numbers[2]};
+}
 
 /// Reads the parameters of a material by name.
 class Parameters {
@@ -34,11 +36,13 @@ class Parameters {
       std::string_view type = entry.name();
       if (type == "param") type = entry.attribute("type").value();
       if (type.starts_with("float") || type.starts_with("int")) {
-        const std::string_view digits =
-            type.substr(type.find_first_of("1234567890", 0) == std::string_view::npos ? type.size() : type.size() - 1);
+        const std::string_view digits = type.substr(
+            type.find_first_of("1234567890", 0) == std::string_view::npos ? type.size()
+                                                                          : type.size() - 1);
         const std::size_t count = digits.empty() ? 1 : static_cast<std::size_t>(digits[0] - '0');
         if (count > 4 || count < 1) file.fail(entry, quoted(type) + " is no type of a parameter");
-        values_[name] = numbers_of(SceneFile::text_of(entry), count, count, file.place(entry), name);
+        values_[name] =
+            numbers_of(SceneFile::text_of(entry), count, count, file.place(entry), name);
       } else if (type == "texture3d" || type == "texture") {
         images_[name] = entry.attribute("src").value();
       } else {
@@ -52,10 +56,13 @@ class Parameters {
   }
   glm::dvec3 color(const char* name, double otherwise) const {
     const auto found = values_.find(name);
-    return found == values_.end() || found->second.size() != 3 ? glm::dvec3(otherwise)
-                                                               : glm::max(vector_of(found->second), glm::dvec3(0));
+    return found == values_.end() || found->second.size() != 3
+               ? glm::dvec3(otherwise)
+               : glm::max(vector_of(found->second), glm::dvec3(0));
   }
-  glm::dvec3 reflectance(const char* name, double otherwise) const { return glm::min(color(name, otherwise), glm::dvec3(1)); }
+  glm::dvec3 reflectance(const char* name, double otherwise) const {
+    return glm::min(color(name, otherwise), glm::dvec3(1));
+  }
   std::string image(const char* name) const {
     const auto found = images_.find(name);
     return found == images_.end() ? "" : found->second;
@@ -73,10 +80,12 @@ MeshMaterial added(Scene& scene, const Material& material) {
   return out;
 }
 
-double index_of(double inside, double outside) { return std::clamp(outside > 0 ? inside / outside : inside, 0.2, 5.0); }
+double index_of(double inside, double outside) {
+  return std::clamp(outside > 0 ? inside / outside : inside, 0.2, 5.0);
+}
 
-/// Returns GGX's alpha of the same width as Embree's microfacet distribution, a power cosine with the exponent n = 1 / roughness:
-/// alpha^2 = 2 / (n + 2) (Walter et al. 2007, section 5.2).
+/// Returns GGX's alpha of the same width as Embree's microfacet distribution, a power cosine with
+/// the exponent n = 1 / roughness: alpha^2 = 2 / (n + 2) (Walter et al. 2007, section 5.2).
 double alpha_of(double roughness) {
   const double inverse_exponent = std::clamp(roughness, 0.0, 1.0);
   return std::sqrt(2 * inverse_exponent / (1 + 2 * inverse_exponent));
@@ -84,11 +93,12 @@ double alpha_of(double roughness) {
 
 }  // namespace
 
-MeshMaterial read_material(SceneFile& file, pugi::xml_node node, const std::string& name, Scene& scene, MeshImages& images,
-                   Notes& notes) {
+MeshMaterial read_material(SceneFile& file, pugi::xml_node node, const std::string& name,
+                           Scene& scene, MeshImages& images, Notes& notes) {
   const SourceLocation where = file.place(node);
   std::string code = SceneFile::text_of(node.child("code"));
-  if (code.size() > 1 && code.front() == '"' && code.back() == '"') code = code.substr(1, code.size() - 2);
+  if (code.size() > 1 && code.front() == '"' && code.back() == '"')
+    code = code.substr(1, code.size() - 2);
   const Parameters given(file, node.child("parameters"));
   Material out;
   out.where = where;
@@ -109,7 +119,8 @@ MeshMaterial read_material(SceneFile& file, pugi::xml_node node, const std::stri
     out.model = DiffuseMaterial{RgbSpectrum{given.reflectance("reflectance", 1)}};
   } else if (code == "Hair") {
     HairMaterial hair;
-    hair.reflectance = RgbSpectrum{glm::min(given.color("Kr", 1) + given.color("Kt", 0), glm::dvec3(1))};
+    hair.reflectance =
+        RgbSpectrum{glm::min(given.color("Kr", 1) + given.color("Kt", 0), glm::dvec3(1))};
     out.model = hair;
   } else if (code == "Mirror") {
     ConductorMaterial mirror;
@@ -118,25 +129,29 @@ MeshMaterial read_material(SceneFile& file, pugi::xml_node node, const std::stri
   } else if (code == "Metal") {
     // Multiplies the reflectance of eta and k at normal incidence by the file's.
     const glm::dvec3 eta = given.color("eta", 1.4), k = given.color("k", 0);
-    const glm::dvec3 below = (eta - 1.0) * (eta - 1.0) + k * k, above = (eta + 1.0) * (eta + 1.0) + k * k;
+    const glm::dvec3 below = (eta - 1.0) * (eta - 1.0) + k * k,
+                     above = (eta + 1.0) * (eta + 1.0) + k * k;
     ConductorMaterial metal;
     metal.reflectance = RgbSpectrum{below / above * given.reflectance("reflectance", 1)};
     metal.alpha_u = metal.alpha_v = alpha_of(given.number("roughness", 0.01));
     out.model = metal;
   } else if (code == "Dielectric") {
-    out.model =
-        DielectricMaterial{ConstantSpectrum{index_of(given.number("etaInside", 1.4), given.number("etaOutside", 1))}, 0, 0};
+    out.model = DielectricMaterial{
+        ConstantSpectrum{index_of(given.number("etaInside", 1.4), given.number("etaOutside", 1))},
+        0, 0};
   } else if (code == "ThinDielectric" || code == "ThinGlass") {
     out.model = ThinDielectricMaterial{ConstantSpectrum{index_of(given.number("eta", 1.4), 1)}};
   } else if (code == "Plastic" || code == "MetallicPaint") {
     PrincipledMaterial paint;
-    paint.base_color = RgbSpectrum{given.reflectance(code == "Plastic" ? "pigmentColor" : "shadeColor", 1)};
+    paint.base_color =
+        RgbSpectrum{given.reflectance(code == "Plastic" ? "pigmentColor" : "shadeColor", 1)};
     paint.eta = std::clamp(given.number("eta", 1.4), 1.01, 4.0);
     paint.roughness = std::sqrt(alpha_of(given.number("roughness", 0.01)));
     out.model = paint;
   } else {
-    notes.add(node.child("parameters") ? "the material " + caplet::quoted(code) + " is not known: it is grey"
-                                       : "a material is defined nowhere: it is grey",
+    notes.add(node.child("parameters")
+                  ? "the material " + caplet::quoted(code) + " is not known: it is grey"
+                  : "a material is defined nowhere: it is grey",
               where);
     out.model = DiffuseMaterial{ConstantSpectrum{0.5}};
   }
@@ -153,7 +168,8 @@ glm::dmat4 affine_space(SceneFile& file, pugi::xml_node node) {
     if (!(glm::length(axis) > 0)) file.fail(node, "an axis of no length");
     return glm::rotate(glm::dmat4(1), glm::radians(degrees), glm::normalize(axis));
   };
-  if (node.attribute("translate")) return glm::translate(glm::dmat4(1), vector_of(numbers("translate", 3)));
+  if (node.attribute("translate"))
+    return glm::translate(glm::dmat4(1), vector_of(numbers("translate", 3)));
   if (node.attribute("scale")) return glm::scale(glm::dmat4(1), vector_of(numbers("scale", 3)));
   constexpr const char* turns[] = {"rotate_x", "rotate_y", "rotate_z"};
   for (int k = 0; k < 3; ++k)
@@ -168,15 +184,18 @@ glm::dmat4 affine_space(SceneFile& file, pugi::xml_node node) {
     const glm::dvec3 point = vector_of(numbers("point", 3));
     return glm::translate(glm::dmat4(1), point) * turn * glm::translate(glm::dmat4(1), -point);
   }
-  const std::vector<double> m = numbers_of(SceneFile::text_of(node), 12, 12, file.place(node), node.name());
-  return {{m[0], m[4], m[8], 0}, {m[1], m[5], m[9], 0}, {m[2], m[6], m[10], 0}, {m[3], m[7], m[11], 1}};
+  const std::vector<double> m =
+      numbers_of(SceneFile::text_of(node), 12, 12, file.place(node), node.name());
+  return {
+      {m[0], m[4], m[8], 0}, {m[1], m[5], m[9], 0}, {m[2], m[6], m[10], 0}, {m[3], m[7], m[11], 1}};
 }
 
 // --- Lights ---
 
 bool is_light(std::string_view name) {
-  constexpr std::string_view names[] = {"PointLight",   "SpotLight",     "DirectionalLight", "DistantLight",
-                                        "AmbientLight", "TriangleLight", "QuadLight"};
+  constexpr std::string_view names[] = {"PointLight",   "SpotLight",    "DirectionalLight",
+                                        "DistantLight", "AmbientLight", "TriangleLight",
+                                        "QuadLight"};
   return std::ranges::find(names, name) != std::end(names);
 }
 
@@ -257,16 +276,20 @@ void add_light(const LightElement& light, const glm::dmat4& world, Scene& scene)
 // --- Cameras ---
 
 Camera camera_of(const View& view, const FilmSettings& film, const SourceLocation& where) {
-  if (!(view.fov > 0 && view.fov < 179)) throw InputError(where, fmt::format("a field of view of {:.6g} degrees", view.fov));
+  if (!(view.fov > 0 && view.fov < 179))
+    throw InputError(where, fmt::format("a field of view of {:.6g} degrees", view.fov));
   const glm::dvec3 along = view.to - view.from, side = glm::cross(along, view.up);
-  if (!(glm::length(along) > 0) || !(glm::length(side) > 1e-12 * glm::length(along) * glm::length(view.up)))
+  if (!(glm::length(along) > 0) ||
+      !(glm::length(side) > 1e-12 * glm::length(along) * glm::length(view.up)))
     throw InputError(where, "the camera looks nowhere, or along its own up");
   const glm::dvec3 z = glm::normalize(along), x = glm::normalize(side), y = glm::cross(x, z);
   Camera out;
   const glm::dvec3 right = view.is_left_handed ? -x : x;
-  out.world_from_camera = {glm::dvec4(right, 0), glm::dvec4(y, 0), glm::dvec4(z, 0), glm::dvec4(view.from, 1)};
+  out.world_from_camera = {glm::dvec4(right, 0), glm::dvec4(y, 0), glm::dvec4(z, 0),
+                           glm::dvec4(view.from, 1)};
   const double over_height = std::tan(glm::radians(view.fov) / 2);
-  const double narrower = film.width < film.height ? static_cast<double>(film.width) / film.height : 1;
+  const double narrower =
+      film.width < film.height ? static_cast<double>(film.width) / film.height : 1;
   out.projection = PerspectiveProjection{2 * std::atan(over_height * narrower)};
   return out;
 }
@@ -292,7 +315,9 @@ std::vector<Word> words_of_file(std::string_view text, const std::string& file) 
 /// Accepts "-vp" and "--vp", but not "-1".
 std::string_view option_of(std::string_view word) {
   const std::size_t begin = word.find_first_not_of('-');
-  if (begin == 0 || begin == std::string_view::npos || std::isalpha(static_cast<unsigned char>(word[begin])) == 0) return {};
+  if (begin == 0 || begin == std::string_view::npos ||
+      std::isalpha(static_cast<unsigned char>(word[begin])) == 0)
+    return {};
   return word.substr(begin);
 }
 
@@ -327,15 +352,17 @@ ViewerOptions read_ecs(const std::filesystem::path& path, Notes& notes) {
       value = vector_of(numbers(option, 3));
       has_view = true;
     };
-    constexpr std::pair<std::string_view, const char*> lights[] = {{"ambientlight", "AmbientLight"},
-                                                                   {"pointlight", "PointLight"},
-                                                                   {"directionallight", "DirectionalLight"},
-                                                                   {"dirlight", "DirectionalLight"},
-                                                                   {"distantlight", "DistantLight"}};
+    constexpr std::pair<std::string_view, const char*> lights[] = {
+        {"ambientlight", "AmbientLight"},
+        {"pointlight", "PointLight"},
+        {"directionallight", "DirectionalLight"},
+        {"dirlight", "DirectionalLight"},
+        {"distantlight", "DistantLight"}};
     const auto* light = std::ranges::find(lights, name, [](const auto& row) { return row.first; });
     if (name == "i" || name == "input") {
       const Word& name_of_file = next(option);
-      out.files.emplace_back(path.parent_path() / std::string(name_of_file.text), name_of_file.where);
+      out.files.emplace_back(path.parent_path() / std::string(name_of_file.text),
+                             name_of_file.where);
     } else if (name == "vp") {
       sees(view.from);
     } else if (name == "vi") {
@@ -352,7 +379,8 @@ ViewerOptions read_ecs(const std::filesystem::path& path, Notes& notes) {
     } else if (name == "size") {
       const std::vector<double> size = numbers(option, 2);
       for (const double one : size)
-        if (!(one >= 1 && one <= 65536 && one == std::floor(one))) throw InputError(option.where, "is no size of a picture");
+        if (!(one >= 1 && one <= 65536 && one == std::floor(one)))
+          throw InputError(option.where, "is no size of a picture");
       out.size = glm::ivec2(static_cast<int>(size[0]), static_cast<int>(size[1]));
     } else if (light != std::end(lights)) {
       LightElement one;

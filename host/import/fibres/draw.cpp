@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Draws fibres as capsules from each point to the next, coloured by direction, by fibre, or as in the file.
+// Draws fibres as capsules from each point to the next, coloured by direction, by fibre, or as in
+// the file.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -26,12 +27,14 @@ namespace caplet {
 namespace {
 
 enum class FibreColor { direction, fibre, file, scalar };
-// Levels per colour component: the first that gives at most kMostColors materials is used. The last always does.
+// Levels per colour component: the first that gives at most kMostColors materials is used. The last
+// always does.
 constexpr int kSteps[] = {255, 85, 51, 17, 15};
 constexpr std::size_t kMostColors = 16 * 16 * 16;
-constexpr float kThinPart = 1.0F / 700;  // of the extent: the default radius where the format has no usual one
-constexpr double kMelanin = 0.5;         // light brown
-constexpr float kStreamline = 0.2F;      // millimetres
+constexpr float kThinPart =
+    1.0F / 700;  // of the extent: the default radius where the format has no usual one
+constexpr double kMelanin = 0.5;     // light brown
+constexpr float kStreamline = 0.2F;  // millimetres
 
 float radius_asked(const ImportOptions& options, float usual) {
   const std::optional<std::string> text = options.text("radius");
@@ -63,16 +66,21 @@ ValueColors scalar_colors(Scene& scene, const FibreScalars& scalars, const Impor
   if (scalars.name.empty()) {
     constexpr std::size_t most = 20;
     std::vector<std::string> known;
-    for (std::size_t i = 0; i < std::min(most, scalars.names.size()); ++i) known.push_back(caplet::quoted(scalars.names[i]));
-    if (scalars.names.size() > most) known.push_back(fmt::format("and {} more", scalars.names.size() - most));
-    throw InputError({"--color"}, known.empty()
-                                      ? fmt::format("'{}': {} has no scalars", *options.text("color"), scene.source)
-                                      : fmt::format("{} is none of the scalars of {}: {}", caplet::quoted(scalars.wanted),
-                                                    scene.source, fmt::join(known, ", ")));
+    for (std::size_t i = 0; i < std::min(most, scalars.names.size()); ++i)
+      known.push_back(caplet::quoted(scalars.names[i]));
+    if (scalars.names.size() > most)
+      known.push_back(fmt::format("and {} more", scalars.names.size() - most));
+    throw InputError(
+        {"--color"},
+        known.empty()
+            ? fmt::format("'{}': {} has no scalars", *options.text("color"), scene.source)
+            : fmt::format("{} is none of the scalars of {}: {}", caplet::quoted(scalars.wanted),
+                          scene.source, fmt::join(known, ", ")));
   }
   const ValueRange range = range_of(scalars.values);
   if (!range.is_there)
-    throw InputError({"--color"}, fmt::format("{}: there is no value in {}", caplet::quoted(scalars.name), scene.source));
+    throw InputError({"--color"}, fmt::format("{}: there is no value in {}",
+                                              caplet::quoted(scalars.name), scene.source));
   if (options.seen) {
     *options.seen = range;
     options.seen->what = scalars.name;
@@ -84,7 +92,8 @@ ValueColors scalar_colors(Scene& scene, const FibreScalars& scalars, const Impor
 /// Returns the mean of a segment's ends, one of which may have no value.
 double mean_of(float a, float b) {
   if (std::isnan(a)) return static_cast<double>(b);
-  return std::isnan(b) ? static_cast<double>(a) : 0.5 * (static_cast<double>(a) + static_cast<double>(b));
+  return std::isnan(b) ? static_cast<double>(a)
+                       : 0.5 * (static_cast<double>(a) + static_cast<double>(b));
 }
 
 /// The materials of the capsules, in their order, by colour.
@@ -113,8 +122,11 @@ class Colors {
     std::map<std::uint32_t, std::uint32_t> index;
     for (const std::uint32_t key : keys_) {
       const std::uint32_t cell = cell_of(key, *steps);
-      const auto [entry, fresh] = index.try_emplace(cell, narrow<std::uint32_t>(scene_.materials.size()));
-      if (fresh) add_material(glm::dvec3(cell >> 16U, cell >> 8U & 255U, cell & 255U) / static_cast<double>(*steps));
+      const auto [entry, fresh] =
+          index.try_emplace(cell, narrow<std::uint32_t>(scene_.materials.size()));
+      if (fresh)
+        add_material(glm::dvec3(cell >> 16U, cell >> 8U & 255U, cell & 255U) /
+                     static_cast<double>(*steps));
       out.push_back(entry->second);
     }
     return out;
@@ -129,10 +141,13 @@ class Colors {
   }
   void add_material(const glm::dvec3& shown) {
     const std::string name =
-        fmt::format("{} {:.3g} {:.3g} {:.3g}", by_ == FibreColor::direction ? "direction" : "color", shown.x, shown.y, shown.z);
-    // Reflectance stays between 0.05 and 0.85, so that even pure colours reflect some light of every channel.
+        fmt::format("{} {:.3g} {:.3g} {:.3g}", by_ == FibreColor::direction ? "direction" : "color",
+                    shown.x, shown.y, shown.z);
+    // Reflectance stays between 0.05 and 0.85, so that even pure colours reflect some light of
+    // every channel.
     const glm::dvec3 reflectance = by_ == FibreColor::direction ? 0.05 + 0.8 * shown : shown;
-    scene_.materials.push_back({DiffuseMaterial{RgbSpectrum{reflectance}}, name, {scene_.source, 0, 0}});
+    scene_.materials.push_back(
+        {DiffuseMaterial{RgbSpectrum{reflectance}}, name, {scene_.source, 0, 0}});
   }
 
   Scene& scene_;
@@ -140,13 +155,17 @@ class Colors {
   std::vector<std::uint32_t> keys_;  // a colour in steps of 1/255
 };
 
-/// Returns how far along its fibre each point is, from 0 to 1: by length, or by number where the length is 0.
+/// Returns how far along its fibre each point is, from 0 to 1: by length, or by number where the
+/// length is 0.
 std::vector<float> shares_along(const glm::vec3* points, std::size_t count) {
   std::vector<double> way(count, 0);
-  for (std::size_t i = 1; i < count; ++i) way[i] = way[i - 1] + glm::length(glm::dvec3(points[i]) - glm::dvec3(points[i - 1]));
+  for (std::size_t i = 1; i < count; ++i)
+    way[i] = way[i - 1] + glm::length(glm::dvec3(points[i]) - glm::dvec3(points[i - 1]));
   std::vector<float> out(count, 0);
   for (std::size_t i = 1; i < count; ++i)
-    out[i] = static_cast<float>(way.back() > 0 ? way[i] / way.back() : static_cast<double>(i) / static_cast<double>(count - 1));
+    out[i] = static_cast<float>(way.back() > 0
+                                    ? way[i] / way.back()
+                                    : static_cast<double>(i) / static_cast<double>(count - 1));
   return out;
 }
 
@@ -158,15 +177,17 @@ struct Usual {
   const char* unit = "";  // of lengths in the file
 };
 
-Scene scene_of(const Fibres& fibres, const std::filesystem::path& path, const ImportOptions& options, const Usual& usual,
+Scene scene_of(const Fibres& fibres, const std::filesystem::path& path,
+               const ImportOptions& options, const Usual& usual,
                const FibreScalars* scalars = nullptr) {
   Scene scene;
   scene.source = path.string();
   if (fibres.points.empty()) throw InputError({scene.source, 0, 0}, "holds no fibres");
   const std::optional<FibreScalars> asked = scalars_asked(options);
   const FibreColor by = asked ? FibreColor::scalar
-                              : static_cast<FibreColor>(options.choice("color", {"direction", "fibre", "file", "scalar"},
-                                                                       static_cast<std::size_t>(usual.color)));
+                              : static_cast<FibreColor>(options.choice(
+                                    "color", {"direction", "fibre", "file", "scalar"},
+                                    static_cast<std::size_t>(usual.color)));
   const bool as_hair = usual.hair && !options.text("color");
   if (options.text("color") && by == FibreColor::file && fibres.colors.empty())
     throw InputError({"--color"}, "the file has no colours");
@@ -176,7 +197,8 @@ Scene scene_of(const Fibres& fibres, const std::filesystem::path& path, const Im
     high = glm::max(high, p);
   }
   const float extent = glm::length(high - low);
-  const float radius = radius_asked(options, usual.radius > 0 ? usual.radius : std::max(kThinPart * extent, 1e-6F));
+  const float radius =
+      radius_asked(options, usual.radius > 0 ? usual.radius : std::max(kThinPart * extent, 1e-6F));
   const bool own_radii = !fibres.radii.empty() && !options.text("radius");
   const auto radius_at = [&](std::size_t i) {
     const float own = own_radii ? fibres.radii[fibres.radii.size() == 1 ? 0 : i] : 0;
@@ -184,12 +206,14 @@ Scene scene_of(const Fibres& fibres, const std::filesystem::path& path, const Im
   };
   if (as_hair) {
     HairMaterial hair;
-    hair.sigma_a = RgbSpectrum{kMelanin * glm::dvec3(0.419, 0.697, 1.37)};  // absorption of eumelanin: d'Eon et al. 2011
+    hair.sigma_a = RgbSpectrum{
+        kMelanin * glm::dvec3(0.419, 0.697, 1.37)};  // absorption of eumelanin: d'Eon et al. 2011
     scene.materials.push_back({hair, "hair", {scene.source, 0, 0}});
   }
   Colors colors(scene, by);
   ValueColors of_scalar;
-  if (by == FibreColor::scalar) of_scalar = scalar_colors(scene, scalars ? *scalars : *asked, options);
+  if (by == FibreColor::scalar)
+    of_scalar = scalar_colors(scene, scalars ? *scalars : *asked, options);
   CapsulesShape capsules;
   bool tapered = false;
   std::size_t begin = 0;
@@ -215,8 +239,9 @@ Scene scene_of(const Fibres& fibres, const std::filesystem::path& path, const Im
             colors.add(glm::dvec3(fibres.colors[fibres.colors.size() == 1 ? 0 : i]));
             break;
           case FibreColor::scalar:
-            capsules.materials.push_back(of_scalar.of(scalars->of_points ? mean_of(scalars->values[i], scalars->values[next])
-                                                                         : static_cast<double>(scalars->values[f])));
+            capsules.materials.push_back(
+                of_scalar.of(scalars->of_points ? mean_of(scalars->values[i], scalars->values[next])
+                                                : static_cast<double>(scalars->values[f])));
             break;
         }
       }
@@ -244,35 +269,48 @@ Scene scene_of(const Fibres& fibres, const std::filesystem::path& path, const Im
 
 }  // namespace
 
-Scene import_hair(const std::filesystem::path& path, const ImageReader&, const ImportOptions& options) {
-  return scene_of(read_hair(read_file(path, {}), path.string()), path, options, {0, FibreColor::file, "z", true});
+Scene import_hair(const std::filesystem::path& path, const ImageReader&,
+                  const ImportOptions& options) {
+  return scene_of(read_hair(read_file(path, {}), path.string()), path, options,
+                  {0, FibreColor::file, "z", true});
 }
-Scene import_tressfx(const std::filesystem::path& path, const ImageReader&, const ImportOptions& options) {
-  return scene_of(read_tressfx(read_file(path, {}), path.string()), path, options, {0, FibreColor::fibre, "y", true});
+Scene import_tressfx(const std::filesystem::path& path, const ImageReader&,
+                     const ImportOptions& options) {
+  return scene_of(read_tressfx(read_file(path, {}), path.string()), path, options,
+                  {0, FibreColor::fibre, "y", true});
 }
-Scene import_trk(const std::filesystem::path& path, const ImageReader&, const ImportOptions& options) {
+Scene import_trk(const std::filesystem::path& path, const ImageReader&,
+                 const ImportOptions& options) {
   std::optional<FibreScalars> scalars = scalars_asked(options);
   const Fibres fibres = read_trk(read_file(path, {}), path.string(), scalars ? &*scalars : nullptr);
-  return scene_of(fibres, path, options, {kStreamline, FibreColor::direction, "z", false, "mm"}, scalars ? &*scalars : nullptr);
+  return scene_of(fibres, path, options, {kStreamline, FibreColor::direction, "z", false, "mm"},
+                  scalars ? &*scalars : nullptr);
 }
-Scene import_tck(const std::filesystem::path& path, const ImageReader&, const ImportOptions& options) {
+Scene import_tck(const std::filesystem::path& path, const ImageReader&,
+                 const ImportOptions& options) {
   return scene_of(read_tck(read_file(path, {}), path.string()), path, options,
                   {kStreamline, FibreColor::direction, "z", false, "mm"});
 }
-Scene import_trx(const std::filesystem::path& path, const ImageReader&, const ImportOptions& options) {
+Scene import_trx(const std::filesystem::path& path, const ImageReader&,
+                 const ImportOptions& options) {
   std::optional<FibreScalars> scalars = scalars_asked(options);
   const Fibres fibres = read_trx(path, scalars ? &*scalars : nullptr);
-  return scene_of(fibres, path, options, {kStreamline, FibreColor::direction, "z", false}, scalars ? &*scalars : nullptr);
+  return scene_of(fibres, path, options, {kStreamline, FibreColor::direction, "z", false},
+                  scalars ? &*scalars : nullptr);
 }
-Scene import_vtk(const std::filesystem::path& path, const ImageReader&, const ImportOptions& options) {
+Scene import_vtk(const std::filesystem::path& path, const ImageReader&,
+                 const ImportOptions& options) {
   std::optional<FibreScalars> scalars = scalars_asked(options);
   const Fibres fibres = read_vtk(read_file(path, {}), path.string(), scalars ? &*scalars : nullptr);
-  return scene_of(fibres, path, options, {0, FibreColor::direction, "z", false}, scalars ? &*scalars : nullptr);
+  return scene_of(fibres, path, options, {0, FibreColor::direction, "z", false},
+                  scalars ? &*scalars : nullptr);
 }
-Scene import_vtp(const std::filesystem::path& path, const ImageReader&, const ImportOptions& options) {
+Scene import_vtp(const std::filesystem::path& path, const ImageReader&,
+                 const ImportOptions& options) {
   std::optional<FibreScalars> scalars = scalars_asked(options);
   const Fibres fibres = read_vtp(read_file(path, {}), path.string(), scalars ? &*scalars : nullptr);
-  return scene_of(fibres, path, options, {0, FibreColor::direction, "z", false}, scalars ? &*scalars : nullptr);
+  return scene_of(fibres, path, options, {0, FibreColor::direction, "z", false},
+                  scalars ? &*scalars : nullptr);
 }
 
 }  // namespace caplet

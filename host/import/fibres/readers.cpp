@@ -37,14 +37,18 @@ class FileBytes {
   }
   float coordinate(std::size_t offset) const {
     const auto value = at<float>(offset);
-    if (!(std::abs(value) <= largest_number)) fail(offset, "a number is not finite or out of range");
+    if (!(std::abs(value) <= largest_number))
+      fail(offset, "a number is not finite or out of range");
     return value;
   }
-  glm::vec3 point(std::size_t offset) const { return {coordinate(offset), coordinate(offset + 4), coordinate(offset + 8)}; }
+  glm::vec3 point(std::size_t offset) const {
+    return {coordinate(offset), coordinate(offset + 4), coordinate(offset + 8)};
+  }
   /// Checks that the file contains `count` records of `size` bytes.
   void need(std::size_t offset, std::uint64_t count, std::uint64_t size) const {
     if (count > left(offset) / size)
-      fail(offset, fmt::format("{} records of {} bytes are announced; {} bytes are left", count, size, left(offset)));
+      fail(offset, fmt::format("{} records of {} bytes are announced; {} bytes are left", count,
+                               size, left(offset)));
   }
   [[noreturn]] void fail(std::size_t offset, const std::string& message) const {
     throw InputError({path_, 0, 0}, fmt::format("byte {}: {}", offset, message));
@@ -60,11 +64,13 @@ class FileBytes {
 
 Fibres read_hair(std::string_view text, const std::string& path) {
   const FileBytes bytes(text, path);
-  if (!text.starts_with("HAIR")) throw InputError({path, 0, 0}, "is no hair file: it does not begin with 'HAIR'");
+  if (!text.starts_with("HAIR"))
+    throw InputError({path, 0, 0}, "is no hair file: it does not begin with 'HAIR'");
   constexpr std::size_t header = 128;
-  constexpr std::uint32_t has_segments = 1, has_points = 2, has_thickness = 4, has_transparency = 8, has_colors = 16;
-  const auto strands = bytes.at<std::uint32_t>(4), points = bytes.at<std::uint32_t>(8), flags = bytes.at<std::uint32_t>(12),
-             usual_segments = bytes.at<std::uint32_t>(16);
+  constexpr std::uint32_t has_segments = 1, has_points = 2, has_thickness = 4, has_transparency = 8,
+                          has_colors = 16;
+  const auto strands = bytes.at<std::uint32_t>(4), points = bytes.at<std::uint32_t>(8),
+             flags = bytes.at<std::uint32_t>(12), usual_segments = bytes.at<std::uint32_t>(16);
   if ((flags & has_points) == 0) throw InputError({path, 0, 0}, "the file has no points");
   std::size_t at = header;
   Fibres out;
@@ -76,14 +82,18 @@ Fibres read_hair(std::string_view text, const std::string& path) {
     }
     return begin;
   };
-  const std::size_t segments_at = part(has_segments, strands, 2), points_at = part(has_points, points, 12),
+  const std::size_t segments_at = part(has_segments, strands, 2),
+                    points_at = part(has_points, points, 12),
                     thickness_at = part(has_thickness, points, 4);
   part(has_transparency, points, 4);
   const std::size_t colors_at = part(has_colors, points, 12);
   std::uint64_t end = 0;
   for (std::uint64_t i = 0; i < strands; ++i) {
-    end += ((flags & has_segments) != 0 ? bytes.at<std::uint16_t>(segments_at + 2 * i) : usual_segments) + std::uint64_t{1};
-    if (end > points) bytes.fail(segments_at, fmt::format("strand {} goes on beyond the {} points", i + 1, points));
+    end += ((flags & has_segments) != 0 ? bytes.at<std::uint16_t>(segments_at + 2 * i)
+                                        : usual_segments) +
+           std::uint64_t{1};
+    if (end > points)
+      bytes.fail(segments_at, fmt::format("strand {} goes on beyond the {} points", i + 1, points));
     out.ends.push_back(end);
   }
   const auto color = [&](std::size_t offset) {
@@ -92,7 +102,8 @@ Fibres read_hair(std::string_view text, const std::string& path) {
   };
   for (std::uint64_t i = 0; i < end; ++i) {
     out.points.push_back(bytes.point(points_at + 12 * i));
-    if ((flags & has_thickness) != 0) out.radii.push_back(0.5F * bytes.coordinate(thickness_at + 4 * i));
+    if ((flags & has_thickness) != 0)
+      out.radii.push_back(0.5F * bytes.coordinate(thickness_at + 4 * i));
     if ((flags & has_colors) != 0) out.colors.push_back(color(colors_at + 12 * i));
   }
   if ((flags & has_thickness) == 0) out.radii = {0.5F * bytes.coordinate(20)};
@@ -104,13 +115,16 @@ Fibres read_tressfx(std::string_view text, const std::string& path) {
   const FileBytes bytes(text, path);
   const auto version = bytes.at<float>(0);
   if (!(version >= 4 && version < 5))
-    throw InputError({path, 0, 0}, fmt::format("is no TressFX file of version 4 (its version is {})", version));
-  const auto strands = bytes.at<std::uint32_t>(4), vertices = bytes.at<std::uint32_t>(8), positions = bytes.at<std::uint32_t>(12);
+    throw InputError({path, 0, 0},
+                     fmt::format("is no TressFX file of version 4 (its version is {})", version));
+  const auto strands = bytes.at<std::uint32_t>(4), vertices = bytes.at<std::uint32_t>(8),
+             positions = bytes.at<std::uint32_t>(12);
   if (vertices < 2) bytes.fail(8, fmt::format("{} vertices a strand", vertices));
   bytes.need(positions, std::uint64_t{strands} * vertices, 16);
   Fibres out;
   for (std::uint64_t i = 0; i < strands; ++i) {
-    for (std::uint64_t k = 0; k < vertices; ++k) out.points.push_back(bytes.point(positions + 16 * (i * vertices + k)));
+    for (std::uint64_t k = 0; k < vertices; ++k)
+      out.points.push_back(bytes.point(positions + 16 * (i * vertices + k)));
     out.ends.push_back(out.points.size());
   }
   return out;
@@ -118,13 +132,15 @@ Fibres read_tressfx(std::string_view text, const std::string& path) {
 
 namespace {
 
-/// TrackVis measures points in millimetres from the corner of the first voxel, along the axes of voxel_order. The matrix maps
-/// voxel indices, which count from voxel centres, along its own axes, to RAS+.
+/// TrackVis measures points in millimetres from the corner of the first voxel, along the axes of
+/// voxel_order. The matrix maps voxel indices, which count from voxel centres, along its own axes,
+/// to RAS+.
 glm::dmat4 ras_from_trk(const FileBytes& bytes, std::string_view text) {
   glm::dmat4 ras_from_voxel(1);
   for (int row = 0; row < 4; ++row)
     for (int column = 0; column < 4; ++column)
-      ras_from_voxel[column][row] = static_cast<double>(bytes.at<float>(440 + static_cast<std::size_t>(4 * (4 * row + column))));
+      ras_from_voxel[column][row] = static_cast<double>(
+          bytes.at<float>(440 + static_cast<std::size_t>(4 * (4 * row + column))));
   glm::dvec3 size;
   glm::ivec3 dimension;
   for (int k = 0; k < 3; ++k) {
@@ -133,7 +149,8 @@ glm::dmat4 ras_from_trk(const FileBytes& bytes, std::string_view text) {
   }
   if (ras_from_voxel[3][3] == 0) return glm::dmat4(1);  // the file has no matrix
   for (std::size_t i = 0; i < 16; ++i)
-    if (!std::isfinite(bytes.at<float>(440 + 4 * i))) bytes.fail(440 + 4 * i, "a number of the matrix is not finite");
+    if (!std::isfinite(bytes.at<float>(440 + 4 * i)))
+      bytes.fail(440 + 4 * i, "a number of the matrix is not finite");
   for (int k = 0; k < 3; ++k)
     if (!(size[k] > 0)) bytes.fail(12, "a voxel's size is not positive");
   // This finds the world axis that each voxel axis runs along, and whether it runs against it.
@@ -147,7 +164,8 @@ glm::dmat4 ras_from_trk(const FileBytes& bytes, std::string_view text) {
       for (int row = 0; row < 3; ++row) {
         const double length = glm::length(glm::dvec3(ras_from_voxel[column]));
         const double part = length > 0 ? std::abs(ras_from_voxel[column][row]) / length : 0;
-        if (!taken.at(static_cast<std::size_t>(row)) && axis.at(static_cast<std::size_t>(column)) == 0 && part > best) {
+        if (!taken.at(static_cast<std::size_t>(row)) &&
+            axis.at(static_cast<std::size_t>(column)) == 0 && part > best) {
           best = part;
           best_column = column;
           best_row = row;
@@ -163,8 +181,10 @@ glm::dmat4 ras_from_trk(const FileBytes& bytes, std::string_view text) {
   glm::dmat4 voxel_from_point(0);
   for (int k = 0; k < 3; ++k) {
     const std::size_t letter = names.find(letters[static_cast<std::size_t>(k)]);
-    const int world = letter == std::string_view::npos ? axis.at(static_cast<std::size_t>(k)) : static_cast<int>(letter % 3) + 1;
-    const bool backwards = letter == std::string_view::npos ? against.at(static_cast<std::size_t>(k)) : letter >= 3;
+    const int world = letter == std::string_view::npos ? axis.at(static_cast<std::size_t>(k))
+                                                       : static_cast<int>(letter % 3) + 1;
+    const bool backwards =
+        letter == std::string_view::npos ? against.at(static_cast<std::size_t>(k)) : letter >= 3;
     int column = 0;
     while (column < 2 && axis.at(static_cast<std::size_t>(column)) != world) ++column;
     const bool flipped = backwards != against.at(static_cast<std::size_t>(column));
@@ -175,8 +195,8 @@ glm::dmat4 ras_from_trk(const FileBytes& bytes, std::string_view text) {
   return ras_from_voxel * voxel_from_point;
 }
 
-/// One of TrackVis' ten names of 20 bytes, as nibabel writes them: the name, a NUL, and the number of columns where there are
-/// several.
+/// One of TrackVis' ten names of 20 bytes, as nibabel writes them: the name, a NUL, and the number
+/// of columns where there are several.
 struct TrkArray {
   std::string name;
   std::size_t columns = 0;  // 0: no name
@@ -195,9 +215,10 @@ TrkArray trk_array(std::string_view field) {
   return out;
 }
 
-/// Returns which of the `count` columns whose names stand at `at` is requested, or -1. Columns without a name are called
-/// `otherwise` and a number.
-int trk_column(std::string_view text, std::size_t at, int count, const char* otherwise, bool of_points, FibreScalars& scalars) {
+/// Returns which of the `count` columns whose names stand at `at` is requested, or -1. Columns
+/// without a name are called `otherwise` and a number.
+int trk_column(std::string_view text, std::size_t at, int count, const char* otherwise,
+               bool of_points, FibreScalars& scalars) {
   int begin = 0, found = -1;
   for (std::size_t i = 0; i < 10 && begin < count; ++i) {
     const TrkArray array = trk_array(text.substr(at + 20 * i, 20));
@@ -227,9 +248,11 @@ int FibreScalars::take(const std::string& array, std::size_t components, bool ar
 Fibres read_trk(std::string_view text, const std::string& path, FibreScalars* scalars_wanted) {
   FileBytes bytes(text, path);
   constexpr std::size_t header = 1000;
-  if (!text.starts_with("TRACK")) throw InputError({path, 0, 0}, "is no TrackVis file: it does not begin with 'TRACK'");
+  if (!text.starts_with("TRACK"))
+    throw InputError({path, 0, 0}, "is no TrackVis file: it does not begin with 'TRACK'");
   bytes.set_swapped(bytes.at<std::int32_t>(996) != static_cast<std::int32_t>(header));
-  if (bytes.at<std::int32_t>(996) != static_cast<std::int32_t>(header)) bytes.fail(996, "the header's size is not 1000");
+  if (bytes.at<std::int32_t>(996) != static_cast<std::int32_t>(header))
+    bytes.fail(996, "the header's size is not 1000");
   const auto scalars = bytes.at<std::int16_t>(36), properties = bytes.at<std::int16_t>(238);
   if (scalars < 0 || properties < 0) bytes.fail(36, "a number of scalars is negative");
   const glm::dmat4 ras = ras_from_trk(bytes, text);
@@ -248,12 +271,17 @@ Fibres read_trk(std::string_view text, const std::string& path, FibreScalars* sc
     for (std::int32_t i = 0; i < count; ++i, at += stride) {
       const glm::dvec3 p(ras * glm::dvec4(glm::dvec3(bytes.point(at)), 1));
       for (int k = 0; k < 3; ++k)
-        if (!(std::abs(p[k]) <= static_cast<double>(largest_number))) bytes.fail(at, "the point is out of range in the world");
+        if (!(std::abs(p[k]) <= static_cast<double>(largest_number)))
+          bytes.fail(at, "the point is out of range in the world");
       out.points.emplace_back(p);
-      if (scalar >= 0) scalars_wanted->values.push_back(bytes.at<float>(at + 12 + 4 * static_cast<std::size_t>(scalar)));
+      if (scalar >= 0)
+        scalars_wanted->values.push_back(
+            bytes.at<float>(at + 12 + 4 * static_cast<std::size_t>(scalar)));
     }
     bytes.need(at, static_cast<std::uint64_t>(properties), 4);
-    if (property >= 0) scalars_wanted->values.push_back(bytes.at<float>(at + 4 * static_cast<std::size_t>(property)));
+    if (property >= 0)
+      scalars_wanted->values.push_back(
+          bytes.at<float>(at + 4 * static_cast<std::size_t>(property)));
     at += 4 * static_cast<std::size_t>(properties);
     out.ends.push_back(out.points.size());
   }
@@ -279,29 +307,38 @@ Fibres read_tck(std::string_view text, const std::string& path) {
       if (value == "Float32BE" || value == "Float64BE")
         bytes.set_swapped(true);
       else if (value != "Float32LE" && value != "Float64LE")
-        throw InputError({path, line, 0}, quoted(value) + " is no type of data that is read (Float32 or Float64, LE or BE)");
+        throw InputError(
+            {path, line, 0},
+            quoted(value) + " is no type of data that is read (Float32 or Float64, LE or BE)");
       wide = value.starts_with("Float64");
     } else if (one.substr(0, colon) == "file") {
-      if (!value.starts_with(". ")) throw InputError({path, line, 0}, "data in another file are not read");
-      const auto [end, error] = std::from_chars(value.data() + 2, value.data() + value.size(), offset);
-      if (error != std::errc()) throw InputError({path, line, 0}, quoted(value) + " is no place in the file");
+      if (!value.starts_with(". "))
+        throw InputError({path, line, 0}, "data in another file are not read");
+      const auto [end, error] =
+          std::from_chars(value.data() + 2, value.data() + value.size(), offset);
+      if (error != std::errc())
+        throw InputError({path, line, 0}, quoted(value) + " is no place in the file");
     }
   }
   if (offset == 0) offset = static_cast<std::size_t>(rest.data() - text.data());
   const std::size_t size = wide ? 8 : 4;
   Fibres out;
   for (std::size_t at = offset;; at += 3 * size) {
-    if (bytes.left(at) < 3 * size) throw InputError({path, 0, 0}, "the file ends without the infinite point that ends tracks");
+    if (bytes.left(at) < 3 * size)
+      throw InputError({path, 0, 0}, "the file ends without the infinite point that ends tracks");
     std::array<double, 3> p{};
     for (std::size_t k = 0; k < 3; ++k)
-      p.at(k) = wide ? bytes.at<double>(at + 8 * k) : static_cast<double>(bytes.at<float>(at + 4 * k));
+      p.at(k) =
+          wide ? bytes.at<double>(at + 8 * k) : static_cast<double>(bytes.at<float>(at + 4 * k));
     if (std::isnan(p[0]) || std::isinf(p[0])) {
-      if (out.points.size() > (out.ends.empty() ? 0 : out.ends.back())) out.ends.push_back(out.points.size());
+      if (out.points.size() > (out.ends.empty() ? 0 : out.ends.back()))
+        out.ends.push_back(out.points.size());
       if (std::isinf(p[0])) return out;
       continue;
     }
     for (const double value : p)
-      if (!(std::abs(value) <= static_cast<double>(largest_number))) bytes.fail(at, "a number is not finite or out of range");
+      if (!(std::abs(value) <= static_cast<double>(largest_number)))
+        bytes.fail(at, "a number is not finite or out of range");
     out.points.emplace_back(glm::dvec3(p[0], p[1], p[2]));
   }
 }

@@ -39,7 +39,9 @@ class VtkReader {
       else if (section == "LINES")
         lines();
       else if (section == "VERTICES" || section == "POLYGONS" || section == "TRIANGLE_STRIPS")
-        cells([this, &section](const std::vector<std::int64_t>&) { ++(section == "VERTICES" ? before_lines_ : after_lines_); });
+        cells([this, &section](const std::vector<std::int64_t>&) {
+          ++(section == "VERTICES" ? before_lines_ : after_lines_);
+        });
       else if (section == "FIELD")
         field(nullptr);
       else if (section == "METADATA")
@@ -57,7 +59,9 @@ class VtkReader {
   }
 
  private:
-  [[noreturn]] void fail(const std::string& message) const { throw InputError({path_, at_, 0}, message); }
+  [[noreturn]] void fail(const std::string& message) const {
+    throw InputError({path_, at_, 0}, message);
+  }
   std::string_view line() {
     at_ = ++passed_;
     if (text_.empty()) fail("the file ends early");
@@ -115,7 +119,8 @@ class VtkReader {
           if (error != NumberError::none) fail(describe(error, text));
         } else {
           p[k] = wide ? static_cast<float>(raw<double>()) : raw<float>();
-          if (!(std::abs(p[k]) <= largest_number)) fail(fmt::format("point {} is not finite or out of range", i));
+          if (!(std::abs(p[k]) <= largest_number))
+            fail(fmt::format("point {} is not finite or out of range", i));
         }
       }
       points_.push_back(p);
@@ -124,7 +129,8 @@ class VtkReader {
 
   /// Returns whether the next section has this name, without taking it.
   bool next_is(std::string_view name) {
-    return skip() && text_.starts_with(name) && (text_.size() == name.size() || is_space(text_[name.size()]));
+    return skip() && text_.starts_with(name) &&
+           (text_.size() == name.size() || is_space(text_[name.size()]));
   }
   /// Skips what follows the word, up to an empty line.
   void metadata() {
@@ -148,14 +154,17 @@ class VtkReader {
     std::vector<std::int64_t> indices;
     for (std::int64_t i = 0; i < count; ++i) {
       const std::int64_t corners = binary_ ? raw<std::int32_t>() : whole();
-      if (corners < 0 || corners >= size - used) fail(fmt::format("cell {} has more points than are announced", i));
+      if (corners < 0 || corners >= size - used)
+        fail(fmt::format("cell {} has more points than are announced", i));
       used += corners + 1;
       indices.clear();
-      for (std::int64_t k = 0; k < corners; ++k) indices.push_back(binary_ ? raw<std::int32_t>() : whole());
+      for (std::int64_t k = 0; k < corners; ++k)
+        indices.push_back(binary_ ? raw<std::int32_t>() : whole());
       work(indices);
     }
   }
-  /// From version 5 on, offsets give the beginning of each cell in the list of indices, and the end of the last one.
+  /// From version 5 on, offsets give the beginning of each cell in the list of indices, and the end
+  /// of the last one.
   template <class Work>
   void cells_by_offsets(std::int64_t count, std::int64_t size, const Work& work) {
     word();
@@ -165,7 +174,8 @@ class VtkReader {
     std::vector<std::int64_t> indices;
     for (std::size_t i = 0; i + 1 < offsets.size(); ++i) {
       if (offsets[i] < 0 || offsets[i] > offsets[i + 1] || offsets[i + 1] > size)
-        fail(fmt::format("cell {} is from {} to {} of {} indices", i, offsets[i], offsets[i + 1], size));
+        fail(fmt::format("cell {} is from {} to {} of {} indices", i, offsets[i], offsets[i + 1],
+                         size));
       indices.assign(connectivity.begin() + offsets[i], connectivity.begin() + offsets[i + 1]);
       work(indices);
     }
@@ -175,7 +185,9 @@ class VtkReader {
     begin_data();
     std::vector<std::int64_t> out;
     for (std::int64_t i = 0; i < count; ++i)
-      out.push_back(!binary_ ? whole() : type.size == 8 ? raw<std::int64_t>() : raw<std::int32_t>());
+      out.push_back(!binary_         ? whole()
+                    : type.size == 8 ? raw<std::int64_t>()
+                                     : raw<std::int32_t>());
     return out;
   }
 
@@ -217,7 +229,8 @@ class VtkReader {
     for (std::size_t i = 0; i < name.size(); ++i) {
       unsigned code = 0;
       const bool coded = name[i] == '%' && i + 2 < name.size() &&
-                         std::from_chars(name.data() + i + 1, name.data() + i + 3, code, 16).ptr == name.data() + i + 3;
+                         std::from_chars(name.data() + i + 1, name.data() + i + 3, code, 16).ptr ==
+                             name.data() + i + 3;
       out += coded && code >= 0x20 ? static_cast<char>(code) : name[i];
       if (coded && code >= 0x20) i += 2;
     }
@@ -229,14 +242,18 @@ class VtkReader {
     const Type type = type_of(type_name);
     begin_data();
     if (components < 1 || components > 10000) fail(fmt::format("{} components", components));
-    if (count > std::numeric_limits<std::int64_t>::max() / components) fail(fmt::format("{} rows are announced", count));
+    if (count > std::numeric_limits<std::int64_t>::max() / components)
+      fail(fmt::format("{} rows are announced", count));
     if (binary_ && (taken < 0 || type.size == 0)) {
       const auto all = static_cast<std::uint64_t>(count * components);
       const std::uint64_t size = type.size == 0 ? all / 8 + (all % 8 != 0 ? 1 : 0) : all;
-      if (size > text_.size() / std::max<std::size_t>(type.size, 1)) fail("the file ends before what it announces");
+      if (size > text_.size() / std::max<std::size_t>(type.size, 1))
+        fail("the file ends before what it announces");
       if (taken >= 0)
-        for (std::uint64_t i = static_cast<std::uint64_t>(taken); i < all; i += static_cast<std::uint64_t>(components))
-          scalars_->values.push_back((static_cast<unsigned char>(text_[i / 8]) >> (7 - i % 8) & 1) != 0 ? 1.0F : 0.0F);
+        for (std::uint64_t i = static_cast<std::uint64_t>(taken); i < all;
+             i += static_cast<std::uint64_t>(components))
+          scalars_->values.push_back(
+              (static_cast<unsigned char>(text_[i / 8]) >> (7 - i % 8) & 1) != 0 ? 1.0F : 0.0F);
       text_.remove_prefix(size * std::max<std::size_t>(type.size, 1));
       return;
     }
@@ -249,14 +266,17 @@ class VtkReader {
   float any_number() {
     const std::string_view text = word();
     double value = 0;
-    if (!parse_number(text.starts_with('+') ? text.substr(1) : text, value)) fail(quoted(text) + " is not a number");
+    if (!parse_number(text.starts_with('+') ? text.substr(1) : text, value))
+      fail(quoted(text) + " is not a number");
     return static_cast<float>(value);
   }
 
   int take(std::string_view name, std::int64_t components, bool of_points) {
     return components < 1
                ? -1
-               : scalars_->take(plain(name), static_cast<std::size_t>(std::min<std::int64_t>(components, 10000)), of_points);
+               : scalars_->take(plain(name),
+                                static_cast<std::size_t>(std::min<std::int64_t>(components, 10000)),
+                                of_points);
   }
 
   /// Reads "NAME COUNT" and that many arrays. One may be taken if they are of points or cells.
@@ -267,10 +287,12 @@ class VtkReader {
       const std::string_view name = word();
       const std::int64_t components = whole(), rows = whole();
       const std::string_view type = word();
-      if (type == "string" || type == "utf8_string" || type == "variant") fail(quoted(type) + " fields are not read");
+      if (type == "string" || type == "utf8_string" || type == "variant")
+        fail(quoted(type) + " fields are not read");
       const int taken = of_points ? take(name, components, *of_points) : -1;
       if (taken >= 0 && rows != rows_)
-        fail(fmt::format("{} has {} rows; there are {} {}", quoted(name), rows, rows_, *of_points ? "points" : "cells"));
+        fail(fmt::format("{} has {} rows; there are {} {}", quoted(name), rows, rows_,
+                         *of_points ? "points" : "cells"));
       numbers(rows, components, type, taken);
       if (taken >= 0) return;
       if (next_is("METADATA")) {
@@ -280,12 +302,15 @@ class VtkReader {
     }
   }
 
-  /// Reads the attributes of points or of cells to their end, or to the requested one; returns whether it was found.
+  /// Reads the attributes of points or of cells to their end, or to the requested one; returns
+  /// whether it was found.
   bool attributes(bool of_points) {
     rows_ = whole();
-    const std::size_t there = of_points ? points_.size() : before_lines_ + out_.ends.size() + after_lines_;
+    const std::size_t there =
+        of_points ? points_.size() : before_lines_ + out_.ends.size() + after_lines_;
     if (rows_ != static_cast<std::int64_t>(there))
-      fail(fmt::format("numbers of {} {}: there are {}", rows_, of_points ? "points" : "cells", there));
+      fail(fmt::format("numbers of {} {}: there are {}", rows_, of_points ? "points" : "cells",
+                       there));
     while (skip() && !next_is("POINT_DATA") && !next_is("CELL_DATA")) {
       const std::string_view what = word();
       if (what == "METADATA") {
@@ -318,8 +343,12 @@ class VtkReader {
           numbers(rows_, dimension, word(), -1);
         } else {
           const bool is_vector = what == "VECTORS" || what == "NORMALS";
-          const std::int64_t components = is_vector ? 3 : what == "TENSORS" ? 9 : what == "TENSORS6" ? 6 : 1;
-          if (components == 1 && what != "GLOBAL_IDS" && what != "PEDIGREE_IDS" && what != "EDGE_FLAGS")
+          const std::int64_t components = is_vector            ? 3
+                                          : what == "TENSORS"  ? 9
+                                          : what == "TENSORS6" ? 6
+                                                               : 1;
+          if (components == 1 && what != "GLOBAL_IDS" && what != "PEDIGREE_IDS" &&
+              what != "EDGE_FLAGS")
             fail(quoted(what) + " is no section that is read");
           const std::string_view type = word();
           numbers(rows_, components, type, is_vector ? take(name, components, of_points) : -1);
@@ -330,12 +359,14 @@ class VtkReader {
     return false;
   }
 
-  /// Reorders values of points to the fibres' points, and keeps those values of cells that belong to lines.
+  /// Reorders values of points to the fibres' points, and keeps those values of cells that belong
+  /// to lines.
   void place_values() {
     if (scalars_->name.empty()) return;
     std::vector<float> out;
     if (scalars_->of_points) {
-      for (const std::int64_t index : indices_) out.push_back(scalars_->values[static_cast<std::size_t>(index)]);
+      for (const std::int64_t index : indices_)
+        out.push_back(scalars_->values[static_cast<std::size_t>(index)]);
     } else {
       const auto begin = scalars_->values.begin() + static_cast<std::ptrdiff_t>(before_lines_);
       out.assign(begin, begin + std::ssize(out_.ends));
@@ -350,7 +381,8 @@ class VtkReader {
   void lines() {
     cells([this](const std::vector<std::int64_t>& indices) {
       for (const std::int64_t index : indices) {
-        if (index < 0 || index >= std::ssize(points_)) fail(fmt::format("point {}: there are {}", index, points_.size()));
+        if (index < 0 || index >= std::ssize(points_))
+          fail(fmt::format("point {}: there are {}", index, points_.size()));
         out_.points.push_back(points_[static_cast<std::size_t>(index)]);
         if (scalars_) indices_.push_back(index);
       }

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// VTK XML files of PolyData, whose lines are fibres: numbers as text, base64 or appended bytes, plain or compressed by zlib.
+// VTK XML files of PolyData, whose lines are fibres: numbers as text, base64 or appended bytes,
+// plain or compressed by zlib.
 #include <fmt/format.h>
 #include <zlib.h>
 
@@ -31,7 +32,8 @@ std::size_t end_of_xml(std::string_view bytes) {
 std::string xml_of(std::string_view bytes) {
   const std::size_t end = end_of_xml(bytes);
   if (end == std::string_view::npos) return std::string(bytes);
-  return std::string(bytes.substr(0, end + 1)) + (bytes[end - 1] == '/' ? "</VTKFile>" : "</AppendedData></VTKFile>");
+  return std::string(bytes.substr(0, end + 1)) +
+         (bytes[end - 1] == '/' ? "</VTKFile>" : "</AppendedData></VTKFile>");
 }
 
 struct Type {
@@ -45,30 +47,35 @@ double as_double(const char* bytes) {
   std::memcpy(&value, bytes, sizeof value);
   return static_cast<double>(value);
 }
-constexpr Type kTypes[] = {{"Int8", 1, as_double<std::int8_t>},   {"UInt8", 1, as_double<std::uint8_t>},
-                           {"Int16", 2, as_double<std::int16_t>}, {"UInt16", 2, as_double<std::uint16_t>},
-                           {"Int32", 4, as_double<std::int32_t>}, {"UInt32", 4, as_double<std::uint32_t>},
-                           {"Int64", 8, as_double<std::int64_t>}, {"UInt64", 8, as_double<std::uint64_t>},
-                           {"Float32", 4, as_double<float>},      {"Float64", 8, as_double<double>}};
+constexpr Type kTypes[] = {
+    {"Int8", 1, as_double<std::int8_t>},   {"UInt8", 1, as_double<std::uint8_t>},
+    {"Int16", 2, as_double<std::int16_t>}, {"UInt16", 2, as_double<std::uint16_t>},
+    {"Int32", 4, as_double<std::int32_t>}, {"UInt32", 4, as_double<std::uint32_t>},
+    {"Int64", 8, as_double<std::int64_t>}, {"UInt64", 8, as_double<std::uint64_t>},
+    {"Float32", 4, as_double<float>},      {"Float64", 8, as_double<double>}};
 
 class VtpReader {
  public:
   VtpReader(std::string_view bytes, const std::string& path, FibreScalars* scalars)
       : file_(path, xml_of(bytes)), scalars_(scalars) {
-    const std::size_t end = end_of_xml(bytes), begin = end == std::string_view::npos ? end : bytes.find('_', end);
+    const std::size_t end = end_of_xml(bytes),
+                      begin = end == std::string_view::npos ? end : bytes.find('_', end);
     if (begin != std::string_view::npos) appended_ = bytes.substr(begin + 1);
   }
 
   Fibres read() {
     const pugi::xml_node root = file_.root();
     if (std::string_view(root.name()) != "VTKFile") fail(root, "is no XML file of VTK");
-    const std::string_view type = root.attribute("type").value(), order = root.attribute("byte_order").value(),
-                           header = root.attribute("header_type").value(), compressor = root.attribute("compressor").value();
+    const std::string_view type = root.attribute("type").value(),
+                           order = root.attribute("byte_order").value(),
+                           header = root.attribute("header_type").value(),
+                           compressor = root.attribute("compressor").value();
     if (type != "PolyData") fail(root, "only PolyData is read, not " + caplet::quoted(type));
     if (order != "" && order != "LittleEndian" && order != "BigEndian")
       fail(root, caplet::quoted(order) + " is no order of bytes");
     is_swapped_ = order == "BigEndian";
-    if (header != "" && header != "UInt32" && header != "UInt64") fail(root, caplet::quoted(header) + " is no type of headers");
+    if (header != "" && header != "UInt32" && header != "UInt64")
+      fail(root, caplet::quoted(header) + " is no type of headers");
     header_ = header == "UInt64" ? 8 : 4;
     if (compressor != "" && compressor != "vtkZLibDataCompressor")
       fail(root, "what " + caplet::quoted(compressor) + " packed is not read");
@@ -81,7 +88,9 @@ class VtpReader {
   }
 
  private:
-  [[noreturn]] void fail(pugi::xml_node node, const std::string& message) const { throw InputError(file_.place(node), message); }
+  [[noreturn]] void fail(pugi::xml_node node, const std::string& message) const {
+    throw InputError(file_.place(node), message);
+  }
 
   std::uint64_t count_in(pugi::xml_node node, const char* name, std::uint64_t usual) const {
     std::uint64_t value = usual;
@@ -116,32 +125,40 @@ class VtpReader {
     std::string_view from = trimmed_all(array.child_value());
     if (is_appended) {
       const std::uint64_t offset = count_in(array, "offset", 0);
-      if (offset > appended_.size()) fail(array, fmt::format("begins at byte {} of {}", offset, appended_.size()));
+      if (offset > appended_.size())
+        fail(array, fmt::format("begins at byte {} of {}", offset, appended_.size()));
       from = appended_.substr(offset);
     }
     // `begin`: the offset, in letters of base64 or in bytes.
     const auto take = [&](std::size_t begin, std::uint64_t size) {
       const std::string_view rest = from.substr(std::min(begin, from.size()));
-      if (size > rest.size()) fail(array, fmt::format("{} bytes are announced, and {} are there", size, rest.size()));
-      std::optional<std::string> out = is_raw ? std::string(rest.substr(0, size)) : bytes_of_base64(rest, size);
+      if (size > rest.size())
+        fail(array, fmt::format("{} bytes are announced, and {} are there", size, rest.size()));
+      std::optional<std::string> out =
+          is_raw ? std::string(rest.substr(0, size)) : bytes_of_base64(rest, size);
       if (!out) fail(array, "holds a letter that is none of base64");
-      if (out->size() < size) fail(array, fmt::format("{} bytes are announced, and {} are there", size, out->size()));
+      if (out->size() < size)
+        fail(array, fmt::format("{} bytes are announced, and {} are there", size, out->size()));
       return std::move(*out);
     };
     if (!is_packed_) {
       const std::uint64_t size = header_number(take(0, header_), 0);
-      if (size > from.size()) fail(array, fmt::format("{} bytes are announced, and {} are there", size, from.size()));
+      if (size > from.size())
+        fail(array, fmt::format("{} bytes are announced, and {} are there", size, from.size()));
       return take(0, header_ + size).substr(header_);
     }
     const std::uint64_t blocks = header_number(take(0, header_), 0);
     if (blocks == 0) return {};
-    if (blocks > from.size()) fail(array, fmt::format("{} blocks are announced, and {} bytes are there", blocks, from.size()));
+    if (blocks > from.size())
+      fail(array,
+           fmt::format("{} blocks are announced, and {} bytes are there", blocks, from.size()));
     const std::size_t header_size = (3 + blocks) * header_;
     const std::string header = take(0, header_size);
     std::uint64_t packed = 0;
     for (std::uint64_t i = 0; i < blocks; ++i) {
       const std::uint64_t size = header_number(header, 3 + i);
-      if (size > from.size() - packed) fail(array, fmt::format("block {} of {} bytes is longer than the file", i + 1, size));
+      if (size > from.size() - packed)
+        fail(array, fmt::format("block {} of {} bytes is longer than the file", i + 1, size));
       packed += size;
     }
     // The header is encoded as a base64 text of its own.
@@ -152,12 +169,13 @@ class VtpReader {
       const std::uint64_t size = header_number(header, 3 + i), last = header_number(header, 2);
       const std::uint64_t plain = i + 1 == blocks && last != 0 ? last : header_number(header, 1);
       // Deflate compresses at best 1032 to 1.
-      if (plain > 1032 * size + 64) fail(array, fmt::format("{} bytes cannot be packed into {}", plain, size));
+      if (plain > 1032 * size + 64)
+        fail(array, fmt::format("{} bytes cannot be packed into {}", plain, size));
       const std::size_t begin = out.size();
       out.resize(begin + plain);
       auto length = static_cast<uLongf>(plain);
-      if (::uncompress(reinterpret_cast<Bytef*>(out.data() + begin), &length, reinterpret_cast<const Bytef*>(at),
-                       static_cast<uLong>(size)) != Z_OK ||
+      if (::uncompress(reinterpret_cast<Bytef*>(out.data() + begin), &length,
+                       reinterpret_cast<const Bytef*>(at), static_cast<uLong>(size)) != Z_OK ||
           length != plain)
         fail(array, fmt::format("block {} is broken", i + 1));
       at += size;
@@ -170,7 +188,8 @@ class VtpReader {
   }
 
   std::vector<double> numbers(pugi::xml_node array) const {
-    const std::string_view format = array.attribute("format").value(), type_name = array.attribute("type").value();
+    const std::string_view format = array.attribute("format").value(),
+                           type_name = array.attribute("type").value();
     std::vector<double> out;
     if (format == "ascii") {
       each_word(std::string_view(array.child_value()), [&](std::string_view word) {
@@ -180,11 +199,13 @@ class VtpReader {
       });
       return out;
     }
-    if (format != "binary" && format != "appended") fail(array, caplet::quoted(format) + " is no format of numbers");
+    if (format != "binary" && format != "appended")
+      fail(array, caplet::quoted(format) + " is no format of numbers");
     const auto* type = std::ranges::find(kTypes, type_name, &Type::name);
     if (type == std::end(kTypes)) fail(array, caplet::quoted(type_name) + " is no type of numbers");
     std::string bytes = bytes_of(array);
-    if (bytes.size() % type->size != 0) fail(array, fmt::format("{} bytes are no numbers of {}", bytes.size(), type->size));
+    if (bytes.size() % type->size != 0)
+      fail(array, fmt::format("{} bytes are no numbers of {}", bytes.size(), type->size));
     out.reserve(bytes.size() / type->size);
     for (std::size_t i = 0; i < bytes.size(); i += type->size) {
       if (is_swapped_) std::reverse(bytes.data() + i, bytes.data() + i + type->size);
@@ -201,7 +222,8 @@ class VtpReader {
   // --- Pieces ---
 
   void read_piece(pugi::xml_node piece) {
-    const std::uint64_t lines = count_in(piece, "NumberOfLines", 0), points = count_in(piece, "NumberOfPoints", 0);
+    const std::uint64_t lines = count_in(piece, "NumberOfLines", 0),
+                        points = count_in(piece, "NumberOfPoints", 0);
     if (lines == 0) return;
     const pugi::xml_node array = piece.child("Points").child("DataArray");
     if (!array) fail(piece, "<Piece> without points");
@@ -212,13 +234,16 @@ class VtpReader {
       if (!(std::abs(places[i]) <= static_cast<double>(largest_number)))
         fail(array, fmt::format("point {} is not finite or out of range", i / 3));
     const pugi::xml_node of = piece.child("Lines");
-    const std::vector<double> connectivity = numbers(of, "connectivity"), offsets = numbers(of, "offsets");
-    if (offsets.size() != lines) fail(of, fmt::format("{} offsets of {} lines", offsets.size(), lines));
+    const std::vector<double> connectivity = numbers(of, "connectivity"),
+                              offsets = numbers(of, "offsets");
+    if (offsets.size() != lines)
+      fail(of, fmt::format("{} offsets of {} lines", offsets.size(), lines));
     indices_.clear();
     double begin = 0;
     for (const double end : offsets) {
       if (!(end >= begin && end <= static_cast<double>(connectivity.size())))
-        fail(of, fmt::format("a line is from {} to {} of {} indices", begin, end, connectivity.size()));
+        fail(of,
+             fmt::format("a line is from {} to {} of {} indices", begin, end, connectivity.size()));
       for (auto k = static_cast<std::size_t>(begin); k < static_cast<std::size_t>(end); ++k) {
         if (!(connectivity[k] >= 0 && connectivity[k] < static_cast<double>(points)))
           fail(of, fmt::format("point {}: there are {}", connectivity[k], points));
@@ -233,7 +258,8 @@ class VtpReader {
   }
 
   /// Reads the requested scalars: in the first piece by FibreScalars, in others by the same name.
-  void read_scalars(pugi::xml_node piece, std::uint64_t points, std::uint64_t before, std::uint64_t lines) {
+  void read_scalars(pugi::xml_node piece, std::uint64_t points, std::uint64_t before,
+                    std::uint64_t lines) {
     const bool is_first = !looked_;
     looked_ = true;
     if (!is_first && scalars_->name.empty()) return;
@@ -241,7 +267,8 @@ class VtpReader {
       const bool of_points = std::string_view(section.name()) == "PointData";
       if (!of_points && std::string_view(section.name()) != "CellData") continue;
       for (const pugi::xml_node array : section.children("DataArray")) {
-        const std::uint64_t components = std::clamp<std::uint64_t>(count_in(array, "NumberOfComponents", 1), 1, 10000);
+        const std::uint64_t components =
+            std::clamp<std::uint64_t>(count_in(array, "NumberOfComponents", 1), 1, 10000);
         const std::string name = array.attribute("Name").value();
         if (is_first) {
           component_ = scalars_->take(name, components, of_points);
@@ -253,7 +280,8 @@ class VtpReader {
         const std::vector<double> all = numbers(array);
         const auto taken = static_cast<std::uint64_t>(component_);
         const std::uint64_t rows = all.size() / components;
-        if (taken >= components || all.size() % components != 0 || rows < (of_points ? points : before + lines))
+        if (taken >= components || all.size() % components != 0 ||
+            rows < (of_points ? points : before + lines))
           fail(array, fmt::format("{} rows of {} numbers are too few", rows, components));
         const auto add = [&](std::uint64_t row) {
           scalars_->values.push_back(static_cast<float>(all[row * components + taken]));
@@ -265,7 +293,9 @@ class VtpReader {
         return;
       }
     }
-    if (!is_first) fail(piece, "<Piece> without the numbers " + caplet::quoted(array_) + " that the first one has");
+    if (!is_first)
+      fail(piece,
+           "<Piece> without the numbers " + caplet::quoted(array_) + " that the first one has");
   }
 
   XmlFile file_;

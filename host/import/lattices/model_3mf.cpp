@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// 3MF packages (Core Specification 1.3): objects of triangles and components, placed by build items; colours of base materials
-// and colour groups (Materials Extension); other parts by path (Production Extension).
+// 3MF packages (Core Specification 1.3): objects of triangles and components, placed by build
+// items; colours of base materials and colour groups (Materials Extension); other parts by path
+// (Production Extension).
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -39,7 +40,9 @@ pugi::xml_attribute attribute(pugi::xml_node node, std::string_view name) {
   return {};
 }
 
-void Part::fail(pugi::xml_node node, const std::string& message) const { throw InputError(file.place(node), message); }
+void Part::fail(pugi::xml_node node, const std::string& message) const {
+  throw InputError(file.place(node), message);
+}
 
 std::optional<std::uint32_t> Part::whole_if(pugi::xml_node node, std::string_view name) const {
   const pugi::xml_attribute given = attribute(node, name);
@@ -59,7 +62,8 @@ float Part::number(pugi::xml_node node, std::string_view name) const {
   if (!given) fail(node, std::string(node.name()) + " needs " + std::string(name));
   float value = 0;
   const NumberError error = parse_float(given.value(), value);
-  if (error != NumberError::none) fail(node, std::string(name) + ": " + describe(error, given.value()));
+  if (error != NumberError::none)
+    fail(node, std::string(name) + ": " + describe(error, given.value()));
   return value;
 }
 std::optional<float> Part::positive_if(pugi::xml_node node, std::string_view name) const {
@@ -72,28 +76,33 @@ glm::dmat4 Part::transform(pugi::xml_node node) const {
   const pugi::xml_attribute given = attribute(node, "transform");
   if (!given) return glm::dmat4(1);
   const std::vector<double> m = numbers_of(given.value(), 12, 12, file.place(node), "transform");
-  return {{m[0], m[1], m[2], 0}, {m[3], m[4], m[5], 0}, {m[6], m[7], m[8], 0}, {m[9], m[10], m[11], 1}};
+  return {
+      {m[0], m[1], m[2], 0}, {m[3], m[4], m[5], 0}, {m[6], m[7], m[8], 0}, {m[9], m[10], m[11], 1}};
 }
 
-std::optional<glm::dvec4> Colors::of(const Part& part, std::optional<std::uint32_t> id, std::optional<std::uint32_t> index,
-                                     pugi::xml_node node) {
+std::optional<glm::dvec4> Colors::of(const Part& part, std::optional<std::uint32_t> id,
+                                     std::optional<std::uint32_t> index, pugi::xml_node node) {
   if (!id) return std::nullopt;
   if (const auto other = part.other_properties.find(*id); other != part.other_properties.end()) {
     if (!has_warned_)
-      Diagnostics().warning(part.file.place(node), "properties of " + other->second + " are not read: what has them is grey");
+      Diagnostics().warning(part.file.place(node), "properties of " + other->second +
+                                                       " are not read: what has them is grey");
     has_warned_ = true;
     return std::nullopt;
   }
   const auto found = part.colors.find(*id);
-  if (found == part.colors.end()) part.fail(node, fmt::format("there is no property group {}", *id));
+  if (found == part.colors.end())
+    part.fail(node, fmt::format("there is no property group {}", *id));
   if (index.value_or(0) >= found->second.size())
-    part.fail(node, fmt::format("property {} of group {}: it has {}", index.value_or(0), *id, found->second.size()));
+    part.fail(node, fmt::format("property {} of group {}: it has {}", index.value_or(0), *id,
+                                found->second.size()));
   return found->second[index.value_or(0)];
 }
 
 std::optional<glm::dvec4> Colors::mean(const std::vector<std::optional<glm::dvec4>>& colors) {
   constexpr double kSteps = 31;
-  if (std::ranges::all_of(colors, [&](const auto& color) { return color == colors[0]; })) return colors[0];
+  if (std::ranges::all_of(colors, [&](const auto& color) { return color == colors[0]; }))
+    return colors[0];
   glm::dvec4 sum(0);
   double count = 0;
   for (const auto& color : colors)
@@ -109,11 +118,12 @@ std::uint32_t Colors::material(const std::optional<glm::dvec4>& color) {
     if (!plain_) plain_ = add_plain_material(scene_);
     return *plain_;
   }
-  const auto [entry, fresh] =
-      materials_.try_emplace({color->r, color->g, color->b}, narrow<std::uint32_t>(scene_.materials.size()));
+  const auto [entry, fresh] = materials_.try_emplace(
+      {color->r, color->g, color->b}, narrow<std::uint32_t>(scene_.materials.size()));
   if (fresh)
-    scene_.materials.push_back(
-        {DiffuseMaterial{RgbSpectrum{glm::dvec3(*color)}}, fmt::format("color {}", materials_.size()), {scene_.source, 0, 0}});
+    scene_.materials.push_back({DiffuseMaterial{RgbSpectrum{glm::dvec3(*color)}},
+                                fmt::format("color {}", materials_.size()),
+                                {scene_.source, 0, 0}});
   return entry->second;
 }
 
@@ -140,7 +150,8 @@ class PackageReader {
 
   Scene read() {
     const Part& root = part(model_name());
-    const glm::dmat4 world = glm::scale(world_from_file(options_, "z"), glm::dvec3(root.millimetres));
+    const glm::dmat4 world =
+        glm::scale(world_from_file(options_, "z"), glm::dvec3(root.millimetres));
     for (const pugi::xml_node item : child(root.file.root(), "build").children())
       if (is(item, "item")) visit(root, item, world, 0);
     place_objects();
@@ -151,7 +162,9 @@ class PackageReader {
   }
 
  private:
-  [[noreturn]] void fail(const std::string& message) const { throw InputError({zip_.path().string(), 0, 0}, message); }
+  [[noreturn]] void fail(const std::string& message) const {
+    throw InputError({zip_.path().string(), 0, 0}, message);
+  }
 
   /// Parsed XML takes more memory than its text: 64 bytes per element, 40 per attribute.
   std::string text_of(const std::string& name) {
@@ -159,7 +172,8 @@ class PackageReader {
     const auto nodes = static_cast<std::uintmax_t>(std::ranges::count(text, '<')),
                attributes = static_cast<std::uintmax_t>(std::ranges::count(text, '='));
     constexpr std::uintmax_t most = std::uintmax_t{3} << 30;
-    if (64 * nodes + 40 * attributes > most) fail(name + ": has more elements than 3 GiB of memory hold");
+    if (64 * nodes + 40 * attributes > most)
+      fail(name + ": has more elements than 3 GiB of memory hold");
     return text;
   }
 
@@ -207,38 +221,47 @@ class PackageReader {
 
   static double unit(const Part& out, pugi::xml_node model) {
     const std::string_view name = attribute(model, "unit").as_string("millimeter");
-    constexpr std::array<std::pair<std::string_view, double>, 6> units{
-        {{"micron", 1e-3}, {"millimeter", 1}, {"centimeter", 10}, {"inch", 25.4}, {"foot", 304.8}, {"meter", 1000}}};
+    constexpr std::array<std::pair<std::string_view, double>, 6> units{{{"micron", 1e-3},
+                                                                        {"millimeter", 1},
+                                                                        {"centimeter", 10},
+                                                                        {"inch", 25.4},
+                                                                        {"foot", 304.8},
+                                                                        {"meter", 1000}}};
     for (const auto& [known, millimetres] : units)
       if (name == known) return millimetres;
     out.fail(model, caplet::quoted(name) + " is no unit of length");
   }
 
   static void check_extensions(const Part& out, pugi::xml_node model) {
-    constexpr std::array<std::string_view, 5> known{"http://schemas.microsoft.com/3dmanufacturing/beamlattice/2017/02",
-                                                    "http://schemas.microsoft.com/3dmanufacturing/beamlattice/balls/2020/07",
-                                                    "http://schemas.microsoft.com/3dmanufacturing/material/2015/02",
-                                                    "http://schemas.microsoft.com/3dmanufacturing/production/2015/06",
-                                                    "http://schemas.microsoft.com/3dmanufacturing/slice/2015/07"};
+    constexpr std::array<std::string_view, 5> known{
+        "http://schemas.microsoft.com/3dmanufacturing/beamlattice/2017/02",
+        "http://schemas.microsoft.com/3dmanufacturing/beamlattice/balls/2020/07",
+        "http://schemas.microsoft.com/3dmanufacturing/material/2015/02",
+        "http://schemas.microsoft.com/3dmanufacturing/production/2015/06",
+        "http://schemas.microsoft.com/3dmanufacturing/slice/2015/07"};
     for (const std::string_view prefix : words_of(attribute(model, "requiredextensions").value())) {
       const std::string space = model.attribute(("xmlns:" + std::string(prefix)).c_str()).value();
       if (std::ranges::find(known, space) == known.end())
-        out.fail(model, "requires the extension " + caplet::quoted(prefix) + " (" + space + "), which is not read");
+        out.fail(model, "requires the extension " + caplet::quoted(prefix) + " (" + space +
+                            "), which is not read");
     }
   }
 
-  static void read_colors(Part& out, pugi::xml_node group, std::string_view element, std::string_view name) {
+  static void read_colors(Part& out, pugi::xml_node group, std::string_view element,
+                          std::string_view name) {
     std::vector<glm::dvec4>& colors = out.colors[out.whole(group, "id")];
     for (const pugi::xml_node node : group.children()) {
       if (!is(node, element)) continue;
       const std::string_view text = attribute(node, name).value();
       std::uint32_t bits = 0;
       const char* end = text.data() + text.size();
-      if ((text.size() != 7 && text.size() != 9) || text[0] != '#' || std::from_chars(text.data() + 1, end, bits, 16).ptr != end)
+      if ((text.size() != 7 && text.size() != 9) || text[0] != '#' ||
+          std::from_chars(text.data() + 1, end, bits, 16).ptr != end)
         out.fail(node, caplet::quoted(text) + " is no color (#RRGGBB or #RRGGBBAA)");
       if (text.size() == 7) bits = (bits << 8U) | 0xffU;
       glm::dvec4 color;
-      for (int k = 0; k < 4; ++k) color[k] = static_cast<double>((bits >> static_cast<unsigned>(24 - 8 * k)) & 0xffU) / 255;
+      for (int k = 0; k < 4; ++k)
+        color[k] = static_cast<double>((bits >> static_cast<unsigned>(24 - 8 * k)) & 0xffU) / 255;
       for (int k = 0; k < 3; ++k) color[k] = decoded_value({}, color[k]);
       colors.push_back(color);
     }
@@ -247,8 +270,10 @@ class PackageReader {
   /// Visits `node`, an item or a component, which names an object.
   void visit(const Part& from, pugi::xml_node node, const glm::dmat4& parent, std::size_t depth) {
     if (depth > kDeepestObject)
-      from.fail(node, fmt::format("lies within more than {} other objects: are there cycles?", kDeepestObject));
-    if (++visited_ > kMostPlaces) from.fail(node, fmt::format("more than {} objects are placed", kMostPlaces));
+      from.fail(node, fmt::format("lies within more than {} other objects: are there cycles?",
+                                  kDeepestObject));
+    if (++visited_ > kMostPlaces)
+      from.fail(node, fmt::format("more than {} objects are placed", kMostPlaces));
     const pugi::xml_attribute path = attribute(node, "path");
     const Part& in = path ? part(path.value()) : from;
     const std::uint32_t id = from.whole(node, "objectid");
@@ -289,10 +314,13 @@ class PackageReader {
   std::vector<Shape> shapes_of(const Part& part, pugi::xml_node object) {
     const pugi::xml_node mesh = child(object, "mesh");
     const std::string given = attribute(object, "name").value();
-    const std::string name = given.empty() ? fmt::format("object {}", part.whole(object, "id")) : given;
+    const std::string name =
+        given.empty() ? fmt::format("object {}", part.whole(object, "id")) : given;
     std::vector<glm::vec3> points;
     for (const pugi::xml_node vertex : child(mesh, "vertices").children())
-      if (is(vertex, "vertex")) points.emplace_back(part.number(vertex, "x"), part.number(vertex, "y"), part.number(vertex, "z"));
+      if (is(vertex, "vertex"))
+        points.emplace_back(part.number(vertex, "x"), part.number(vertex, "y"),
+                            part.number(vertex, "z"));
     std::vector<Shape> shapes;
     add_triangles(part, object, child(mesh, "triangles"), points, name, shapes);
     if (const pugi::xml_node lattice = child(mesh, "beamlattice"))
@@ -300,33 +328,39 @@ class PackageReader {
     return shapes;
   }
 
-  void add_triangles(const Part& part, pugi::xml_node object, pugi::xml_node triangles, const std::vector<glm::vec3>& points,
-                     const std::string& name, std::vector<Shape>& shapes) {
+  void add_triangles(const Part& part, pugi::xml_node object, pugi::xml_node triangles,
+                     const std::vector<glm::vec3>& points, const std::string& name,
+                     std::vector<Shape>& shapes) {
     struct Group {
       TriangleMeshShape mesh;
       std::map<std::uint32_t, std::uint32_t> vertices;  // by the object's indices
     };
     std::map<std::pair<std::uint32_t, double>, Group> groups;  // by material and alpha
-    const std::optional<std::uint32_t> usual_id = part.whole_if(object, "pid"), usual_index = part.whole_if(object, "pindex");
+    const std::optional<std::uint32_t> usual_id = part.whole_if(object, "pid"),
+                                       usual_index = part.whole_if(object, "pindex");
     for (const pugi::xml_node triangle : triangles.children()) {
       if (!is(triangle, "triangle")) continue;
       std::array<std::uint32_t, 3> corners{};
       std::vector<std::optional<glm::dvec4>> colors;
-      constexpr std::array<const char*, 3> vertex_names{"v1", "v2", "v3"}, property_names{"p1", "p2", "p3"};
-      const std::optional<std::uint32_t> own = part.whole_if(triangle, "pid"), id = own ? own : usual_id;
+      constexpr std::array<const char*, 3> vertex_names{"v1", "v2", "v3"},
+          property_names{"p1", "p2", "p3"};
+      const std::optional<std::uint32_t> own = part.whole_if(triangle, "pid"),
+                                         id = own ? own : usual_id;
       std::optional<std::uint32_t> first = part.whole_if(triangle, "p1");
       if (!first) first = usual_index;
       for (std::size_t k = 0; k < 3; ++k) {
         corners.at(k) = part.whole(triangle, vertex_names.at(k));
         if (corners.at(k) >= points.size())
-          part.fail(triangle, fmt::format("{} is vertex {}: there are {}", vertex_names.at(k), corners.at(k), points.size()));
+          part.fail(triangle, fmt::format("{} is vertex {}: there are {}", vertex_names.at(k),
+                                          corners.at(k), points.size()));
         const std::optional<std::uint32_t> index = part.whole_if(triangle, property_names.at(k));
         if (id) colors.push_back(colors_.of(part, id, index ? index : first, triangle));
       }
       const std::optional<glm::dvec4> color = colors.empty() ? std::nullopt : Colors::mean(colors);
       Group& group = groups[{colors_.material(color), color ? color->a : 1.0}];
       for (std::uint32_t& corner : corners) {
-        const auto [entry, fresh] = group.vertices.try_emplace(corner, narrow<std::uint32_t>(group.mesh.positions.size()));
+        const auto [entry, fresh] =
+            group.vertices.try_emplace(corner, narrow<std::uint32_t>(group.mesh.positions.size()));
         if (fresh) group.mesh.positions.push_back(points[corner]);
         corner = entry->second;
       }
@@ -357,7 +391,8 @@ class PackageReader {
 
 }  // namespace
 
-Scene import_3mf(const std::filesystem::path& path, const ImageReader&, const ImportOptions& options) {
+Scene import_3mf(const std::filesystem::path& path, const ImageReader&,
+                 const ImportOptions& options) {
   return PackageReader(path, options).read();
 }
 

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Stores colours of corners in a texture. Every triangle has four texels: with a, b and c in three of them and b + c - a in the
-// fourth, bilinear interpolation between their centres is the linear interpolation of the corners, exactly. Near triangles have
-// near texels (along a Morton curve), so that the coarse levels used for small triangles mix neighbours.
+// Stores colours of corners in a texture. Every triangle has four texels: with a, b and c in three
+// of them and b + c - a in the fourth, bilinear interpolation between their centres is the linear
+// interpolation of the corners, exactly. Near triangles have near texels (along a Morton curve), so
+// that the coarse levels used for small triangles mix neighbours.
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -22,7 +23,8 @@ std::uint64_t interleaved(const glm::dvec3& part) {
   std::uint64_t out = 0;
   for (int k = 0; k < 3; ++k) {
     const auto x = static_cast<std::uint64_t>(std::clamp(part[k], 0.0, 1.0) * 2097151.0);
-    for (unsigned bit = 0; bit < 21; ++bit) out |= (x >> bit & 1) << (3 * bit + static_cast<unsigned>(k));
+    for (unsigned bit = 0; bit < 21; ++bit)
+      out |= (x >> bit & 1) << (3 * bit + static_cast<unsigned>(k));
   }
   return out;
 }
@@ -60,14 +62,17 @@ Block block_of(std::uint32_t number) {
 
 /// Returns the colour that a texture replaces, and the field's name; null for other materials.
 std::pair<Spectrum*, const char*> color_of(Material& material) {
-  if (auto* diffuse = std::get_if<DiffuseMaterial>(&material.model)) return {&diffuse->reflectance, "reflectance"};
-  if (auto* principled = std::get_if<PrincipledMaterial>(&material.model)) return {&principled->base_color, "base_color"};
+  if (auto* diffuse = std::get_if<DiffuseMaterial>(&material.model))
+    return {&diffuse->reflectance, "reflectance"};
+  if (auto* principled = std::get_if<PrincipledMaterial>(&material.model))
+    return {&principled->base_color, "base_color"};
   return {nullptr, ""};
 }
 
 std::optional<glm::vec3> plain_color(const Spectrum& spectrum) {
   if (const auto* rgb = std::get_if<RgbSpectrum>(&spectrum)) return glm::vec3(rgb->rgb);
-  if (const auto* constant = std::get_if<ConstantSpectrum>(&spectrum)) return glm::vec3(static_cast<float>(constant->value));
+  if (const auto* constant = std::get_if<ConstantSpectrum>(&spectrum))
+    return glm::vec3(static_cast<float>(constant->value));
   return std::nullopt;
 }
 
@@ -93,7 +98,8 @@ ImagemapTexture texture_of_corners(TriangleMeshShape& mesh, const std::vector<gl
   image->channels = 3;
   image->floats.assign(3 * width * height, 0.0F);
   const auto put = [&](std::size_t x, std::size_t y, const glm::vec3& color) {
-    for (std::size_t k = 0; k < 3; ++k) image->floats[3 * (y * width + x) + k] = color[static_cast<glm::length_t>(k)];
+    for (std::size_t k = 0; k < 3; ++k)
+      image->floats[3 * (y * width + x) + k] = color[static_cast<glm::length_t>(k)];
   };
   TriangleMeshShape out;
   out.positions.resize(3 * count);
@@ -105,7 +111,8 @@ ImagemapTexture texture_of_corners(TriangleMeshShape& mesh, const std::vector<gl
     const std::uint32_t triangle = order[number];
     const Block block = block_of(number);
     const std::size_t x = 2 * std::size_t{block.x}, y = 2 * std::size_t{block.y};
-    const glm::vec3 a = colors[3 * triangle], b = colors[3 * triangle + 1], c = colors[3 * triangle + 2];
+    const glm::vec3 a = colors[3 * triangle], b = colors[3 * triangle + 1],
+                    c = colors[3 * triangle + 2];
     put(x, y, a);
     put(x + 1, y, b);
     put(x, y + 1, c);
@@ -115,8 +122,9 @@ ImagemapTexture texture_of_corners(TriangleMeshShape& mesh, const std::vector<gl
       out.positions[to] = mesh.positions[from];
       if (!mesh.normals.empty()) out.normals[to] = mesh.normals[from];
       // Rows of the image run down, its coordinates up.
-      out.uvs[to] = {(static_cast<float>(x) + (k == 1 ? 1.5F : 0.5F)) / static_cast<float>(width),
-                     1 - (static_cast<float>(y) + (k == 2 ? 1.5F : 0.5F)) / static_cast<float>(height)};
+      out.uvs[to] = {
+          (static_cast<float>(x) + (k == 1 ? 1.5F : 0.5F)) / static_cast<float>(width),
+          1 - (static_cast<float>(y) + (k == 2 ? 1.5F : 0.5F)) / static_cast<float>(height)};
       out.triangles[triangle][k] = to;
     }
   }
@@ -136,7 +144,8 @@ bool color_corners(Scene& scene, Shape& shape, std::vector<glm::vec3> colors) {
   for (glm::vec3& one : colors) one = glm::min(glm::max(one * *own, glm::vec3(0)), glm::vec3(1));
   auto& mesh = std::get<TriangleMeshShape>(shape.geometry);
   const auto texture = narrow<std::uint32_t>(scene.textures.size());
-  scene.textures.push_back({texture_of_corners(mesh, colors), false, "colours of " + shape.name, shape.where});
+  scene.textures.push_back(
+      {texture_of_corners(mesh, colors), false, "colours of " + shape.name, shape.where});
   material.textures.push_back({field, texture});
   material.name += (material.name.empty() ? "colours of " : " with colours of ") + shape.name;
   shape.material = narrow<std::uint32_t>(scene.materials.size());

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// glTF 2.0 and GLB: nodes, meshes (instanced where nodes share them), metallic-roughness materials, cameras, lights.
+// glTF 2.0 and GLB: nodes, meshes (instanced where nodes share them), metallic-roughness materials,
+// cameras, lights.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -31,7 +32,10 @@ using Json = nlohmann::json;
 class GltfReader {
  public:
   GltfReader(gltf::File file, const ImageReader& reader, const ImportOptions& options)
-      : file_(std::move(file)), json_(file_.json), options_(options), materials_(file_, scene_, reader) {
+      : file_(std::move(file)),
+        json_(file_.json),
+        options_(options),
+        materials_(file_, scene_, reader) {
     scene_.source = file_.path.string();
     scene_.unit = "m";
   }
@@ -64,13 +68,17 @@ class GltfReader {
  private:
   void visit(std::size_t index, const glm::dmat4& parent, std::size_t depth) {
     if (depth > kDeepestChild)
-      file_.fail(fmt::format("node {} lies within more than {} others: are there cycles?", index, kDeepestChild));
-    if (++visited_ > kMostNodes) file_.fail(fmt::format("more than {} nodes are placed", kMostNodes));
+      file_.fail(fmt::format("node {} lies within more than {} others: are there cycles?", index,
+                             kDeepestChild));
+    if (++visited_ > kMostNodes)
+      file_.fail(fmt::format("more than {} nodes are placed", kMostNodes));
     const Json& node = file_.list("nodes")[index];
     const glm::dmat4 world = parent * file_.transform_of(node);
     const std::string name = file_.text(node, "name", "");
-    if (const auto mesh = file_.index(node, "mesh", file_.list("meshes").size(), "mesh")) placed_[*mesh].push_back({world, name});
-    if (const auto camera = file_.index(node, "camera", file_.list("cameras").size(), "camera"); camera && !camera_)
+    if (const auto mesh = file_.index(node, "mesh", file_.list("meshes").size(), "mesh"))
+      placed_[*mesh].push_back({world, name});
+    if (const auto camera = file_.index(node, "camera", file_.list("cameras").size(), "camera");
+        camera && !camera_)
       add_camera(file_.list("cameras")[*camera], world);
     add_light(node, world);
     for (const Json& child : file_.list_of(node, "children"))
@@ -81,9 +89,11 @@ class GltfReader {
     Camera out = scene_.camera;
     if (file_.text(camera, "type", "") == "orthographic") {
       const Json& window = file_.object(camera, "orthographic");
-      const double x = std::abs(file_.number(window, "xmag", 1)), y = std::abs(file_.number(window, "ymag", 1));
+      const double x = std::abs(file_.number(window, "xmag", 1)),
+                   y = std::abs(file_.number(window, "ymag", 1));
       const double height = std::round(scene_.film.width * y / x);
-      if (!(height >= 1 && height <= kHighestPicture)) file_.fail("a camera's xmag and ymag are no window");
+      if (!(height >= 1 && height <= kHighestPicture))
+        file_.fail("a camera's xmag and ymag are no window");
       out.projection = OrthographicProjection{};
       out.screen_window = {-x, x, -y, y};
       scene_.film.height = static_cast<int>(height);
@@ -123,8 +133,10 @@ class GltfReader {
       model.intensity = color;
       model.position = position;
       model.direction = direction;
-      model.total_angle = std::clamp(file_.number(spot, "outerConeAngle", 0.7853981633974483), 1e-3, 1.5707);
-      model.falloff_start_angle = std::clamp(file_.number(spot, "innerConeAngle", 0), 0.0, model.total_angle);
+      model.total_angle =
+          std::clamp(file_.number(spot, "outerConeAngle", 0.7853981633974483), 1e-3, 1.5707);
+      model.falloff_start_angle =
+          std::clamp(file_.number(spot, "innerConeAngle", 0), 0.0, model.total_angle);
       light.model = model;
     } else {
       file_.fail("a light of type '" + type + "'");
@@ -155,7 +167,8 @@ class GltfReader {
       object.where = {scene_.source, 0, 0};
       object.shapes = std::move(shapes);
       for (const Placed& place : places)
-        scene_.instances.push_back({narrow<std::uint32_t>(scene_.objects.size()), place.world, object.where});
+        scene_.instances.push_back(
+            {narrow<std::uint32_t>(scene_.objects.size()), place.world, object.where});
       scene_.objects.push_back(std::move(object));
     }
   }
@@ -166,9 +179,11 @@ class GltfReader {
     for (const Json& primitive : file_.list_of(mesh, "primitives")) {
       TriangleMeshShape triangles = mesh_of(primitive);
       if (triangles.triangles.empty()) continue;
-      const gltf::MeshMaterial look = materials_.look(file_.index(primitive, "material", file_.list("materials").size(), "material"));
-      Shape shape = mesh_shape(std::move(triangles), file_.text(mesh, "name", fmt::format("mesh {}", index)), look.material,
-                               {scene_.source, 0, 0});
+      const gltf::MeshMaterial look = materials_.look(
+          file_.index(primitive, "material", file_.list("materials").size(), "material"));
+      Shape shape =
+          mesh_shape(std::move(triangles), file_.text(mesh, "name", fmt::format("mesh {}", index)),
+                     look.material, {scene_.source, 0, 0});
       shape.emission = look.emission;
       shape.alpha = look.alpha;
       color(shape, primitive);
@@ -179,18 +194,19 @@ class GltfReader {
 
   /// Multiplies COLOR_0 by the material's colour.
   void color(Shape& shape, const Json& primitive) {
-    const auto accessor =
-        file_.index(file_.object(primitive, "attributes"), "COLOR_0", file_.list("accessors").size(), "accessor");
+    const auto accessor = file_.index(file_.object(primitive, "attributes"), "COLOR_0",
+                                      file_.list("accessors").size(), "accessor");
     if (!accessor) return;
     const auto& mesh = std::get<TriangleMeshShape>(shape.geometry);
     const std::vector<glm::vec3> given = file_.colors(*accessor);
-    if (given.size() != mesh.positions.size()) file_.fail("a mesh has another number of colours than of positions");
+    if (given.size() != mesh.positions.size())
+      file_.fail("a mesh has another number of colours than of positions");
     std::vector<glm::vec3> corners;
     for (const auto& triangle : mesh.triangles)
       for (const std::uint32_t vertex : triangle) corners.push_back(given[vertex]);
     if (!color_corners(scene_, shape, std::move(corners)))
-      Diagnostics().warning(shape.where,
-                            "the colours of the vertices of '" + shape.name + "' are left out: its material has textures");
+      Diagnostics().warning(shape.where, "the colours of the vertices of '" + shape.name +
+                                             "' are left out: its material has textures");
   }
 
   TriangleMeshShape mesh_of(const Json& primitive) {
@@ -208,9 +224,11 @@ class GltfReader {
     const std::size_t count = mesh.positions.size();
     if (const auto normals = file_.index(attributes, "NORMAL", accessors, "accessor"))
       mesh.normals = file_.vectors<glm::vec3>(*normals);
-    if (const auto uvs = file_.index(attributes, "TEXCOORD_0", accessors, "accessor")) mesh.uvs = file_.vectors<glm::vec2>(*uvs);
+    if (const auto uvs = file_.index(attributes, "TEXCOORD_0", accessors, "accessor"))
+      mesh.uvs = file_.vectors<glm::vec2>(*uvs);
     for (glm::vec2& uv : mesh.uvs) uv.y = 1 - uv.y;  // glTF's v starts at the top
-    if ((!mesh.normals.empty() && mesh.normals.size() != count) || (!mesh.uvs.empty() && mesh.uvs.size() != count))
+    if ((!mesh.normals.empty() && mesh.normals.size() != count) ||
+        (!mesh.uvs.empty() && mesh.uvs.size() != count))
       file_.fail("a mesh has another number of normals or texture coordinates than of positions");
     std::vector<std::uint32_t> indices;
     if (const auto accessor = file_.index(primitive, "indices", accessors, "accessor"))
@@ -223,7 +241,8 @@ class GltfReader {
     return mesh;
   }
 
-  static void add_triangles(const std::vector<std::uint32_t>& indices, double mode, TriangleMeshShape& mesh) {
+  static void add_triangles(const std::vector<std::uint32_t>& indices, double mode,
+                            TriangleMeshShape& mesh) {
     if (mode == 4)
       for (std::size_t i = 0; i + 2 < indices.size(); i += 3)
         mesh.triangles.push_back({indices[i], indices[i + 1], indices[i + 2]});
@@ -231,7 +250,8 @@ class GltfReader {
       for (std::size_t i = 0; i + 2 < indices.size(); ++i)
         mesh.triangles.push_back({indices[i], indices[i + 1 + i % 2], indices[i + 2 - i % 2]});
     else
-      for (std::size_t i = 1; i + 1 < indices.size(); ++i) mesh.triangles.push_back({indices[0], indices[i], indices[i + 1]});
+      for (std::size_t i = 1; i + 1 < indices.size(); ++i)
+        mesh.triangles.push_back({indices[0], indices[i], indices[i + 1]});
   }
 
   gltf::File file_;
@@ -247,7 +267,8 @@ class GltfReader {
 
 }  // namespace
 
-Imported import_gltf(const std::filesystem::path& path, const ImageReader& images, const ImportOptions& options) {
+Imported import_gltf(const std::filesystem::path& path, const ImageReader& images,
+                     const ImportOptions& options) {
   return GltfReader(gltf::File(path, read_file(path, {})), images, options).read();
 }
 

@@ -43,8 +43,10 @@ File::File(std::filesystem::path file, std::string bytes)
   constexpr std::size_t header = 12, chunk_header = 8;
   if (text.size() >= header && word(text, 0) == kGlb) {
     if (word(text, 4) != 2) fail(fmt::format("GLB of version {}", word(text, 4)));
-    if (word(text, 8) > text.size()) fail(fmt::format("{} bytes are announced; the file has {}", word(text, 8), text.size()));
-    std::string_view chunks = text.substr(header, word(text, 8) - std::min<std::size_t>(header, word(text, 8)));
+    if (word(text, 8) > text.size())
+      fail(fmt::format("{} bytes are announced; the file has {}", word(text, 8), text.size()));
+    std::string_view chunks =
+        text.substr(header, word(text, 8) - std::min<std::size_t>(header, word(text, 8)));
     text = {};
     while (chunks.size() >= chunk_header) {
       const std::size_t size = word(chunks, 0);
@@ -74,19 +76,23 @@ File::File(std::filesystem::path file, std::string bytes)
     const std::string_view said = error.what();
     const std::size_t begin = std::min(said.find('\''), said.size() - 1);
     const std::string_view number = said.substr(begin + 1, said.rfind('\'') - begin - 1);
-    throw InputError(place(text.find(number)), "the number " + std::string(number) + " is out of range");
+    throw InputError(place(text.find(number)),
+                     "the number " + std::string(number) + " is out of range");
   }
   if (!json.is_object()) fail("is no glTF file: its JSON is no object");
 }
 
-void File::fail(const std::string& message) const { throw InputError({path.string(), 0, 0}, message); }
+void File::fail(const std::string& message) const {
+  throw InputError({path.string(), 0, 0}, message);
+}
 
 void File::check_version() const {
   const std::string version = text(object(json, "asset"), "version", "");
   if (!version.starts_with("2")) fail("is no glTF 2.0 file (asset.version is '" + version + "')");
   for (const Json& name : list("extensionsRequired")) {
     const std::string text = name.is_string() ? name.get<std::string>() : "?";
-    if (text != "KHR_texture_transform" && text != "KHR_lights_punctual" && !text.starts_with("KHR_materials_"))
+    if (text != "KHR_texture_transform" && text != "KHR_lights_punctual" &&
+        !text.starts_with("KHR_materials_"))
       fail("requires the extension " + text + ", which is not read");
   }
 }
@@ -118,7 +124,8 @@ std::string File::text(const Json& of, const char* name, const std::string& othe
 double File::number_value(const Json& value, const char* what) const {
   if (!value.is_number()) fail(std::string(what) + " is no number");
   const auto number = value.get<double>();
-  if (!(std::abs(number) <= static_cast<double>(largest_number))) fail(std::string(what) + " is not finite or out of range");
+  if (!(std::abs(number) <= static_cast<double>(largest_number)))
+    fail(std::string(what) + " is not finite or out of range");
   return number;
 }
 
@@ -137,13 +144,15 @@ bool File::flag(const Json& of, const char* name, bool otherwise) const {
 }
 
 std::size_t File::index_value(const Json& value, std::size_t count, const char* what) const {
-  if (!value.is_number_unsigned()) fail(std::string("an index of a ") + what + " is no whole number");
+  if (!value.is_number_unsigned())
+    fail(std::string("an index of a ") + what + " is no whole number");
   const auto index = value.get<std::uint64_t>();
   if (index >= count) fail(fmt::format("{} {}: there are {}", what, index, count));
   return index;
 }
 
-std::optional<std::size_t> File::index(const Json& of, const char* name, std::size_t count, const char* what) const {
+std::optional<std::size_t> File::index(const Json& of, const char* name, std::size_t count,
+                                       const char* what) const {
   if (!of.is_object()) fail(std::string(name) + " is asked of what is no object");
   const auto found = of.find(name);
   return found == of.end() ? std::nullopt : std::optional(index_value(*found, count, what));
@@ -154,14 +163,17 @@ glm::dmat4 File::transform_of(const Json& node) const {
   if (!matrix.empty()) {
     if (matrix.size() != 16) fail("a matrix has another number of components than 16");
     glm::dmat4 out;
-    for (int i = 0; i < 16; ++i) out[i / 4][i % 4] = number_value(matrix[static_cast<std::size_t>(i)], "matrix");
+    for (int i = 0; i < 16; ++i)
+      out[i / 4][i % 4] = number_value(matrix[static_cast<std::size_t>(i)], "matrix");
     return out;
   }
-  const auto t = vector(node, "translation", glm::dvec3(0)), s = vector(node, "scale", glm::dvec3(1));
+  const auto t = vector(node, "translation", glm::dvec3(0)),
+             s = vector(node, "scale", glm::dvec3(1));
   const auto r = vector(node, "rotation", glm::dvec4(0, 0, 0, 1));
   if (!(glm::length(r) > 0)) fail("a rotation is no quaternion");
   const glm::dvec4 q = glm::normalize(r);
-  return glm::scale(glm::translate(glm::dmat4(1), t) * glm::mat4_cast(glm::dquat(q.w, q.x, q.y, q.z)), s);
+  return glm::scale(
+      glm::translate(glm::dmat4(1), t) * glm::mat4_cast(glm::dquat(q.w, q.x, q.y, q.z)), s);
 }
 
 std::optional<std::string> File::data_uri(const std::string& uri) const {
@@ -178,7 +190,10 @@ std::filesystem::path File::beside(const std::string& uri) const {
   std::string name;
   for (std::size_t i = 0; i < uri.size(); ++i) {
     const auto hex = [](char c) {
-      return c >= '0' && c <= '9' ? c - '0' : c >= 'a' && c <= 'f' ? c - 'a' + 10 : c >= 'A' && c <= 'F' ? c - 'A' + 10 : -1;
+      return c >= '0' && c <= '9'   ? c - '0'
+             : c >= 'a' && c <= 'f' ? c - 'a' + 10
+             : c >= 'A' && c <= 'F' ? c - 'A' + 10
+                                    : -1;
     };
     if (uri[i] == '%' && i + 2 < uri.size() && hex(uri[i + 1]) >= 0 && hex(uri[i + 2]) >= 0) {
       name += static_cast<char>(hex(uri[i + 1]) * 16 + hex(uri[i + 2]));
@@ -210,7 +225,8 @@ std::string_view File::view(std::size_t index) {
   const std::string_view bytes = buffer(*which);
   const double offset = number(of, "byteOffset", 0), length = number(of, "byteLength", 0);
   if (offset < 0 || length < 0 || offset + length > static_cast<double>(bytes.size()))
-    fail(fmt::format("buffer view {} goes from byte {} to {}; its buffer has {}", index, offset, offset + length, bytes.size()));
+    fail(fmt::format("buffer view {} goes from byte {} to {}; its buffer has {}", index, offset,
+                     offset + length, bytes.size()));
   return bytes.substr(static_cast<std::size_t>(offset), static_cast<std::size_t>(length));
 }
 
@@ -248,13 +264,17 @@ struct File::Elements {
 
 File::Elements File::elements(std::size_t accessor) {
   const Json& of = list("accessors")[accessor];
-  if (of.contains("sparse")) fail(fmt::format("accessor {} is sparse, which is not read", accessor));
+  if (of.contains("sparse"))
+    fail(fmt::format("accessor {} is sparse, which is not read", accessor));
   Elements out;
   out.type = static_cast<int>(std::clamp(number(of, "componentType", 0), 0.0, 65536.0));
-  const std::map<int, std::size_t> sizes = {{5120, 1}, {5121, 1}, {5122, 2}, {5123, 2}, {5125, 4}, {5126, 4}};
+  const std::map<int, std::size_t> sizes = {{5120, 1}, {5121, 1}, {5122, 2},
+                                            {5123, 2}, {5125, 4}, {5126, 4}};
   const auto size = sizes.find(out.type);
-  if (size == sizes.end()) fail(fmt::format("accessor {} has a componentType that there is not", accessor));
-  const std::map<std::string, std::size_t> kinds = {{"SCALAR", 1}, {"VEC2", 2}, {"VEC3", 3}, {"VEC4", 4}};
+  if (size == sizes.end())
+    fail(fmt::format("accessor {} has a componentType that there is not", accessor));
+  const std::map<std::string, std::size_t> kinds = {
+      {"SCALAR", 1}, {"VEC2", 2}, {"VEC3", 3}, {"VEC4", 4}};
   const auto kind = kinds.find(text(of, "type", ""));
   if (kind == kinds.end()) fail(fmt::format("accessor {} has a type that is not read", accessor));
   out.components = kind->second;
@@ -267,17 +287,24 @@ File::Elements File::elements(std::size_t accessor) {
   if (!which) fail(fmt::format("accessor {} names no buffer view", accessor));
   const std::string_view bytes = view(*which);
   const std::size_t element = size->second * out.components;
-  out.stride = static_cast<std::size_t>(std::clamp(number(list("bufferViews")[*which], "byteStride", 0), 0.0, 65536.0));
+  out.stride = static_cast<std::size_t>(
+      std::clamp(number(list("bufferViews")[*which], "byteStride", 0), 0.0, 65536.0));
   if (out.stride == 0) out.stride = element;
   if (out.count > 0 &&
-      (out.stride < element || offset + static_cast<double>(element) > static_cast<double>(bytes.size()) ||
-       (static_cast<double>(bytes.size()) - offset - static_cast<double>(element)) / static_cast<double>(out.stride) + 1 < count))
-    fail(fmt::format("accessor {} announces {} elements beyond its {} bytes", accessor, out.count, bytes.size()));
+      (out.stride < element ||
+       offset + static_cast<double>(element) > static_cast<double>(bytes.size()) ||
+       (static_cast<double>(bytes.size()) - offset - static_cast<double>(element)) /
+                   static_cast<double>(out.stride) +
+               1 <
+           count))
+    fail(fmt::format("accessor {} announces {} elements beyond its {} bytes", accessor, out.count,
+                     bytes.size()));
   out.bytes = bytes.substr(std::min(bytes.size(), static_cast<std::size_t>(offset)));
   // Every primitive has its own vertices, and any number of primitives can share an accessor.
   taken_ += sizeof(float) * out.components * out.count;
   if (taken_ > std::max<std::uintmax_t>(std::uintmax_t{1} << 30, 100 * held_))
-    fail(fmt::format("accessor {}: what the meshes share comes to {} bytes, of {} in the file", accessor, taken_, held_));
+    fail(fmt::format("accessor {}: what the meshes share comes to {} bytes, of {} in the file",
+                     accessor, taken_, held_));
   return out;
 }
 
@@ -301,7 +328,8 @@ template std::vector<glm::vec3> File::vectors<glm::vec3>(std::size_t accessor);
 
 std::vector<glm::vec3> File::colors(std::size_t accessor) {
   const Elements from = elements(accessor);
-  if (from.components != 3 && from.components != 4) fail(fmt::format("accessor {} has another type than colours have", accessor));
+  if (from.components != 3 && from.components != 4)
+    fail(fmt::format("accessor {} has another type than colours have", accessor));
   std::vector<glm::vec3> out(from.count);
   for (std::size_t i = 0; i < from.count; ++i)
     for (glm::length_t k = 0; k < 3; ++k) {
@@ -315,7 +343,8 @@ std::vector<glm::vec3> File::colors(std::size_t accessor) {
 
 std::vector<std::uint32_t> File::indices(std::size_t accessor) {
   const Elements from = elements(accessor);
-  if (from.components != 1 || from.type == 5126) fail(fmt::format("accessor {} has another type than indices have", accessor));
+  if (from.components != 1 || from.type == 5126)
+    fail(fmt::format("accessor {} has another type than indices have", accessor));
   std::vector<std::uint32_t> out(from.count);
   for (std::size_t i = 0; i < from.count; ++i) {
     const double value = from.at(i, 0);

@@ -9,7 +9,10 @@
 namespace caplet {
 
 LineWords::LineWords(std::string_view line, const std::string& file, int number, char comment)
-    : line_(line.substr(0, line.find(comment))), file_(file), number_(number), words_(words_of(line_)) {}
+    : line_(line.substr(0, line.find(comment))),
+      file_(file),
+      number_(number),
+      words_(words_of(line_)) {}
 
 std::string_view LineWords::rest(std::size_t i) const {
   if (i >= words_.size()) return {};
@@ -33,7 +36,9 @@ std::int64_t LineWords::whole(std::size_t i) const {
 }
 
 void LineWords::fail(std::size_t i, const std::string& message) const {
-  const std::size_t column = i < words_.size() ? static_cast<std::size_t>(words_[i].data() - line_.data()) + 1 : line_.size() + 1;
+  const std::size_t column = i < words_.size()
+                                 ? static_cast<std::size_t>(words_[i].data() - line_.data()) + 1
+                                 : line_.size() + 1;
   throw InputError({file_, number_, static_cast<int>(column)}, message);
 }
 
@@ -41,13 +46,16 @@ glm::dmat4 world_from_file(const ImportOptions& options, const char* usual) {
   return glm::dmat4(turned_up(parse_axis(options.text("up").value_or(usual), "--up")));
 }
 
-std::uint32_t MeshImages::texture(const std::filesystem::path& path, bool is_float, bool is_srgb, const SourceLocation& where) {
-  const auto [known, fresh] = textures_.try_emplace({path.string(), (is_float ? 1 : 0) + (is_srgb ? 2 : 0)},
-                                                    narrow<std::uint32_t>(scene_.textures.size()));
+std::uint32_t MeshImages::texture(const std::filesystem::path& path, bool is_float, bool is_srgb,
+                                  const SourceLocation& where) {
+  const auto [known, fresh] =
+      textures_.try_emplace({path.string(), (is_float ? 1 : 0) + (is_srgb ? 2 : 0)},
+                            narrow<std::uint32_t>(scene_.textures.size()));
   if (!fresh) return known->second;
   std::shared_ptr<const TextureImage>& image = images_[{path.string(), is_srgb}];
   if (!image) {
-    const ImageEncoding encoding{is_srgb ? ImageEncoding::Kind::srgb : ImageEncoding::Kind::linear, 1};
+    const ImageEncoding encoding{is_srgb ? ImageEncoding::Kind::srgb : ImageEncoding::Kind::linear,
+                                 1};
     try {
       image = std::make_shared<const TextureImage>(reader_.read_texture(path, encoding));
     } catch (const InputError& error) {
@@ -62,11 +70,13 @@ std::uint32_t MeshImages::texture(const std::filesystem::path& path, bool is_flo
 
 std::uint32_t add_plain_material(Scene& scene) {
   constexpr double kGrey = 0.6;
-  scene.materials.push_back({DiffuseMaterial{ConstantSpectrum{kGrey}}, "default", {scene.source, 0, 0}});
+  scene.materials.push_back(
+      {DiffuseMaterial{ConstantSpectrum{kGrey}}, "default", {scene.source, 0, 0}});
   return narrow<std::uint32_t>(scene.materials.size() - 1);
 }
 
-Shape mesh_shape(TriangleMeshShape mesh, std::string name, std::uint32_t material, const SourceLocation& where) {
+Shape mesh_shape(TriangleMeshShape mesh, std::string name, std::uint32_t material,
+                 const SourceLocation& where) {
   Shape shape;
   shape.geometry = std::move(mesh);
   shape.name = std::move(name);

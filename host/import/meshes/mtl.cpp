@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Materials of Wavefront OBJ files, with the physically based parameters (Pm, Pr) that exporters add.
+// Materials of Wavefront OBJ files, with the physically based parameters (Pm, Pr) that exporters
+// add.
 #include <algorithm>
 #include <cmath>
 
@@ -21,8 +22,8 @@ std::string map_of(const LineWords& words) {
          std::isalpha(static_cast<unsigned char>(words.word(i)[1]))) {
     ++i;
     float ignored = 0;
-    while (i < words.count() &&
-           (parse_float(words.word(i), ignored) == NumberError::none || words.word(i) == "on" || words.word(i) == "off"))
+    while (i < words.count() && (parse_float(words.word(i), ignored) == NumberError::none ||
+                                 words.word(i) == "on" || words.word(i) == "off"))
       ++i;
   }
   std::string name(words.rest(i));
@@ -45,9 +46,11 @@ void statement(const LineWords& words, MtlValues& e) {
   if (what == "Ke") color(e.ke);
   if (what == "Ns") e.ns = std::max(0.0F, words.number(1));
   if (what == "Ni") e.ni = words.number(1);
-  if (what == "d" && words.word(std::min<std::size_t>(1, words.count() - 1)) != "-halo") e.d = words.number(1);
+  if (what == "d" && words.word(std::min<std::size_t>(1, words.count() - 1)) != "-halo")
+    e.d = words.number(1);
   if (what == "Tr") e.d = 1 - words.number(1);
-  if (what == "illum") e.illum = static_cast<int>(std::clamp<std::int64_t>(words.whole(1), -1, 100));
+  if (what == "illum")
+    e.illum = static_cast<int>(std::clamp<std::int64_t>(words.whole(1), -1, 100));
   if (what == "Pm") e.metallic = std::clamp<double>(words.number(1), 0, 1);
   if (what == "Pr") e.roughness = std::clamp<double>(words.number(1), 0, 1);
   if (what == "map_Kd") e.map_kd = map_of(words);
@@ -73,7 +76,8 @@ class Maker {
     material.name = e.name;
     material.where = where;
     const glm::dvec3 kd = glm::min(e.kd, glm::dvec3(1));
-    const bool glass = (e.illum == 4 || e.illum == 6 || e.illum == 7 || e.illum == 9) && e.d < 1 && e.map_d.empty();
+    const bool glass = (e.illum == 4 || e.illum == 6 || e.illum == 7 || e.illum == 9) && e.d < 1 &&
+                       e.map_d.empty();
     const bool shiny = e.metallic || e.roughness || std::max({e.ks.x, e.ks.y, e.ks.z}) > 0;
     const char* color_field = "reflectance";
     if (glass) {
@@ -85,17 +89,21 @@ class Maker {
       PrincipledMaterial model;
       model.base_color = RgbSpectrum{kd};
       model.metallic = e.metallic.value_or(0);
-      // Converts Blinn's exponent to GGX's alpha: it is 2 / alpha^2 - 2 (Walter et al. 2007); roughness is the root of alpha.
+      // Converts Blinn's exponent to GGX's alpha: it is 2 / alpha^2 - 2 (Walter et al. 2007);
+      // roughness is the root of alpha.
       model.roughness = e.roughness.value_or(std::sqrt(std::sqrt(2 / (e.ns + 2))));
       model.eta = std::clamp(e.ni, 1.01, 4.0);
       material.model = model;
       color_field = "base_color";
-      if (is_there(e.map_pm, where)) material.textures.push_back({"metallic", image(e.map_pm, true, where)});
-      if (is_there(e.map_pr, where)) material.textures.push_back({"roughness", image(e.map_pr, true, where)});
+      if (is_there(e.map_pm, where))
+        material.textures.push_back({"metallic", image(e.map_pm, true, where)});
+      if (is_there(e.map_pr, where))
+        material.textures.push_back({"roughness", image(e.map_pr, true, where)});
     } else {
       material.model = DiffuseMaterial{RgbSpectrum{kd}};
     }
-    if (color_field && is_there(e.map_kd, where)) material.textures.push_back({color_field, image(e.map_kd, false, where)});
+    if (color_field && is_there(e.map_kd, where))
+      material.textures.push_back({color_field, image(e.map_kd, false, where)});
     if (!glass && is_there(e.map_d, where)) {
       TextureOperand alpha(1);
       alpha.texture = image(e.map_d, true, where);
@@ -115,11 +123,13 @@ class Maker {
   }
 
  private:
-  /// Models are often distributed without their images or with absolute paths. Such images are left out with a warning.
+  /// Models are often distributed without their images or with absolute paths. Such images are left
+  /// out with a warning.
   bool is_there(const std::string& name, const SourceLocation& where) const {
     if (name.empty()) return false;
     if (caplet::is_there(folder_ / name, where)) return true;
-    Diagnostics().warning(where, "the image '" + (folder_ / name).string() + "' is left out: there is no such file");
+    Diagnostics().warning(
+        where, "the image '" + (folder_ / name).string() + "' is left out: there is no such file");
     return false;
   }
   std::uint32_t image(const std::string& name, bool is_float, const SourceLocation& where) {
@@ -132,7 +142,8 @@ class Maker {
 
 }  // namespace
 
-std::map<std::string, MtlMaterial> read_mtl(const std::filesystem::path& path, const SourceLocation& named_at, Scene& scene,
+std::map<std::string, MtlMaterial> read_mtl(const std::filesystem::path& path,
+                                            const SourceLocation& named_at, Scene& scene,
                                             MeshImages& images) {
   std::optional<TextFile> file;
   try {
@@ -155,12 +166,13 @@ std::map<std::string, MtlMaterial> read_mtl(const std::filesystem::path& path, c
   const std::filesystem::path folder = path.parent_path();
   Maker maker(folder, scene, images);
   std::map<std::string, MtlMaterial> out;
-  for (const MtlValues& entry : entries) out.insert_or_assign(entry.name, maker.make(entry, {path.string(), entry.line, 0}));
+  for (const MtlValues& entry : entries)
+    out.insert_or_assign(entry.name, maker.make(entry, {path.string(), entry.line, 0}));
   return out;
 }
 
-MtlMaterial make_mtl(const MtlValues& values, const SourceLocation& where, const std::filesystem::path& folder, Scene& scene,
-                     MeshImages& images) {
+MtlMaterial make_mtl(const MtlValues& values, const SourceLocation& where,
+                     const std::filesystem::path& folder, Scene& scene, MeshImages& images) {
   return Maker(folder, scene, images).make(values, where);
 }
 

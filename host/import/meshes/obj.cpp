@@ -44,7 +44,8 @@ struct ObjPart {
 
 class ObjReader {
  public:
-  ObjReader(const std::filesystem::path& path, const ImageReader& images, const ImportOptions& options)
+  ObjReader(const std::filesystem::path& path, const ImageReader& images,
+            const ImportOptions& options)
       : path_(path), options_(options), images_(scene_, images) {
     scene_.source = path.string();
   }
@@ -92,11 +93,14 @@ class ObjReader {
       kept_.clear();
     }
     if (thin_faces_ > 0)
-      Diagnostics().warning({scene_.source, first_thin_face_, 0},
-                            fmt::format("{} faces of fewer than three corners are left out", thin_faces_));
+      Diagnostics().warning(
+          {scene_.source, first_thin_face_, 0},
+          fmt::format("{} faces of fewer than three corners are left out", thin_faces_));
     if (left_out_ > 0)
-      Diagnostics().warning({scene_.source, first_left_out_, 0},
-                            fmt::format("{} statements of points, lines, curves and surfaces are left out", left_out_));
+      Diagnostics().warning(
+          {scene_.source, first_left_out_, 0},
+          fmt::format("{} statements of points, lines, curves and surfaces are left out",
+                      left_out_));
   }
 
   void statement(const LineWords& words) {
@@ -118,7 +122,8 @@ class ObjReader {
       start(name_, std::string(words.rest(1)));
     else if (what == "mtllib" && with_materials_)
       library(words);
-    else if (what == "p" || what == "l" || what == "curv" || what == "curv2" || what == "surf" || what == "cstype") {
+    else if (what == "p" || what == "l" || what == "curv" || what == "curv2" || what == "surf" ||
+             what == "cstype") {
       if (left_out_++ == 0) first_left_out_ = line_;
     }
   }
@@ -165,7 +170,8 @@ class ObjReader {
         const auto count = static_cast<std::int64_t>(counts[k]);
         if (!parse_number(field, value)) words.fail(i, quoted(words.word(i)) + " is no corner");
         if (value == 0 || value > count || value < -count)
-          words.fail(i, fmt::format("{}: there are {} before this line", quoted(words.word(i)), count));
+          words.fail(
+              i, fmt::format("{}: there are {} before this line", quoted(words.word(i)), count));
         *fields[k] = value > 0 ? value - 1 : count + value;
       } else if (k == 0) {
         words.fail(i, quoted(words.word(i)) + " is no corner");
@@ -177,11 +183,13 @@ class ObjReader {
   }
 
   std::uint32_t vertex(ObjPart& part, const ObjCorner& c) {
-    const auto [entry, fresh] = part.vertices.try_emplace(c, narrow<std::uint32_t>(part.mesh.positions.size()));
+    const auto [entry, fresh] =
+        part.vertices.try_emplace(c, narrow<std::uint32_t>(part.mesh.positions.size()));
     if (fresh) {
       part.mesh.positions.push_back(positions_[static_cast<std::size_t>(c.position)]);
       part.mesh.uvs.push_back(c.uv >= 0 ? uvs_[static_cast<std::size_t>(c.uv)] : glm::vec2(0));
-      part.mesh.normals.push_back(c.normal >= 0 ? normals_[static_cast<std::size_t>(c.normal)] : glm::vec3(0));
+      part.mesh.normals.push_back(c.normal >= 0 ? normals_[static_cast<std::size_t>(c.normal)]
+                                                : glm::vec3(0));
       part.all_uvs &= c.uv >= 0;
       part.all_normals &= c.normal >= 0;
       const auto at = static_cast<std::size_t>(c.position);
@@ -207,17 +215,21 @@ class ObjReader {
     if (corners_.size() == 3)
       to.mesh.triangles.push_back({corners_[0], corners_[1], corners_[2]});
     else
-      for (const auto& [a, b, c] : triangles_of(places_)) to.mesh.triangles.push_back({corners_[a], corners_[b], corners_[c]});
+      for (const auto& [a, b, c] : triangles_of(places_))
+        to.mesh.triangles.push_back({corners_[a], corners_[b], corners_[c]});
   }
 
   void library(const LineWords& words) {
     const SourceLocation here{scene_.source, line_, 0};
-    const std::filesystem::path file = path_.parent_path() / std::filesystem::path(std::string(words.rest(1)));
+    const std::filesystem::path file =
+        path_.parent_path() / std::filesystem::path(std::string(words.rest(1)));
     if (!is_there(file, here)) {
-      Diagnostics().warning(here, "the materials of '" + file.string() + "' cannot be had: there is no such file");
+      Diagnostics().warning(
+          here, "the materials of '" + file.string() + "' cannot be had: there is no such file");
       return;
     }
-    for (auto& [name, material] : read_mtl(file, here, scene_, images_)) materials_.insert_or_assign(name, material);
+    for (auto& [name, material] : read_mtl(file, here, scene_, images_))
+      materials_.insert_or_assign(name, material);
   }
 
   /// Texture coordinates and normals must be given for all corners or for none.
@@ -234,12 +246,15 @@ class ObjReader {
       complete(*part);
       const SourceLocation where{scene_.source, part->line, 0};
       const auto material = materials_.find(part->material);
-      if (material == materials_.end() && !part->material.empty() && unknown_.insert_or_assign(part->material, true).second)
-        Diagnostics().warning(where, "the material " + caplet::quoted(part->material) + " is in no mtllib: it is grey");
+      if (material == materials_.end() && !part->material.empty() &&
+          unknown_.insert_or_assign(part->material, true).second)
+        Diagnostics().warning(where, "the material " + caplet::quoted(part->material) +
+                                         " is in no mtllib: it is grey");
       if (material == materials_.end() && !plain) plain = add_plain_material(scene_);
       std::string name = part->name.empty() ? path_.stem().string() : part->name;
-      Shape shape = mesh_shape(std::move(part->mesh), std::move(name),
-                               material == materials_.end() ? *plain : material->second.material, where);
+      Shape shape =
+          mesh_shape(std::move(part->mesh), std::move(name),
+                     material == materials_.end() ? *plain : material->second.material, where);
       if (material != materials_.end()) {
         shape.emission = material->second.emission;
         shape.alpha = material->second.alpha;
@@ -255,7 +270,8 @@ class ObjReader {
   void color(const ObjPart& part, Shape& shape) {
     std::vector<glm::vec3> corners;
     for (const auto& triangle : std::get<TriangleMeshShape>(shape.geometry).triangles)
-      for (const std::uint32_t vertex : triangle) corners.push_back(decoded_color(part.colors[vertex], most_color_));
+      for (const std::uint32_t vertex : triangle)
+        corners.push_back(decoded_color(part.colors[vertex], most_color_));
     if (part.material.empty() || !materials_.contains(part.material)) {
       if (!white_) {
         white_ = narrow<std::uint32_t>(scene_.materials.size());
@@ -265,7 +281,8 @@ class ObjReader {
     }
     if (!color_corners(scene_, shape, std::move(corners)))
       Diagnostics().warning(shape.where, "the colours of the vertices are left out: the material " +
-                                             caplet::quoted(part.material) + " has textures or no colour");
+                                             caplet::quoted(part.material) +
+                                             " has textures or no colour");
   }
 
   const std::filesystem::path& path_;
@@ -280,7 +297,8 @@ class ObjReader {
   std::vector<std::uint32_t> corners_;  // of the current face
   std::vector<glm::vec3> places_;
   std::vector<std::string> kept_;
-  std::vector<glm::vec3> positions_, normals_, colors_;  // colours end at the last vertex that has one; -1: none
+  std::vector<glm::vec3> positions_, normals_,
+      colors_;  // colours end at the last vertex that has one; -1: none
   float most_color_ = 0;
   std::optional<std::uint32_t> white_;
   std::vector<glm::vec2> uvs_;
@@ -294,18 +312,22 @@ class ObjReader {
 
 class NoImageFiles : public ImageReader {
  public:
-  EnvironmentImage read_rgb(const std::filesystem::path& path) const override { throw InputError(path.string() + ": no images"); }
+  EnvironmentImage read_rgb(const std::filesystem::path& path) const override {
+    throw InputError(path.string() + ": no images");
+  }
 };
 
 }  // namespace
 
-std::vector<TriangleMeshShape> read_obj_meshes(const std::filesystem::path& path, const SourceLocation&) {
+std::vector<TriangleMeshShape> read_obj_meshes(const std::filesystem::path& path,
+                                               const SourceLocation&) {
   const ImportOptions none;
   const NoImageFiles images;
   return ObjReader(path, images, none).read_meshes();
 }
 
-Scene import_obj(const std::filesystem::path& path, const ImageReader& images, const ImportOptions& options) {
+Scene import_obj(const std::filesystem::path& path, const ImageReader& images,
+                 const ImportOptions& options) {
   return ObjReader(path, images, options).read();
 }
 

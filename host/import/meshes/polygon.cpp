@@ -14,7 +14,8 @@ namespace caplet {
 
 namespace {
 
-constexpr std::size_t kMostEars = 2000;  // corners of a polygon that is cut by ears; the time grows with their square
+constexpr std::size_t kMostEars =
+    2000;  // corners of a polygon that is cut by ears; the time grows with their square
 
 /// Returns twice the area; it is positive where a, b, c are in counter-clockwise order.
 double area(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c) {
@@ -32,7 +33,8 @@ std::vector<std::array<std::uint32_t, 3>> triangles_of(std::span<const glm::vec3
     return out;
   };
   if (count < 4 || count > kMostEars) return fan();
-  // Newell's normal. The polygon is projected along its greatest axis so that it is counter-clockwise.
+  // Newell's normal. The polygon is projected along its greatest axis so that it is
+  // counter-clockwise.
   glm::dvec3 normal(0);
   for (std::uint32_t i = 0; i < count; ++i) {
     const glm::dvec3 a(corners[i] - corners[0]), b(corners[(i + 1) % count] - corners[0]);
@@ -47,7 +49,8 @@ std::vector<std::array<std::uint32_t, 3>> triangles_of(std::span<const glm::vec3
     flat.push_back(normal[axis] > 0 ? p : glm::dvec2(p.y, p.x));
   }
   bool convex = true;
-  for (std::uint32_t i = 0; i < count && convex; ++i) convex = area(flat[i], flat[(i + 1) % count], flat[(i + 2) % count]) >= 0;
+  for (std::uint32_t i = 0; i < count && convex; ++i)
+    convex = area(flat[i], flat[(i + 1) % count], flat[(i + 2) % count]) >= 0;
   if (convex) return fan();
   std::vector<std::uint32_t> left(count);
   std::iota(left.begin(), left.end(), 0U);
@@ -59,9 +62,12 @@ std::vector<std::array<std::uint32_t, 3>> triangles_of(std::span<const glm::vec3
       if (!(area(flat[a], flat[b], flat[c]) > 0)) continue;
       bool empty = true;
       for (const std::uint32_t k : left) {
-        if (k == a || k == b || k == c || flat[k] == flat[a] || flat[k] == flat[b] || flat[k] == flat[c]) continue;
-        empty = empty && !(area(flat[a], flat[b], flat[k]) >= 0 && area(flat[b], flat[c], flat[k]) >= 0 &&
-                           area(flat[c], flat[a], flat[k]) >= 0);
+        if (k == a || k == b || k == c || flat[k] == flat[a] || flat[k] == flat[b] ||
+            flat[k] == flat[c])
+          continue;
+        empty = empty &&
+                !(area(flat[a], flat[b], flat[k]) >= 0 && area(flat[b], flat[c], flat[k]) >= 0 &&
+                  area(flat[c], flat[a], flat[k]) >= 0);
       }
       if (!empty) continue;
       out.push_back({a, b, c});

@@ -24,7 +24,8 @@ namespace {
 
 constexpr std::size_t kHeader = 84, kFacet = 50;  // bytes of binary files
 
-/// Merges corners at the same place into one vertex, so that closed meshes are recognised as closed.
+/// Merges corners at the same place into one vertex, so that closed meshes are recognised as
+/// closed.
 class Welder {
  public:
   explicit Welder(TriangleMeshShape& mesh) : mesh_(mesh) {}
@@ -50,7 +51,8 @@ TriangleMeshShape binary_stl(std::string_view bytes, const std::string& file, st
   Welder vertex(mesh);
   mesh.triangles.reserve(count);
   for (std::size_t i = 0; i < count; ++i) {
-    const char* at = bytes.data() + kHeader + i * kFacet + sizeof(glm::vec3);  // skips the normal, which follows from the corners
+    const char* at = bytes.data() + kHeader + i * kFacet +
+                     sizeof(glm::vec3);  // skips the normal, which follows from the corners
     std::array<glm::vec3, 3> corners;
     static_assert(sizeof corners == 36);
     std::memcpy(corners.data(), at, sizeof corners);
@@ -58,7 +60,9 @@ TriangleMeshShape binary_stl(std::string_view bytes, const std::string& file, st
     for (std::size_t k = 0; k < 3; ++k) {
       for (int axis = 0; axis < 3; ++axis)
         if (!(std::abs(corners[k][axis]) <= largest_number))
-          throw InputError({file, 0, 0}, fmt::format("corner {} of facet {} is not finite or out of range", k + 1, i + 1));
+          throw InputError(
+              {file, 0, 0},
+              fmt::format("corner {} of facet {} is not finite or out of range", k + 1, i + 1));
       triangle[k] = vertex(corners[k]);
     }
     mesh.triangles.push_back(triangle);
@@ -85,10 +89,11 @@ TriangleMeshShape text_stl(std::string_view text, const std::string& file) {
       loop.push_back(vertex({words.number(1), words.number(2), words.number(3)}));
     } else if (words.word(0) == "endloop") {
       if (loop.size() < 3) words.fail(0, "a facet has three corners");
-      for (std::size_t i = 2; i < loop.size(); ++i) mesh.triangles.push_back({loop[0], loop[i - 1], loop[i]});
+      for (std::size_t i = 2; i < loop.size(); ++i)
+        mesh.triangles.push_back({loop[0], loop[i - 1], loop[i]});
       open = false;
-    } else if (words.word(0) != "solid" && words.word(0) != "facet" && words.word(0) != "endfacet" &&
-               words.word(0) != "endsolid") {
+    } else if (words.word(0) != "solid" && words.word(0) != "facet" &&
+               words.word(0) != "endfacet" && words.word(0) != "endsolid") {
       words.fail(0, quoted(words.word(0)) + " is no statement of an STL file");
     }
   }
@@ -102,13 +107,16 @@ TriangleMeshShape parse_either_stl(std::string_view bytes, const std::string& fi
     std::memcpy(&count, bytes.data() + kHeader - sizeof count, sizeof count);
     const std::uint64_t announced = kHeader + std::uint64_t{count} * kFacet;
     if (announced == bytes.size()) return binary_stl(bytes, file, count);
-    const bool text = bytes.starts_with("solid") && bytes.substr(0, 1024).find("facet") != std::string_view::npos;
+    const bool text =
+        bytes.starts_with("solid") && bytes.substr(0, 1024).find("facet") != std::string_view::npos;
     if (!text)
-      throw InputError({file, 0, 0}, fmt::format("{} facets are announced, which take {} bytes; the file has {}", count,
-                                                 announced, bytes.size()));
+      throw InputError({file, 0, 0},
+                       fmt::format("{} facets are announced, which take {} bytes; the file has {}",
+                                   count, announced, bytes.size()));
   }
   if (!bytes.starts_with("solid"))
-    throw InputError({file, 1, 1}, "is no STL file: it neither begins with 'solid' nor has a header");
+    throw InputError({file, 1, 1},
+                     "is no STL file: it neither begins with 'solid' nor has a header");
   return text_stl(bytes, file);
 }
 
@@ -121,12 +129,15 @@ class OffReader {
     std::string kind(word());
     if (!kind.ends_with("OFF")) fail("is no OFF file");
     kind.resize(kind.size() - 3);
-    if (kind.find_first_of("4n") != std::string::npos) fail("points of other than three coordinates are not read");
-    // Normals and texture coordinates are skipped: normals precede the colours, texture coordinates follow them.
+    if (kind.find_first_of("4n") != std::string::npos)
+      fail("points of other than three coordinates are not read");
+    // Normals and texture coordinates are skipped: normals precede the colours, texture coordinates
+    // follow them.
     const std::size_t extra = kind.find('N') != std::string::npos ? 3U : 0U;
     const bool has_colors = colors_ && kind.find('C') != std::string::npos;
     std::vector<glm::vec3> of_vertices, of_triangles;
-    bool all_vertices = has_colors, all_faces = colors_ && !has_colors;  // whether all have a colour
+    bool all_vertices = has_colors,
+         all_faces = colors_ && !has_colors;  // whether all have a colour
     const std::int64_t vertices = whole(), faces = whole();
     whole();
     if (vertices < 0 || faces < 0) fail("a count is negative");
@@ -150,11 +161,13 @@ class OffReader {
       std::vector<glm::vec3> places;
       for (std::int64_t k = 0; k < corners; ++k) {
         const std::int64_t index = whole();
-        if (index < 0 || index >= vertices) fail(fmt::format("vertex {}: there are {}", index, vertices));
+        if (index < 0 || index >= vertices)
+          fail(fmt::format("vertex {}: there are {}", index, vertices));
         around.push_back(static_cast<std::uint32_t>(index));
         places.push_back(mesh.positions[around.back()]);
       }
-      for (const auto& [a, b, c] : triangles_of(places)) mesh.triangles.push_back({around[a], around[b], around[c]});
+      for (const auto& [a, b, c] : triangles_of(places))
+        mesh.triangles.push_back({around[a], around[b], around[c]});
       if (all_faces) {
         const std::optional<glm::vec3> own = color();
         all_faces = own.has_value();
@@ -167,7 +180,9 @@ class OffReader {
   }
 
  private:
-  [[noreturn]] void fail(const std::string& message) const { throw InputError({file_, line_, 0}, message); }
+  [[noreturn]] void fail(const std::string& message) const {
+    throw InputError({file_, line_, 0}, message);
+  }
   std::string_view word() {
     while (rest_.empty()) {
       if (text_.empty()) fail("the file ends before what it announces");
@@ -187,7 +202,8 @@ class OffReader {
     while (!rest_.empty() && is_blank(rest_.front())) rest_.remove_prefix(1);
   }
   void end_line() { rest_ = {}; }
-  /// Reads three numbers from the rest of the line; none if it has fewer (a single number is an index into a colour table).
+  /// Reads three numbers from the rest of the line; none if it has fewer (a single number is an
+  /// index into a colour table).
   std::optional<glm::vec3> color() {
     const std::vector<std::string_view> words = words_of(rest_);
     if (words.size() < 3) return std::nullopt;
@@ -205,7 +221,8 @@ class OffReader {
                   const std::vector<glm::vec3>& of_triangles) {
     for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
       for (const std::uint32_t vertex : mesh.triangles[i])
-        colors_->push_back(decoded_color(of_vertices.empty() ? of_triangles[i] : of_vertices[vertex], most_));
+        colors_->push_back(
+            decoded_color(of_vertices.empty() ? of_triangles[i] : of_vertices[vertex], most_));
   }
   float number() {
     const std::string_view text = word();
@@ -227,12 +244,14 @@ class OffReader {
   float most_ = 0;  // the greatest number of the colours
 };
 
-Scene scene_of(TriangleMeshShape mesh, const std::filesystem::path& path, const ImportOptions& options, const char* usual_up,
+Scene scene_of(TriangleMeshShape mesh, const std::filesystem::path& path,
+               const ImportOptions& options, const char* usual_up,
                std::vector<glm::vec3> colors = {}) {
   Scene scene;
   scene.source = path.string();
   if (mesh.triangles.empty()) throw InputError({scene.source, 0, 0}, "holds no faces");
-  Shape shape = mesh_shape(std::move(mesh), path.stem().string(), add_plain_material(scene), {scene.source, 0, 0});
+  Shape shape = mesh_shape(std::move(mesh), path.stem().string(), add_plain_material(scene),
+                           {scene.source, 0, 0});
   if (!colors.empty()) {
     scene.materials[0] = {DiffuseMaterial{ConstantSpectrum{1}}, "", {scene.source, 0, 0}};
     color_corners(scene, shape, std::move(colors));
@@ -247,20 +266,26 @@ Scene scene_of(TriangleMeshShape mesh, const std::filesystem::path& path, const 
 
 }  // namespace
 
-TriangleMeshShape parse_stl(std::string_view bytes, const std::string& file) { return parse_either_stl(bytes, file); }
-TriangleMeshShape parse_off(std::string_view bytes, const std::string& file, std::vector<glm::vec3>* colors) {
+TriangleMeshShape parse_stl(std::string_view bytes, const std::string& file) {
+  return parse_either_stl(bytes, file);
+}
+TriangleMeshShape parse_off(std::string_view bytes, const std::string& file,
+                            std::vector<glm::vec3>* colors) {
   return OffReader(bytes, file, colors).read();
 }
 
-Scene import_stl(const std::filesystem::path& path, const ImageReader&, const ImportOptions& options) {
+Scene import_stl(const std::filesystem::path& path, const ImageReader&,
+                 const ImportOptions& options) {
   return scene_of(parse_stl(read_file(path, {}), path.string()), path, options, "z");
 }
-Scene import_off(const std::filesystem::path& path, const ImageReader&, const ImportOptions& options) {
+Scene import_off(const std::filesystem::path& path, const ImageReader&,
+                 const ImportOptions& options) {
   std::vector<glm::vec3> colors;
   TriangleMeshShape mesh = parse_off(TextFile(path).text(), path.string(), &colors);
   return scene_of(std::move(mesh), path, options, "y", std::move(colors));
 }
-Scene import_ply(const std::filesystem::path& path, const ImageReader&, const ImportOptions& options) {
+Scene import_ply(const std::filesystem::path& path, const ImageReader&,
+                 const ImportOptions& options) {
   std::vector<glm::vec3> colors;
   TriangleMeshShape mesh = read_ply(path, {}, &colors);
   return scene_of(std::move(mesh), path, options, "y", std::move(colors));

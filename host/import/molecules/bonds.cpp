@@ -18,8 +18,8 @@ namespace {
 
 constexpr float kTolerance = 0.45F, kTooClose = 0.4F;
 constexpr std::size_t kMostInACell = 256;
-constexpr std::int64_t kMostCells =
-    1 << 20;  // along an axis: atoms that lie further out share a cell, and are compared like all other atoms
+constexpr std::int64_t kMostCells = 1 << 20;  // along an axis: atoms that lie further out share a
+                                              // cell, and are compared like all other atoms
 
 struct Cell {
   std::uint64_t key = 0;
@@ -37,14 +37,17 @@ class Grid {
       std::array<std::int64_t, 3> at{};
       for (int axis = 0; axis < 3; ++axis)
         at.at(static_cast<std::size_t>(axis)) =
-            std::min(static_cast<std::int64_t>((atoms[i].position[axis] - low[axis]) / size), kMostCells) + 1;
+            std::min(static_cast<std::int64_t>((atoms[i].position[axis] - low[axis]) / size),
+                     kMostCells) +
+            1;
       keys[i] = {key_of(at[0], at[1], at[2]), i};
     }
     std::ranges::sort(keys);
     order.reserve(keys.size());
     for (const auto& [key, atom] : keys) {
       if (cells.empty() || cells.back().key != key)
-        cells.push_back({key, static_cast<std::uint32_t>(order.size()), static_cast<std::uint32_t>(order.size())});
+        cells.push_back({key, static_cast<std::uint32_t>(order.size()),
+                         static_cast<std::uint32_t>(order.size())});
       order.push_back(atom);
       ++cells.back().end;
     }
@@ -52,7 +55,8 @@ class Grid {
 
   static std::uint64_t key_of(std::int64_t x, std::int64_t y, std::int64_t z) {
     constexpr int bits = 21;
-    return static_cast<std::uint64_t>(x) << 2 * bits | static_cast<std::uint64_t>(y) << bits | static_cast<std::uint64_t>(z);
+    return static_cast<std::uint64_t>(x) << 2 * bits | static_cast<std::uint64_t>(y) << bits |
+           static_cast<std::uint64_t>(z);
   }
 
   std::size_t fullest() const {
@@ -64,20 +68,24 @@ class Grid {
   /// Calls work(i, j) once for each pair of atoms in one cell or in two neighbouring cells.
   template <class Work>
   void pairs(const Work& work) const {
-    // Offsets of the keys of the neighbouring columns that come "after" this one; each has three neighbours along z.
+    // Offsets of the keys of the neighbouring columns that come "after" this one; each has three
+    // neighbours along z.
     constexpr std::uint64_t y = std::uint64_t{1} << 21, x = y << 21;
     constexpr std::array<std::uint64_t, 4> columns = {y, x - y, x, x + y};
-    std::array<std::size_t, 4> from{};  // cells before these indices precede the column's first; the indices only increase
+    std::array<std::size_t, 4>
+        from{};  // cells before these indices precede the column's first; the indices only increase
     for (std::size_t c = 0; c < cells.size(); ++c) {
       const Cell& cell = cells[c];
       for (std::uint32_t i = cell.begin; i < cell.end; ++i)
         for (std::uint32_t j = i + 1; j < cell.end; ++j) work(order[i], order[j]);
-      if (c + 1 < cells.size() && cells[c + 1].key == cell.key + 1) across(cell, cells[c + 1], work);
+      if (c + 1 < cells.size() && cells[c + 1].key == cell.key + 1)
+        across(cell, cells[c + 1], work);
       for (std::size_t k = 0; k < columns.size(); ++k) {
         const std::uint64_t first = cell.key + columns.at(k) - 1;
         std::size_t& at = from.at(k);
         while (at < cells.size() && cells[at].key < first) ++at;
-        for (std::size_t d = at; d < cells.size() && cells[d].key <= first + 2; ++d) across(cell, cells[d], work);
+        for (std::size_t d = at; d < cells.size() && cells[d].key <= first + 2; ++d)
+          across(cell, cells[d], work);
       }
     }
   }
@@ -94,7 +102,8 @@ class Grid {
 };
 
 /// Adds the bonds of residues whose component is known, and marks those residues.
-void add_component_bonds(const Molecule& molecule, std::vector<bool>& known, std::vector<Bond>& out) {
+void add_component_bonds(const Molecule& molecule, std::vector<bool>& known,
+                         std::vector<Bond>& out) {
   if (molecule.components.empty() || molecule.atom_names.empty()) return;
   for (std::size_t r = 0; r < molecule.residues.size(); ++r) {
     const Residue& residue = molecule.residues[r];
@@ -109,7 +118,8 @@ void add_component_bonds(const Molecule& molecule, std::vector<bool>& known, std
       const auto [b_begin, b_end] = by_name.equal_range(name_b);
       for (auto a = a_begin; a != a_end; ++a)
         for (auto b = b_begin; b != b_end; ++b) {
-          const char at_a = molecule.atoms[a->second].altloc, at_b = molecule.atoms[b->second].altloc;
+          const char at_a = molecule.atoms[a->second].altloc,
+                     at_b = molecule.atoms[b->second].altloc;
           if (a->second != b->second && (at_a == '\0' || at_b == '\0' || at_a == at_b))
             out.emplace_back(std::min(a->second, b->second), std::max(a->second, b->second));
         }
@@ -127,11 +137,13 @@ std::vector<Bond> all_bonds(const Molecule& molecule, const std::string& path) {
     const std::vector<Atom>& atoms = molecule.atoms;
     float widest = 0;
     std::array<float, 256> radius{};
-    for (const Atom& atom : atoms) widest = std::max(widest, radius.at(atom.element) = covalent_radius(atom.element));
+    for (const Atom& atom : atoms)
+      widest = std::max(widest, radius.at(atom.element) = covalent_radius(atom.element));
     const Grid grid(atoms, 2 * widest + kTolerance);
     if (grid.fullest() > kMostInACell) {
       log::warn(
-          "{}: {} atoms within {:.1f} angstroms of each other: no bonds are found by distance (is the unit of length another?)",
+          "{}: {} atoms within {:.1f} angstroms of each other: no bonds are found by distance (is "
+          "the unit of length another?)",
           path, grid.fullest(), 2 * widest + kTolerance);
     } else {
       grid.pairs([&](std::uint32_t i, std::uint32_t j) {
@@ -140,8 +152,10 @@ std::vector<Bond> all_bonds(const Molecule& molecule, const std::string& path) {
         if (a.altloc != '\0' && b.altloc != '\0' && a.altloc != b.altloc) return;
         if (a.residue == b.residue && known[a.residue]) return;
         const glm::vec3 d = a.position - b.position;
-        const float square = d.x * d.x + d.y * d.y + d.z * d.z, reach = radius.at(a.element) + radius.at(b.element) + kTolerance;
-        if (square < reach * reach && square > kTooClose * kTooClose) out.emplace_back(std::min(i, j), std::max(i, j));
+        const float square = d.x * d.x + d.y * d.y + d.z * d.z,
+                    reach = radius.at(a.element) + radius.at(b.element) + kTolerance;
+        if (square < reach * reach && square > kTooClose * kTooClose)
+          out.emplace_back(std::min(i, j), std::max(i, j));
       });
     }
   }

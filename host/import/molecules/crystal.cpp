@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Crystals of small molecules and minerals: files of the core CIF dictionary, whose atoms are at fractions of a cell.
+// Crystals of small molecules and minerals: files of the core CIF dictionary, whose atoms are at
+// fractions of a cell.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -26,10 +27,12 @@ namespace caplet {
 
 namespace {
 
-constexpr double kSame = 0.4;                // angstroms: closer copies of one atom are the same
-constexpr std::size_t kMostOperators = 192;  // of a space group: 48 of the point group times four of the centring
+constexpr double kSame = 0.4;  // angstroms: closer copies of one atom are the same
+constexpr std::size_t kMostOperators =
+    192;  // of a space group: 48 of the point group times four of the centring
 
-/// Maps an atom to `turn` times its coordinates plus `shift`. Coordinates are fractions of the cell.
+/// Maps an atom to `turn` times its coordinates plus `shift`. Coordinates are fractions of the
+/// cell.
 struct Operator {
   glm::dmat3 turn{0};
   glm::dvec3 shift{0};
@@ -37,10 +40,12 @@ struct Operator {
 
 class CrystalReader {
  public:
-  CrystalReader(const std::string& path, const ImportOptions& options) : path_(path), options_(options) {}
+  CrystalReader(const std::string& path, const ImportOptions& options)
+      : path_(path), options_(options) {}
 
   Molecule read(gemmi::cif::Block& block) {
-    if (options_.text("select")) throw InputError({"--select"}, "says nothing to a crystal of fractions: it has no residues");
+    if (options_.text("select"))
+      throw InputError({"--select"}, "says nothing to a crystal of fractions: it has no residues");
     read_cell(block);
     read_sites(block);
     out_.name = block.name;
@@ -54,18 +59,23 @@ class CrystalReader {
   }
 
  private:
-  [[noreturn]] void fail(const std::string& message) const { throw InputError({path_, 0, 0}, message); }
+  [[noreturn]] void fail(const std::string& message) const {
+    throw InputError({path_, 0, 0}, message);
+  }
 
   void read_cell(gemmi::cif::Block& block) {
     std::array<double, 6> cell{};
     std::size_t count = 0;
-    for (const char* tag :
-         {"_cell_length_a", "_cell_length_b", "_cell_length_c", "_cell_angle_alpha", "_cell_angle_beta", "_cell_angle_gamma"}) {
+    for (const char* tag : {"_cell_length_a", "_cell_length_b", "_cell_length_c",
+                            "_cell_angle_alpha", "_cell_angle_beta", "_cell_angle_gamma"}) {
       const std::string* text = block.find_value(tag);
       // Angles default to 90 degrees.
-      cell.at(count) = !text && count > 2 ? 90 : text ? gemmi::cif::as_number(*text) : std::numeric_limits<double>::quiet_NaN();
+      cell.at(count) = !text && count > 2 ? 90
+                       : text             ? gemmi::cif::as_number(*text)
+                                          : std::numeric_limits<double>::quiet_NaN();
       if (!(cell.at(count) > 0) || !(cell.at(count) < (count > 2 ? 180 : 1e6)))
-        fail(fmt::format("{} is {}, and the atoms are fractions of the cell", tag, text ? caplet::quoted(*text) : "missing"));
+        fail(fmt::format("{} is {}, and the atoms are fractions of the cell", tag,
+                         text ? caplet::quoted(*text) : "missing"));
       ++count;
     }
     // a lies along x, b in the plane of x and y (International Tables for Crystallography B, 1.1).
@@ -73,8 +83,9 @@ class CrystalReader {
     const double cg = std::cos(glm::radians(cell[5])), sg = std::sin(glm::radians(cell[5]));
     const double x = (ca - cb * cg) / sg, square = 1 - cb * cb - x * x;
     if (!(square > 1e-9)) fail("the angles of the cell are those of no cell");
-    place_from_fraction_ = {
-        {cell[0], 0, 0}, {cell[1] * cg, cell[1] * sg, 0}, {cell[2] * cb, cell[2] * x, cell[2] * std::sqrt(square)}};
+    place_from_fraction_ = {{cell[0], 0, 0},
+                            {cell[1] * cg, cell[1] * sg, 0},
+                            {cell[2] * cb, cell[2] * x, cell[2] * std::sqrt(square)}};
   }
 
   void read_sites(gemmi::cif::Block& block) {
@@ -82,11 +93,15 @@ class CrystalReader {
     const bool hydrogens = options_.yes("hydrogens", true);
     std::int64_t first_group = 0;
     std::size_t without_place = 0;
-    for (const auto row : block.find("_atom_site_", {"label", "fract_x", "fract_y", "fract_z", "?type_symbol", "?U_iso_or_equiv",
-                                                     "?B_iso_or_equiv", "?disorder_group", "?calc_flag"})) {
+    for (const auto row :
+         block.find("_atom_site_",
+                    {"label", "fract_x", "fract_y", "fract_z", "?type_symbol", "?U_iso_or_equiv",
+                     "?B_iso_or_equiv", "?disorder_group", "?calc_flag"})) {
       if (row.has2(8) && row.str(8) == "dum") continue;
-      const glm::dvec3 fraction(gemmi::cif::as_number(row[1]), gemmi::cif::as_number(row[2]), gemmi::cif::as_number(row[3]));
-      if (gemmi::cif::is_null(row[1]) || gemmi::cif::is_null(row[2]) || gemmi::cif::is_null(row[3])) {
+      const glm::dvec3 fraction(gemmi::cif::as_number(row[1]), gemmi::cif::as_number(row[2]),
+                                gemmi::cif::as_number(row[3]));
+      if (gemmi::cif::is_null(row[1]) || gemmi::cif::is_null(row[2]) ||
+          gemmi::cif::is_null(row[3])) {
         ++without_place;
         continue;
       }
@@ -94,15 +109,20 @@ class CrystalReader {
       atom.element = element_in(row.has2(4) ? row.str(4) : row.str(0));
       if (atom.element == 0) atom.element = element_in(row.str(0));
       if (atom.hydrogen() && !hydrogens) continue;
-      // Disordered atoms have a small group number; a negative one is disorder about a symmetry element.
+      // Disordered atoms have a small group number; a negative one is disorder about a symmetry
+      // element.
       std::int64_t group = 0;
       if (row.has2(7) && parse_number(std::string_view(row.str(7)), group) && group != 0) {
         if (first_group == 0) first_group = group;
         const auto letter = static_cast<char>('0' + std::abs(group % 10));
-        if (altloc == "first" ? group != first_group : altloc != "all" && altloc != std::string(1, letter)) continue;
+        if (altloc == "first" ? group != first_group
+                              : altloc != "all" && altloc != std::string(1, letter))
+          continue;
         atom.altloc = letter;
       }
-      if (row.has2(5)) atom.b_factor = b_factor(8 * glm::pi<double>() * glm::pi<double>() * gemmi::cif::as_number(row[5]));
+      if (row.has2(5))
+        atom.b_factor =
+            b_factor(8 * glm::pi<double>() * glm::pi<double>() * gemmi::cif::as_number(row[5]));
       if (!row.has2(5) && row.has2(6)) atom.b_factor = b_factor(gemmi::cif::as_number(row[6]));
       out_.has_b_factors |= atom.b_factor != 0;
       add(atom, fraction, row.str(0));
@@ -119,7 +139,8 @@ class CrystalReader {
   /// Reads "Si4+", "C12", "FE". If the first two letters are no element, the first one is used.
   static std::uint8_t element_in(const std::string& symbol) {
     std::size_t letters = 0;
-    while (letters < symbol.size() && std::isalpha(static_cast<unsigned char>(symbol[letters]))) ++letters;
+    while (letters < symbol.size() && std::isalpha(static_cast<unsigned char>(symbol[letters])))
+      ++letters;
     for (std::size_t count = std::min<std::size_t>(letters, 2); count > 0; --count)
       if (const std::uint8_t element = element_of(symbol.substr(0, count))) return element;
     return 0;
@@ -163,7 +184,9 @@ class CrystalReader {
         has_number = false;
       } else if (std::isdigit(static_cast<unsigned char>(c)) || c == '.') {
         std::size_t end = i;
-        while (end < text.size() && (std::isdigit(static_cast<unsigned char>(text[end])) || text[end] == '.')) ++end;
+        while (end < text.size() &&
+               (std::isdigit(static_cast<unsigned char>(text[end])) || text[end] == '.'))
+          ++end;
         double value = 0;
         if (!parse_number(std::string_view(text).substr(i, end - i), value)) row = 3;
         number = has_number && i > 0 && text[i - 1] == '/' ? number / value : value;
@@ -176,7 +199,8 @@ class CrystalReader {
       }
       ++i;
     }
-    if (row != 2) fail(caplet::quoted(text) + " is no operator: three parts of x, y, z and fractions");
+    if (row != 2)
+      fail(caplet::quoted(text) + " is no operator: three parts of x, y, z and fractions");
     end_of_term();
     const double turned = std::abs(glm::determinant(out.turn));
     if (!(std::abs(turned - 1) < 1e-6) || !(glm::dot(out.shift, out.shift) < 1e6))
@@ -188,15 +212,18 @@ class CrystalReader {
     std::vector<Operator> out;
     for (const char* tag : {"_space_group_symop_operation_xyz", "_symmetry_equiv_pos_as_xyz"}) {
       for (const std::string& text : block.find_values(tag)) {
-        if (out.size() == kMostOperators) fail(fmt::format("more than {} operators", kMostOperators));
+        if (out.size() == kMostOperators)
+          fail(fmt::format("more than {} operators", kMostOperators));
         out.push_back(parse_operator(gemmi::cif::as_string(text)));
       }
       if (!out.empty()) return out;
     }
     for (const char* tag : {"_space_group_name_H-M_alt", "_symmetry_space_group_name_H-M"})
       if (const std::string* name = block.find_value(tag))
-        if (const gemmi::SpaceGroup* group = gemmi::find_spacegroup_by_name(gemmi::cif::as_string(*name))) {
-          for (const gemmi::Op& op : group->operations().all_ops_sorted()) out.push_back(parse_operator(op.triplet()));
+        if (const gemmi::SpaceGroup* group =
+                gemmi::find_spacegroup_by_name(gemmi::cif::as_string(*name))) {
+          for (const gemmi::Op& op : group->operations().all_ops_sorted())
+            out.push_back(parse_operator(op.triplet()));
           return out;
         }
     fail("has neither operators nor the name of a space group: its cell cannot be filled");
@@ -224,7 +251,8 @@ class CrystalReader {
     return out;
   }
 
-  /// Adds the operators' copies of all atoms without duplicates. A bonded group moves as a whole, with its centre in the cell.
+  /// Adds the operators' copies of all atoms without duplicates. A bonded group moves as a whole,
+  /// with its centre in the cell.
   void fill_cell(const std::vector<Operator>& operators) {
     const std::vector<std::vector<std::uint32_t>> parts = fragments();
     const std::vector<Atom> atoms = std::move(out_.atoms);
@@ -242,13 +270,15 @@ class CrystalReader {
           placed.push_back(op.turn * fractions[atom] + op.shift);
           middle += placed.back() / static_cast<double>(part.size());
         }
-        const glm::dvec3 shift = -glm::floor(middle + 1e-6);  // a centre on the cell's face stays on this side despite rounding
+        const glm::dvec3 shift = -glm::floor(
+            middle + 1e-6);  // a centre on the cell's face stays on this side despite rounding
         for (std::size_t i = 0; i < part.size(); ++i) {
           const glm::dvec3 p = placed[i] + shift;
-          const bool known = std::any_of(copies[i].begin(), copies[i].end(), [&](const glm::dvec3& other) {
-            const glm::dvec3 d = p - other;
-            return glm::length(place_from_fraction_ * (d - glm::round(d))) < kSame;
-          });
+          const bool known =
+              std::any_of(copies[i].begin(), copies[i].end(), [&](const glm::dvec3& other) {
+                const glm::dvec3 d = p - other;
+                return glm::length(place_from_fraction_ * (d - glm::round(d))) < kSame;
+              });
           if (known) continue;
           copies[i].push_back(p);
           add(atoms[part[i]], p, names[part[i]]);
@@ -267,13 +297,16 @@ class CrystalReader {
 
 }  // namespace
 
-std::optional<Molecule> read_crystal(gemmi::cif::Document& document, const std::string& path, const ImportOptions& options) {
+std::optional<Molecule> read_crystal(gemmi::cif::Document& document, const std::string& path,
+                                     const ImportOptions& options) {
   std::vector<gemmi::cif::Block*> blocks;
   for (gemmi::cif::Block& block : document.blocks)
     if (block.find_values("_atom_site_fract_x").length() > 0) blocks.push_back(&block);
   if (blocks.empty()) return std::nullopt;
   const std::uint32_t number = options.number("model", 1);
-  if (number > blocks.size()) throw InputError({"--model"}, fmt::format("{}: the file has {} structures", number, blocks.size()));
+  if (number > blocks.size())
+    throw InputError({"--model"},
+                     fmt::format("{}: the file has {} structures", number, blocks.size()));
   Molecule out = CrystalReader(path, options).read(*blocks[number - 1]);
   out.frames = static_cast<std::uint32_t>(blocks.size());
   return out;

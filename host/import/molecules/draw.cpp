@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Draws molecules: spheres are capsules of length 0, bonds are capsules split in two where the colours of their atoms differ, and
-// traces are tapered capsules along a Catmull-Rom curve.
+// Draws molecules: spheres are capsules of length 0, bonds are capsules split in two where the
+// colours of their atoms differ, and traces are tapered capsules along a Catmull-Rom curve.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -32,28 +32,34 @@ namespace {
 enum class Style { ball_and_stick, spheres, sticks, trace };
 enum class MoleculeColor { element, chain, residue, bfactor };
 
-constexpr std::size_t kMostInDetail = 2000;  // atoms; larger molecules are drawn as spheres by default
-constexpr float kBall = 0.25F;               // of the van der Waals radius
+constexpr std::size_t kMostInDetail =
+    2000;                       // atoms; larger molecules are drawn as spheres by default
+constexpr float kBall = 0.25F;  // of the van der Waals radius
 constexpr float kBondRadius = 0.12F, kStickRadius = 0.2F, kTraceRadius = 0.45F;  // angstroms
-constexpr float kThinTrace = 0.25F, kThickTrace = 1.1F;                          // radii at the least and greatest b factor
-constexpr int kTraceSteps = 6;                                                   // capsules between two residues
-constexpr float kCalphaGap = 4.6F, kPhosphorusGap = 9.0F;  // a larger distance means that residues are missing
+constexpr float kThinTrace = 0.25F, kThickTrace = 1.1F;  // radii at the least and greatest b factor
+constexpr int kTraceSteps = 6;                           // capsules between two residues
+constexpr float kCalphaGap = 4.6F,
+                kPhosphorusGap = 9.0F;  // a larger distance means that residues are missing
 
 class Painter {
  public:
-  Painter(Scene& scene, const Molecule& molecule, MoleculeColor by) : scene_(scene), molecule_(molecule), by_(by) {
+  Painter(Scene& scene, const Molecule& molecule, MoleculeColor by)
+      : scene_(scene), molecule_(molecule), by_(by) {
     if (by == MoleculeColor::bfactor) {
       low_ = high_ = molecule.atoms.front().b_factor;
       for (const Atom& atom : molecule.atoms) {
         low_ = std::min(low_, atom.b_factor);
         high_ = std::max(high_, atom.b_factor);
       }
-      b_factors_ = ValueColors(scene, "bfactor", static_cast<double>(low_), static_cast<double>(high_), map_steps);
+      b_factors_ = ValueColors(scene, "bfactor", static_cast<double>(low_),
+                               static_cast<double>(high_), map_steps);
     }
   }
 
   /// Returns the atom's position in the range of b factors, 0 to 1.
-  float part(const Atom& atom) const { return high_ > low_ ? (atom.b_factor - low_) / (high_ - low_) : 0.5F; }
+  float part(const Atom& atom) const {
+    return high_ > low_ ? (atom.b_factor - low_) / (high_ - low_) : 0.5F;
+  }
 
   std::uint32_t material(const Atom& atom) {
     const Residue& residue = molecule_.residues[atom.residue];
@@ -61,9 +67,11 @@ class Painter {
       case MoleculeColor::element:
         return of_element(atom);
       case MoleculeColor::chain:
-        return named("chain " + molecule_.chains[residue.chain], [&] { return palette_color(residue.chain); });
+        return named("chain " + molecule_.chains[residue.chain],
+                     [&] { return palette_color(residue.chain); });
       case MoleculeColor::residue:
-        return named(residue.name.empty() ? "residue" : residue.name, [&] { return palette_color(index_.size()); });
+        return named(residue.name.empty() ? "residue" : residue.name,
+                     [&] { return palette_color(index_.size()); });
       case MoleculeColor::bfactor:
         return b_factors_.of(static_cast<double>(atom.b_factor));
     }
@@ -83,8 +91,11 @@ class Painter {
 
  private:
   std::uint32_t named(const std::string& name, const std::function<glm::dvec3()>& color) {
-    const auto [entry, fresh] = index_.try_emplace(name, narrow<std::uint32_t>(scene_.materials.size()));
-    if (fresh) scene_.materials.push_back({DiffuseMaterial{RgbSpectrum{color()}}, name, {scene_.source, 0, 0}});
+    const auto [entry, fresh] =
+        index_.try_emplace(name, narrow<std::uint32_t>(scene_.materials.size()));
+    if (fresh)
+      scene_.materials.push_back(
+          {DiffuseMaterial{RgbSpectrum{color()}}, name, {scene_.source, 0, 0}});
     return entry->second;
   }
 
@@ -109,7 +120,8 @@ struct DrawnPart {
     tapered |= r0 != r1;
   }
   /// Adds a capsule of a tube, with u at both ends.
-  void add(const glm::vec3& p0, const glm::vec3& p1, float r0, float r1, std::uint32_t material, const glm::vec2& u) {
+  void add(const glm::vec3& p0, const glm::vec3& p1, float r0, float r1, std::uint32_t material,
+           const glm::vec2& u) {
     add(p0, p1, r0, r1, material);
     capsules.u.push_back(u);
   }
@@ -117,7 +129,8 @@ struct DrawnPart {
 
 class MoleculeDrawing {
  public:
-  MoleculeDrawing(const Molecule& molecule, const std::vector<Bond>& bonds, Style style, Painter& painter)
+  MoleculeDrawing(const Molecule& molecule, const std::vector<Bond>& bonds, Style style,
+                  Painter& painter)
       : molecule_(molecule), bonds_(bonds), style_(style), painter_(painter) {}
 
   /// Makes the shapes of the residues that `kept` marks.
@@ -199,7 +212,8 @@ class MoleculeDrawing {
       const Atom& atom = molecule_.atoms[static_cast<std::size_t>(residue.trace_atom)];
       const float gap = residue.kind == ResidueKind::amino_acid ? kCalphaGap : kPhosphorusGap;
       const std::pair now{residue.chain, residue.kind};
-      if (!run.empty() && (last != now || glm::length(atom.position - run.back()->position) > gap)) finish();
+      if (!run.empty() && (last != now || glm::length(atom.position - run.back()->position) > gap))
+        finish();
       run.push_back(&atom);
       last = now;
     }
@@ -207,22 +221,28 @@ class MoleculeDrawing {
   }
 
   float tube_radius(const Atom& atom) const {
-    return painter_.by() == MoleculeColor::bfactor ? kThinTrace + (kThickTrace - kThinTrace) * painter_.part(atom) : kTraceRadius;
+    return painter_.by() == MoleculeColor::bfactor
+               ? kThinTrace + (kThickTrace - kThinTrace) * painter_.part(atom)
+               : kTraceRadius;
   }
 
   void add_tube(const std::vector<const Atom*>& run) {
     if (run.empty()) return;
     if (run.size() == 1) {
       const float radius = tube_radius(*run[0]);
-      part(*run[0], " trace").add(run[0]->position, run[0]->position, radius, radius, painter_.material(*run[0]), glm::vec2(0));
+      part(*run[0], " trace")
+          .add(run[0]->position, run[0]->position, radius, radius, painter_.material(*run[0]),
+               glm::vec2(0));
       return;
     }
     const auto at = [&run](std::ptrdiff_t i) {
-      return run[static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(i, 0, std::ssize(run) - 1))]->position;
+      return run[static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(i, 0, std::ssize(run) - 1))]
+          ->position;
     };
     // u increases evenly from residue to residue.
     const auto u_at = [&run](std::ptrdiff_t i, int step) {
-      return (static_cast<float>(i) + static_cast<float>(step) / kTraceSteps) / static_cast<float>(std::ssize(run) - 1);
+      return (static_cast<float>(i) + static_cast<float>(step) / kTraceSteps) /
+             static_cast<float>(std::ssize(run) - 1);
     };
     for (std::ptrdiff_t i = 0; i + 1 < std::ssize(run); ++i) {
       const Atom &a = *run[static_cast<std::size_t>(i)], &b = *run[static_cast<std::size_t>(i) + 1];
@@ -233,12 +253,14 @@ class MoleculeDrawing {
       for (int step = 1; step <= kTraceSteps; ++step) {
         const float t = static_cast<float>(step) / kTraceSteps;
         // The curve is that of Catmull and Rom 1974.
-        const glm::vec3 on_curve = 0.5F * (2.0F * p1 + (p2 - p0) * t + (2.0F * p0 - 5.0F * p1 + 4.0F * p2 - p3) * (t * t) +
-                                           (3.0F * p1 - p0 - 3.0F * p2 + p3) * (t * t * t));
+        const glm::vec3 on_curve =
+            0.5F * (2.0F * p1 + (p2 - p0) * t + (2.0F * p0 - 5.0F * p1 + 4.0F * p2 - p3) * (t * t) +
+                    (3.0F * p1 - p0 - 3.0F * p2 + p3) * (t * t * t));
         const glm::vec3 p = step == kTraceSteps ? p2 : on_curve;
         const float radius = r1 + (r2 - r1) * t;
         part(a, " trace")
-            .add(before, p, radius_before, radius, painter_.material(2 * step <= kTraceSteps ? a : b),
+            .add(before, p, radius_before, radius,
+                 painter_.material(2 * step <= kTraceSteps ? a : b),
                  {u_at(i, step - 1), u_at(i, step)});
         before = p;
         radius_before = radius;
@@ -253,15 +275,19 @@ class MoleculeDrawing {
   std::map<std::string, DrawnPart> parts_;
 };
 
-void add_assembly(Scene& scene, const Molecule& molecule, const std::string& name, MoleculeDrawing& drawing) {
+void add_assembly(Scene& scene, const Molecule& molecule, const std::string& name,
+                  MoleculeDrawing& drawing) {
   const auto found = molecule.assemblies.find(name);
   if (found == molecule.assemblies.end()) {
     std::string known;
-    for (const auto& [other, parts] : molecule.assemblies) known += (known.empty() ? "" : ", ") + other;
-    throw InputError({"--assembly"}, "'" + name + "' is none of the file (" + (known.empty() ? "it has none" : known) + ")");
+    for (const auto& [other, parts] : molecule.assemblies)
+      known += (known.empty() ? "" : ", ") + other;
+    throw InputError({"--assembly"}, "'" + name + "' is none of the file (" +
+                                         (known.empty() ? "it has none" : known) + ")");
   }
   for (const AssemblyPart& part : found->second) {
-    const std::set<std::string> chains(part.chains.begin(), part.chains.end()), parts(part.parts.begin(), part.parts.end());
+    const std::set<std::string> chains(part.chains.begin(), part.chains.end()),
+        parts(part.parts.begin(), part.parts.end());
     std::vector<bool> kept(molecule.residues.size());
     for (std::size_t r = 0; r < kept.size(); ++r)
       kept[r] = parts.empty() ? chains.contains(molecule.chains[molecule.residues[r].chain])
@@ -272,10 +298,12 @@ void add_assembly(Scene& scene, const Molecule& molecule, const std::string& nam
     object.shapes = drawing.shapes(scene, kept);
     if (object.shapes.empty()) continue;
     for (const glm::dmat4& placed : part.operators)
-      scene.instances.push_back({narrow<std::uint32_t>(scene.objects.size()), placed, object.where});
+      scene.instances.push_back(
+          {narrow<std::uint32_t>(scene.objects.size()), placed, object.where});
     scene.objects.push_back(std::move(object));
   }
-  if (scene.instances.empty()) throw InputError({"--assembly"}, "'" + name + "' holds none of the atoms");
+  if (scene.instances.empty())
+    throw InputError({"--assembly"}, "'" + name + "' holds none of the atoms");
 }
 
 /// Moves the atoms to frame `number` of the array; bonds are those of the file's own positions.
@@ -284,9 +312,10 @@ void move_atoms(Molecule& molecule, const std::string& path, std::uint32_t numbe
   NpyReader reader(path, {3}, 3);
   const std::uint64_t frames = reader.shape()[0], atoms = reader.shape()[1];
   if (atoms != molecule.atoms.size())
-    throw InputError({path},
-                     fmt::format("has places of {} atoms, and {} are drawn of the molecule", atoms, molecule.atoms.size()));
-  if (number > frames) throw InputError({"--model"}, fmt::format("{}: the array has {} frames", number, frames));
+    throw InputError({path}, fmt::format("has places of {} atoms, and {} are drawn of the molecule",
+                                         atoms, molecule.atoms.size()));
+  if (number > frames)
+    throw InputError({"--model"}, fmt::format("{}: the array has {} frames", number, frames));
   std::vector<double> places(3 * molecule.atoms.size());
   reader.go_to((number - 1) * atoms);
   reader.read(places);
@@ -294,7 +323,9 @@ void move_atoms(Molecule& molecule, const std::string& path, std::uint32_t numbe
     for (int axis = 0; axis < 3; ++axis) {
       const double at = places[3 * i + static_cast<std::size_t>(axis)];
       if (!(std::abs(at) <= static_cast<double>(largest_number)))
-        throw InputError({path}, fmt::format("frame {}, atom {}: the place is not finite or out of range", number, i + 1));
+        throw InputError({path},
+                         fmt::format("frame {}, atom {}: the place is not finite or out of range",
+                                     number, i + 1));
       molecule.atoms[i].position[axis] = static_cast<float>(at);
     }
   molecule.frames = narrow<std::uint32_t>(frames);
@@ -302,7 +333,8 @@ void move_atoms(Molecule& molecule, const std::string& path, std::uint32_t numbe
 
 using MoleculeReader = Molecule (*)(std::string_view, const std::string&, const ImportOptions&);
 
-Imported import_molecule(const std::filesystem::path& path, const ImportOptions& options, MoleculeReader reader) {
+Imported import_molecule(const std::filesystem::path& path, const ImportOptions& options,
+                         MoleculeReader reader) {
   Scene scene;
   scene.source = path.string();
   const std::optional<std::string> positions = options.text("positions");
@@ -313,15 +345,22 @@ Imported import_molecule(const std::filesystem::path& path, const ImportOptions&
   if (const std::optional<std::string> file = options.text("components"))
     for (auto& [name, bonds] : component_bonds_of(read_text(*file, {"--components"}), *file))
       molecule.components.insert_or_assign(name, std::move(bonds));
-  const std::size_t automatic =
-      static_cast<std::size_t>(molecule.atoms.size() > kMostInDetail ? Style::spheres : Style::ball_and_stick);
-  const auto style = static_cast<Style>(options.choice("style", {"ball-and-stick", "spheres", "sticks", "trace"}, automatic));
-  const std::size_t usual = static_cast<std::size_t>(style == Style::trace ? MoleculeColor::chain : MoleculeColor::element);
-  const auto by = static_cast<MoleculeColor>(options.choice("color", {"element", "chain", "residue", "bfactor"}, usual));
-  if (by == MoleculeColor::bfactor && !molecule.has_b_factors) throw InputError({"--color"}, "the file has no b factors");
-  if (style == Style::trace && std::ranges::none_of(molecule.residues, [](const Residue& r) { return r.trace_atom >= 0; }))
-    throw InputError({"--style"}, "trace: the file has neither alpha carbons nor phosphorus of a polymer");
-  const std::vector<Bond> bonds = style == Style::spheres ? std::vector<Bond>() : all_bonds(molecule, scene.source);
+  const std::size_t automatic = static_cast<std::size_t>(
+      molecule.atoms.size() > kMostInDetail ? Style::spheres : Style::ball_and_stick);
+  const auto style = static_cast<Style>(
+      options.choice("style", {"ball-and-stick", "spheres", "sticks", "trace"}, automatic));
+  const std::size_t usual = static_cast<std::size_t>(
+      style == Style::trace ? MoleculeColor::chain : MoleculeColor::element);
+  const auto by = static_cast<MoleculeColor>(
+      options.choice("color", {"element", "chain", "residue", "bfactor"}, usual));
+  if (by == MoleculeColor::bfactor && !molecule.has_b_factors)
+    throw InputError({"--color"}, "the file has no b factors");
+  if (style == Style::trace &&
+      std::ranges::none_of(molecule.residues, [](const Residue& r) { return r.trace_atom >= 0; }))
+    throw InputError({"--style"},
+                     "trace: the file has neither alpha carbons nor phosphorus of a polymer");
+  const std::vector<Bond> bonds =
+      style == Style::spheres ? std::vector<Bond>() : all_bonds(molecule, scene.source);
   if (positions) move_atoms(molecule, *positions, options.number("model", 1));
   Painter painter(scene, molecule, by);
   MoleculeDrawing drawing(molecule, bonds, style, painter);
@@ -340,16 +379,20 @@ Imported import_molecule(const std::filesystem::path& path, const ImportOptions&
 
 }  // namespace
 
-Imported import_pdb(const std::filesystem::path& path, const ImageReader&, const ImportOptions& options) {
+Imported import_pdb(const std::filesystem::path& path, const ImageReader&,
+                    const ImportOptions& options) {
   return import_molecule(path, options, read_pdb);
 }
-Imported import_mmcif(const std::filesystem::path& path, const ImageReader&, const ImportOptions& options) {
+Imported import_mmcif(const std::filesystem::path& path, const ImageReader&,
+                      const ImportOptions& options) {
   return import_molecule(path, options, read_mmcif);
 }
-Imported import_sdf(const std::filesystem::path& path, const ImageReader&, const ImportOptions& options) {
+Imported import_sdf(const std::filesystem::path& path, const ImageReader&,
+                    const ImportOptions& options) {
   return import_molecule(path, options, read_sdf);
 }
-Imported import_xyz(const std::filesystem::path& path, const ImageReader&, const ImportOptions& options) {
+Imported import_xyz(const std::filesystem::path& path, const ImageReader&,
+                    const ImportOptions& options) {
   return import_molecule(path, options, read_xyz);
 }
 

@@ -26,14 +26,17 @@ namespace caplet {
 
 namespace {
 
-bool begins_with(std::string_view text, std::string_view begin) { return text.substr(0, begin.size()) == begin; }
+bool begins_with(std::string_view text, std::string_view begin) {
+  return text.substr(0, begin.size()) == begin;
+}
 
 /// gemmi reports lines as "PATH:LINE:COLUMN(BYTE): ..." or "Problem in line LINE: ...".
 [[noreturn]] void refuse(const std::string& path, std::string message) {
   SourceLocation where{path, 0, 0};
   const auto number = [&message](std::size_t& at) {
     int value = 0;
-    const auto [end, error] = std::from_chars(message.data() + at, message.data() + message.size(), value);
+    const auto [end, error] =
+        std::from_chars(message.data() + at, message.data() + message.size(), value);
     at = static_cast<std::size_t>(end - message.data());
     return error == std::errc() ? value : 0;
   };
@@ -63,7 +66,8 @@ ResidueKind residue_kind(const std::string& name) {
   return info.is_nucleic_acid() ? ResidueKind::nucleotide : ResidueKind::other;
 }
 
-/// Returns the alternative place of a residue's atoms that is kept: '*' all of them, '\0' only atoms without one.
+/// Returns the alternative place of a residue's atoms that is kept: '*' all of them, '\0' only
+/// atoms without one.
 char kept_altloc(const gemmi::Residue& residue, const std::string& asked) {
   if (asked == "all") return '*';
   if (asked != "first") return asked[0];
@@ -72,7 +76,8 @@ char kept_altloc(const gemmi::Residue& residue, const std::string& asked) {
   return '\0';
 }
 
-std::string address_key(const std::string& chain, const std::string& residue, const std::string& atom) {
+std::string address_key(const std::string& chain, const std::string& residue,
+                        const std::string& atom) {
   return chain + '\n' + residue + '\n' + atom;
 }
 
@@ -83,7 +88,8 @@ class Builder {
 
   Molecule build() {
     gemmi::Model& model = chosen_model();
-    if (const std::optional<std::string> select = options_.text("select")) keep_selected(model, *select);
+    if (const std::optional<std::string> select = options_.text("select"))
+      keep_selected(model, *select);
     const std::string altloc = options_.text("altloc").value_or("first");
     if (altloc != "first" && altloc != "all" && altloc.size() != 1)
       throw InputError({"--altloc"}, "'" + altloc + "' is neither first nor all nor one letter");
@@ -102,7 +108,8 @@ class Builder {
     if (structure_.models.empty()) throw InputError({path_, 0, 0}, "holds no atoms");
     const std::uint32_t number = options_.number("model", 1);
     if (number > structure_.models.size())
-      throw InputError({"--model"}, fmt::format("{}: the file has {} models", number, structure_.models.size()));
+      throw InputError({"--model"},
+                       fmt::format("{}: the file has {} models", number, structure_.models.size()));
     return structure_.models[number - 1];
   }
 
@@ -116,7 +123,8 @@ class Builder {
   }
 
   std::uint32_t chain_index(const std::string& name) {
-    const auto [entry, fresh] = chains_.try_emplace(name, static_cast<std::uint32_t>(out_.chains.size()));
+    const auto [entry, fresh] =
+        chains_.try_emplace(name, static_cast<std::uint32_t>(out_.chains.size()));
     if (fresh) out_.chains.push_back(name);
     return entry->second;
   }
@@ -142,13 +150,16 @@ class Builder {
     }
   }
 
-  void add_atom(const gemmi::Atom& atom, const gemmi::Chain& chain, const gemmi::Residue& source, Residue& residue) {
+  void add_atom(const gemmi::Atom& atom, const gemmi::Chain& chain, const gemmi::Residue& source,
+                Residue& residue) {
     Atom one;
-    one.position = {static_cast<float>(atom.pos.x), static_cast<float>(atom.pos.y), static_cast<float>(atom.pos.z)};
+    one.position = {static_cast<float>(atom.pos.x), static_cast<float>(atom.pos.y),
+                    static_cast<float>(atom.pos.z)};
     for (int axis = 0; axis < 3; ++axis)
       if (!(std::abs(one.position[axis]) <= largest_number))
-        throw InputError({path_, 0, 0}, fmt::format("atom {} ({} of {} {}) has no finite place", atom.serial, atom.name,
-                                                    source.name, source.seqid.str()));
+        throw InputError({path_, 0, 0},
+                         fmt::format("atom {} ({} of {} {}) has no finite place", atom.serial,
+                                     atom.name, source.name, source.seqid.str()));
     one.b_factor = std::abs(atom.b_iso) <= largest_number ? atom.b_iso : 0;
     one.residue = static_cast<std::uint32_t>(out_.residues.size());
     one.serial = atom.serial;
@@ -157,11 +168,13 @@ class Builder {
     if (one.element == 0) one.element = element_of(atom.name);
     const auto index = static_cast<std::uint32_t>(out_.atoms.size());
     const char* trace = residue.kind == ResidueKind::amino_acid ? "CA" : "P";
-    if (residue.trace_atom < 0 && (residue.kind == ResidueKind::amino_acid || residue.kind == ResidueKind::nucleotide) &&
+    if (residue.trace_atom < 0 &&
+        (residue.kind == ResidueKind::amino_acid || residue.kind == ResidueKind::nucleotide) &&
         atom.name == trace)
       residue.trace_atom = static_cast<std::int32_t>(index);
     if (!structure_.connections.empty())
-      by_address_.try_emplace(address_key(chain.name, source.seqid.str() + source.name, atom.name), index);
+      by_address_.try_emplace(address_key(chain.name, source.seqid.str() + source.name, atom.name),
+                              index);
     out_.has_b_factors |= one.b_factor != 0;
     out_.atoms.push_back(one);
     out_.atom_names.push_back(atom.name);
@@ -169,14 +182,17 @@ class Builder {
 
   void add_connections() {
     const auto index_of = [this](const gemmi::AtomAddress& a) -> std::int64_t {
-      const auto found = by_address_.find(address_key(a.chain_name, a.res_id.seqid.str() + a.res_id.name, a.atom_name));
+      const auto found = by_address_.find(
+          address_key(a.chain_name, a.res_id.seqid.str() + a.res_id.name, a.atom_name));
       return found == by_address_.end() ? -1 : static_cast<std::int64_t>(found->second);
     };
     for (const gemmi::Connection& connection : structure_.connections) {
-      if (connection.type == gemmi::Connection::Hydrog || connection.asu == gemmi::Asu::Different) continue;
+      if (connection.type == gemmi::Connection::Hydrog || connection.asu == gemmi::Asu::Different)
+        continue;
       const std::int64_t a = index_of(connection.partner1), b = index_of(connection.partner2);
       if (a >= 0 && b >= 0 && a != b)
-        out_.bonds.emplace_back(static_cast<std::uint32_t>(std::min(a, b)), static_cast<std::uint32_t>(std::max(a, b)));
+        out_.bonds.emplace_back(static_cast<std::uint32_t>(std::min(a, b)),
+                                static_cast<std::uint32_t>(std::max(a, b)));
     }
   }
 
@@ -188,7 +204,8 @@ class Builder {
         for (const gemmi::Assembly::Operator& op : gen.operators) {
           glm::dmat4 m(1);
           for (int row = 0; row < 3; ++row) {
-            for (int column = 0; column < 3; ++column) m[column][row] = op.transform.mat[row][column];
+            for (int column = 0; column < 3; ++column)
+              m[column][row] = op.transform.mat[row][column];
             m[3][row] = op.transform.vec.at(row);
           }
           part.operators.push_back(m);
@@ -231,19 +248,22 @@ void add_conect(std::string_view text, Molecule& out) {
     const std::string_view line = take_line(text);
     if (!begins_with(line, "CONECT")) continue;
     if (by_serial.empty())
-      for (std::uint32_t i = 0; i < out.atoms.size(); ++i) by_serial.try_emplace(out.atoms[i].serial, i);
+      for (std::uint32_t i = 0; i < out.atoms.size(); ++i)
+        by_serial.try_emplace(out.atoms[i].serial, i);
     const auto from = by_serial.find(serial_at(line, 6));
     if (from == by_serial.end()) continue;
     for (const std::size_t column : {11U, 16U, 21U, 26U}) {
       const auto to = by_serial.find(serial_at(line, column));
       if (to != by_serial.end() && to->second != from->second)
-        out.bonds.emplace_back(std::min(from->second, to->second), std::max(from->second, to->second));
+        out.bonds.emplace_back(std::min(from->second, to->second),
+                               std::max(from->second, to->second));
     }
   }
 }
 
 /// Splits REMARK 350 by words: beyond 999 copies its columns shift, and gemmi 0.5 misreads them.
-std::map<std::string, std::vector<AssemblyPart>> assemblies_of_remarks(std::string_view text, const std::string& path) {
+std::map<std::string, std::vector<AssemblyPart>> assemblies_of_remarks(std::string_view text,
+                                                                       const std::string& path) {
   std::map<std::string, std::vector<AssemblyPart>> out;
   std::vector<AssemblyPart>* parts = nullptr;
   bool listing = false;
@@ -267,14 +287,16 @@ std::map<std::string, std::vector<AssemblyPart>> assemblies_of_remarks(std::stri
       listing = true;
     } else if (listing && words.size() > 2 && words[0] == "AND" && words[1] == "CHAINS:") {
       chains_from(2);
-    } else if (listing && words.size() == 6 && words[0].size() == 6 && begins_with(words[0], "BIOMT")) {
+    } else if (listing && words.size() == 6 && words[0].size() == 6 &&
+               begins_with(words[0], "BIOMT")) {
       const int row = words[0][5] - '1';
       if (row < 0 || row > 2) continue;
       for (int column = 0; column < 4; ++column) {
         const std::string& word = words[static_cast<std::size_t>(column) + 2];
         double value = 0;
         if (!parse_number(std::string_view(word), value) || !std::isfinite(value))
-          throw InputError({path, number, 0}, caplet::quoted(word) + " is no number of an operator");
+          throw InputError({path, number, 0},
+                           caplet::quoted(word) + " is no number of an operator");
         m[column][row] = value;
       }
       if (row == 2) parts->back().operators.push_back(m);
@@ -283,8 +305,8 @@ std::map<std::string, std::vector<AssemblyPart>> assemblies_of_remarks(std::stri
   return out;
 }
 
-/// gemmi 0.5 reads the distance of SSBOND and LINK, columns 74 to 78, beyond the end of a line that ends within it. Such lines
-/// are padded with blanks to column 80.
+/// gemmi 0.5 reads the distance of SSBOND and LINK, columns 74 to 78, beyond the end of a line that
+/// ends within it. Such lines are padded with blanks to column 80.
 std::string with_whole_distances(std::string_view text) {
   std::string out;
   out.reserve(text.size());
@@ -295,7 +317,8 @@ std::string with_whole_distances(std::string_view text) {
     if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
     out += line;
     const std::string record = lower_case(std::string(line.substr(0, 4)));
-    if (line.size() > 72 && line.size() < 80 && (record == "ssbo" || record == "link")) out.append(80 - line.size(), ' ');
+    if (line.size() > 72 && line.size() < 80 && (record == "ssbo" || record == "link"))
+      out.append(80 - line.size(), ' ');
     out += '\n';
   }
   return out;
@@ -311,8 +334,8 @@ void mend_charges(gemmi::cif::Block& block) {
     if (!(std::abs(gemmi::cif::as_number(row[0])) <= 100)) row[0] = "0";
 }
 
-/// gemmi 0.5 reads no atoms without certain columns of _atom_site that other programs omit (PyMOL auth_seq_id). They are copied
-/// from an equivalent column, or filled with "unknown".
+/// gemmi 0.5 reads no atoms without certain columns of _atom_site that other programs omit (PyMOL
+/// auth_seq_id). They are copied from an equivalent column, or filled with "unknown".
 void add_columns(gemmi::cif::Block& block) {
   const std::string category = "_atom_site.";
   gemmi::cif::Loop* loop = block.find_loop(category + "Cartn_x").get_loop();
@@ -327,7 +350,8 @@ void add_columns(gemmi::cif::Block& block) {
                                       {"occupancy", "", "1"},
                                       {"B_iso_or_equiv", "", "0"},
                                       {"auth_seq_id", "label_seq_id", "?"}};
-  std::vector<std::pair<int, std::string>> added;  // the column that is copied, or the value of all rows
+  std::vector<std::pair<int, std::string>>
+      added;  // the column that is copied, or the value of all rows
   const std::size_t width = loop->width();
   for (const Column& column : needed) {
     if (loop->has_tag(category + column.name)) continue;
@@ -341,14 +365,16 @@ void add_columns(gemmi::cif::Block& block) {
     for (std::size_t i = 0; i < width; ++i) values.push_back(std::move(loop->values[row + i]));
     const std::size_t begin = values.size() - width;
     for (const auto& [from, value] : added)
-      values.push_back(from < 0 ? value : std::string(values[begin + static_cast<std::size_t>(from)]));
+      values.push_back(from < 0 ? value
+                                : std::string(values[begin + static_cast<std::size_t>(from)]));
   }
   loop->values = std::move(values);
 }
 
 void add_component_bonds(const gemmi::cif::Block& block, ComponentBonds& out) {
   // gemmi 0.5 offers no const access to tables.
-  auto& table_of = const_cast<gemmi::cif::Block&>(block);  // NOLINT(cppcoreguidelines-pro-type-const-cast)
+  auto& table_of =
+      const_cast<gemmi::cif::Block&>(block);  // NOLINT(cppcoreguidelines-pro-type-const-cast)
   for (const auto row : table_of.find("_chem_comp_bond.", {"comp_id", "atom_id_1", "atom_id_2"}))
     out[row.str(0)].emplace_back(row.str(1), row.str(2));
 }
@@ -369,14 +395,16 @@ Molecule read_pdb(std::string_view text, const std::string& path, const ImportOp
 Molecule read_mmcif(std::string_view text, const std::string& path, const ImportOptions& options) {
   return read_by_gemmi(path, [&] {
     gemmi::cif::Document document = document_of(text, path);
-    if (std::optional<Molecule> crystal = read_crystal(document, path, options)) return std::move(*crystal);
+    if (std::optional<Molecule> crystal = read_crystal(document, path, options))
+      return std::move(*crystal);
     for (gemmi::cif::Block& block : document.blocks) {
       mend_charges(block);
       add_columns(block);
     }
     ComponentBonds components;
     for (const gemmi::cif::Block& block : document.blocks) add_component_bonds(block, components);
-    gemmi::Structure structure = gemmi::make_structure_from_doc(std::move(document), true);  // const& before gemmi 0.6, then &&
+    gemmi::Structure structure = gemmi::make_structure_from_doc(
+        std::move(document), true);  // const& before gemmi 0.6, then &&
     Molecule out = Builder(structure, path, options).build();
     out.components = std::move(components);
     return out;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// MDL molfiles and SD files: connection tables of V2000 (fixed columns) and V3000 (free format), as in BIOVIA's "CTfile
-// formats".
+// MDL molfiles and SD files: connection tables of V2000 (fixed columns) and V3000 (free format), as
+// in BIOVIA's "CTfile formats".
 #include <fmt/format.h>
 
 #include <cmath>
@@ -19,14 +19,16 @@ namespace {
 class SdfReader : MoleculeLines {
  public:
   SdfReader(std::string_view text, const std::string& path, const ImportOptions& options)
-      : MoleculeLines(text, path, "the file ends before its connection table does"), options_(options) {}
+      : MoleculeLines(text, path, "the file ends before its connection table does"),
+        options_(options) {}
 
   Molecule read() {
     const std::uint32_t wanted = options_.number("model", 1);
     skip_records(wanted);
     if (trimmed(text_).starts_with('<'))
       throw InputError({path_, 1, 0},
-                       "is XML: simulators' SDFormat is not read, which has the same ending as molecules' SD files");
+                       "is XML: simulators' SDFormat is not read, which has the same ending as "
+                       "molecules' SD files");
     out_.name = std::string(trimmed(line()));
     line();  // skips program and date
     line();  // skips the comment
@@ -46,9 +48,11 @@ class SdfReader : MoleculeLines {
   void skip_records(std::uint32_t number) {
     for (std::uint32_t record = 1; record < number; ++record) {
       do {
-        if (text_.empty()) throw InputError({"--model"}, fmt::format("{}: the file has {} records", number, record));
+        if (text_.empty())
+          throw InputError({"--model"}, fmt::format("{}: the file has {} records", number, record));
       } while (line() != "$$$$");
-      if (trimmed(text_).empty()) throw InputError({"--model"}, fmt::format("{}: the file has {} records", number, record));
+      if (trimmed(text_).empty())
+        throw InputError({"--model"}, fmt::format("{}: the file has {} records", number, record));
     }
   }
 
@@ -62,15 +66,18 @@ class SdfReader : MoleculeLines {
   /// Reads a field of fixed columns, which count from 0.
   template <class Number>
   Number fixed(std::string_view text, std::size_t begin, std::size_t size, const char* what) const {
-    const std::string_view field = text.size() > begin ? trimmed(text.substr(begin, size)) : std::string_view();
+    const std::string_view field =
+        text.size() > begin ? trimmed(text.substr(begin, size)) : std::string_view();
     Number value = 0;
-    if (!parse_number(field, value)) fail(begin + 1, fmt::format("{}: {} is no number", what, quoted(field)));
+    if (!parse_number(field, value))
+      fail(begin + 1, fmt::format("{}: {} is no number", what, quoted(field)));
     return value;
   }
 
   void add_atom(glm::dvec3 p, std::string_view symbol, std::size_t column) {
     for (int axis = 0; axis < 3; ++axis)
-      if (!(std::abs(p[axis]) <= static_cast<double>(largest_number))) fail(column, "the place is not finite or out of range");
+      if (!(std::abs(p[axis]) <= static_cast<double>(largest_number)))
+        fail(column, "the place is not finite or out of range");
     add(next_atom(glm::vec3(p), symbol));
   }
 
@@ -87,16 +94,19 @@ class SdfReader : MoleculeLines {
     for (std::uint32_t i = 0; i < atoms; ++i) {
       const std::string_view text = line();
       glm::dvec3 p(0);
-      for (int axis = 0; axis < 3; ++axis) p[axis] = fixed<double>(text, 10 * static_cast<std::size_t>(axis), 10, "coordinate");
+      for (int axis = 0; axis < 3; ++axis)
+        p[axis] = fixed<double>(text, 10 * static_cast<std::size_t>(axis), 10, "coordinate");
       add_atom(p, text.size() > 31 ? trimmed(text.substr(31, 3)) : std::string_view(), 1);
     }
     for (std::uint32_t i = 0; i < bonds; ++i) {
       const std::string_view text = line();
-      add_bond(fixed<std::uint32_t>(text, 0, 3, "first atom"), fixed<std::uint32_t>(text, 3, 3, "second atom"), 1);
+      add_bond(fixed<std::uint32_t>(text, 0, 3, "first atom"),
+               fixed<std::uint32_t>(text, 3, 3, "second atom"), 1);
     }
   }
 
-  /// Returns a line "M  V30 ..." without that prefix, joined with those that follow if it ends in "-".
+  /// Returns a line "M  V30 ..." without that prefix, joined with those that follow if it ends in
+  /// "-".
   std::string v30() {
     std::string out;
     for (;;) {
@@ -126,11 +136,14 @@ class SdfReader : MoleculeLines {
       if (block == Block::atoms) {
         if (words.size() < 5) fail(1, "an atom is number, symbol, x, y, z");
         by_number[number<std::uint32_t>(words[0])] = static_cast<std::uint32_t>(out_.atoms.size());
-        add_atom({number<double>(words[2]), number<double>(words[3]), number<double>(words[4])}, words[1], 1);
+        add_atom({number<double>(words[2]), number<double>(words[3]), number<double>(words[4])},
+                 words[1], 1);
       } else {
         if (words.size() < 4) fail(1, "a bond is number, type and two atoms");
-        const auto a = by_number.find(number<std::uint32_t>(words[2])), b = by_number.find(number<std::uint32_t>(words[3]));
-        if (a == by_number.end() || b == by_number.end()) fail(1, "a bond of an atom that there is not");
+        const auto a = by_number.find(number<std::uint32_t>(words[2])),
+                   b = by_number.find(number<std::uint32_t>(words[3]));
+        if (a == by_number.end() || b == by_number.end())
+          fail(1, "a bond of an atom that there is not");
         add_bond(a->second + 1, b->second + 1, 1);
       }
     }

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// XYZ: frames of a count, a comment, and one line per atom. The comment of extended XYZ describes the columns
+// XYZ: frames of a count, a comment, and one line per atom. The comment of extended XYZ describes
+// the columns
 // ("Properties=...").
 #include <fmt/format.h>
 
@@ -45,13 +46,15 @@ Columns columns_of(std::string_view comment) {
 class XyzReader : MoleculeLines {
  public:
   XyzReader(std::string_view text, const std::string& path, const ImportOptions& options)
-      : MoleculeLines(text, path, "the file ends where a line of it is missing"), options_(options) {}
+      : MoleculeLines(text, path, "the file ends where a line of it is missing"),
+        options_(options) {}
 
   Molecule read() {
     const std::uint32_t wanted = options_.number("model", 1);
     for (std::uint32_t frame = 1;; ++frame) {
       while (!text_.empty() && words_of(next_line_peeked()).empty()) line();
-      if (text_.empty() && frame > 1) throw InputError({"--model"}, fmt::format("{}: the file has {} frames", wanted, frame - 1));
+      if (text_.empty() && frame > 1)
+        throw InputError({"--model"}, fmt::format("{}: the file has {} frames", wanted, frame - 1));
       const std::uint64_t count = count_of(line());
       const Columns columns = columns_of(line());
       for (std::uint64_t i = 0; i < count; ++i) {
@@ -61,7 +64,8 @@ class XyzReader : MoleculeLines {
       if (frame == wanted) break;
     }
     out_.frames = wanted + frames_behind();
-    if (out_.atoms.empty()) throw InputError({path_, line_, 0}, "holds no atoms that are asked for");
+    if (out_.atoms.empty())
+      throw InputError({path_, line_, 0}, "holds no atoms that are asked for");
     close_residue();
     return std::move(out_);
   }
@@ -91,7 +95,8 @@ class XyzReader : MoleculeLines {
     const std::vector<std::string_view> words = words_of(text);
     std::uint64_t count = 0;
     if (words.empty()) fail(0, "the number of atoms is missing");
-    if (words.size() != 1 || !parse_number(words[0], count)) fail(0, quoted(words[0]) + " is no number of atoms");
+    if (words.size() != 1 || !parse_number(words[0], count))
+      fail(0, quoted(words[0]) + " is no number of atoms");
     return count;
   }
 

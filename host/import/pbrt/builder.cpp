@@ -13,8 +13,10 @@
 
 namespace caplet::pbrt {
 
-void Warnings::add(const SourceLocation& where, const std::string& message, const std::string& kind) {
-  if (const auto found = std::ranges::find(warnings_, kind, &Warning::kind); found != warnings_.end())
+void Warnings::add(const SourceLocation& where, const std::string& message,
+                   const std::string& kind) {
+  if (const auto found = std::ranges::find(warnings_, kind, &Warning::kind);
+      found != warnings_.end())
     ++found->others;
   else
     warnings_.push_back({where, message, kind});
@@ -22,8 +24,10 @@ void Warnings::add(const SourceLocation& where, const std::string& message, cons
 
 void Warnings::log(Diagnostics& diagnostics) const {
   for (const Warning& one : warnings_)
-    diagnostics.warning(one.where,
-                        one.message + (one.others > 0 ? " (and " + std::to_string(one.others) + " more of this kind)" : ""));
+    diagnostics.warning(
+        one.where,
+        one.message +
+            (one.others > 0 ? " (and " + std::to_string(one.others) + " more of this kind)" : ""));
 }
 
 std::uint32_t MaterialDraft::use_of_name(const std::string& name, const SourceLocation& where) {
@@ -48,8 +52,8 @@ TextureImages Draft::image_finder() {
       problem = "no such file " + in_quotes(file);
       return nullptr;
     }
-    const auto [found, fresh] =
-        texture_images.try_emplace({std::filesystem::weakly_canonical(file, ignored).string(), encoding}, nullptr);
+    const auto [found, fresh] = texture_images.try_emplace(
+        {std::filesystem::weakly_canonical(file, ignored).string(), encoding}, nullptr);
     if (fresh || !found->second) try {
         found->second = std::make_shared<TextureImage>(images.read_texture(file, encoding));
       } catch (const InputError& error) {
@@ -62,7 +66,8 @@ TextureImages Draft::image_finder() {
 ParameterList Building::taken(ParameterList own) {
   for (Parameter& parameter : own) {
     parameter.space = state.space;
-    if (!parameter.again.empty()) draft.warnings.add(parameter.where, parameter.again, "parameter given twice");
+    if (!parameter.again.empty())
+      draft.warnings.add(parameter.where, parameter.again, "parameter given twice");
   }
   return own;
 }
@@ -70,15 +75,18 @@ ParameterList Building::taken(ParameterList own) {
 Parameters Building::parameters(const Statement& at, const std::string& owner, ParameterList own,
                                 std::string_view attribute_target) {
   SharedParameters attributes;
-  if (const auto found = state.attributes.find(attribute_target); found != state.attributes.end()) attributes = found->second;
-  return {taken(std::move(own)), std::move(attributes), owner, at.where, draft.main_file, state.space, draft.diagnostics};
+  if (const auto found = state.attributes.find(attribute_target); found != state.attributes.end())
+    attributes = found->second;
+  return {taken(std::move(own)), std::move(attributes), owner, at.where, draft.main_file,
+          state.space,           draft.diagnostics};
 }
 
 bool Building::check_type(const Statement& at, const std::string& type) {
   return check_name(at.directive, type, at.where, draft.diagnostics);
 }
 
-Builder::Builder(std::string main_file, const ImageReader& images) : building_{{std::move(main_file), images}} {
+Builder::Builder(std::string main_file, const ImageReader& images)
+    : building_{{std::move(main_file), images}} {
   building_.draft.scene.source = building_.draft.main_file;
 }
 
@@ -92,7 +100,8 @@ Imported Builder::finish() {
   draft.diagnostics.finish();
   draft.scene.sampler.seed = building_.sampler_seed.value_or(building_.option_seed.value_or(0));
   const bool lit = is_lit(draft.scene);
-  if (building_.has_camera && !lit) draft.diagnostics.warning({draft.main_file}, "the scene has no light: its picture is black");
+  if (building_.has_camera && !lit)
+    draft.diagnostics.warning({draft.main_file}, "the scene has no light: its picture is black");
   Imported out(std::move(draft.scene));
   out.has_camera = building_.has_camera;
   out.is_lit = lit || building_.has_camera;  // an explicit camera without light means a dark scene

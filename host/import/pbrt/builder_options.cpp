@@ -25,7 +25,8 @@ void OptionBuilder::camera(const Statement& at, const std::string& type, Paramet
 
 void OptionBuilder::film(const Statement& at, const std::string& type, ParameterList own) {
   Parameters given = to_.parameters(at, at.of(type), std::move(own));
-  if (to_.check_type(at, type)) set_film(type, given, to_.state.space, to_.draft.scene, &to_.draft.images);
+  if (to_.check_type(at, type))
+    set_film(type, given, to_.state.space, to_.draft.scene, &to_.draft.images);
 }
 
 void OptionBuilder::integrator(const Statement& at, const std::string& type, ParameterList own) {
@@ -45,7 +46,8 @@ void OptionBuilder::sampler(const Statement& at, const std::string& type, Parame
 
 void OptionBuilder::option(const Statement& at, const std::string& name, const Token& value) {
   if (!to_.check_type(at, name)) return;
-  if (const auto seed = set_option(name, value, at.where.file, to_.draft.diagnostics)) to_.option_seed = seed;
+  if (const auto seed = set_option(name, value, at.where.file, to_.draft.diagnostics))
+    to_.option_seed = seed;
 }
 
 }  // namespace caplet::pbrt

@@ -13,7 +13,8 @@
 
 namespace caplet::pbrt {
 
-void SceneBuilder::material(const Statement& at, const std::string& type_or_none, ParameterList own) {
+void SceneBuilder::material(const Statement& at, const std::string& type_or_none,
+                            ParameterList own) {
   std::string type = type_or_none;
   if (type.empty() || type == "none") {
     const std::string old = "Material " + in_quotes(type) + " is the old name of \"interface\"";
@@ -33,7 +34,8 @@ void SceneBuilder::material(const Statement& at, const std::string& type_or_none
   materials.statements.push_back({type, {}, std::move(given), refusal.text, at.where});
 }
 
-void SceneBuilder::make_named_material(const Statement& at, const std::string& name, ParameterList own) {
+void SceneBuilder::make_named_material(const Statement& at, const std::string& name,
+                                       ParameterList own) {
   Parameters given = to_.parameters(at, at.of(name), std::move(own), "material");
   const bool has_type = given.has("type");
   const std::string type = given.text("type", "");
@@ -46,15 +48,16 @@ void SceneBuilder::make_named_material(const Statement& at, const std::string& n
   const Refusal refusal = has_type ? refusal_of("Material", type) : Refusal{};
   const SourceLocation where = given.where("type");
   if (!refusal.is_known) draft_.diagnostics.error(where, refusal.text, refusal.text);
-  materials.statements.push_back({refusal.is_known ? type : "", name, std::move(given), refusal.text, where});
+  materials.statements.push_back(
+      {refusal.is_known ? type : "", name, std::move(given), refusal.text, where});
 }
 
 void SceneBuilder::named_material(const Statement&, const Word& name) {
   to_.state.material = draft_.materials.use_of_name(name.text, name.where);
 }
 
-void SceneBuilder::texture(const Statement& at, const std::string& name, const Word& kind, const Word& texture_class,
-                           ParameterList own) {
+void SceneBuilder::texture(const Statement& at, const std::string& name, const Word& kind,
+                           const Word& texture_class, ParameterList own) {
   Parameters given = to_.parameters(at, at.of(name), std::move(own), "texture");
   if (to_.state.transform.is_skewed()) to_.check_place();
   if (kind.text != "float" && kind.text != "spectrum") {
@@ -66,24 +69,28 @@ void SceneBuilder::texture(const Statement& at, const std::string& name, const W
   bool known = false;
   for (const NameTable& table : name_tables())
     if (table.directive == "Texture")
-      known = std::find(table.refused.begin(), table.refused.end(), texture_class.text) != table.refused.end() ||
+      known = std::find(table.refused.begin(), table.refused.end(), texture_class.text) !=
+                  table.refused.end() ||
               check_name("Texture", texture_class.text, texture_class.where, draft_.diagnostics);
   if (!known) return;
-  TextureValue value =
-      make_texture(name, kind.text, texture_class.text, given, draft_.textures,
-                   {to_.state.transform.matrix(), to_.state.transform.inverse(), draft_.image_finder()}, draft_.scene);
+  TextureValue value = make_texture(
+      name, kind.text, texture_class.text, given, draft_.textures,
+      {to_.state.transform.matrix(), to_.state.transform.inverse(), draft_.image_finder()},
+      draft_.scene);
   if (!draft_.textures.add(name, std::move(value)))
     draft_.diagnostics.error(at.where, "the texture " + in_quotes(name) + " is defined twice");
 }
 
-void SceneBuilder::make_named_medium(const Statement& at, const std::string& name, ParameterList own) {
+void SceneBuilder::make_named_medium(const Statement& at, const std::string& name,
+                                     ParameterList own) {
   Parameters given = to_.parameters(at, at.of(name), std::move(own), "medium");
   if (to_.state.transform.is_skewed()) to_.check_place();
   const bool has_type = given.has("type");
   const std::string type = given.text("type", "");
   const auto [found, fresh] = draft_.media.statements.emplace(name, MediumStatement{});
   if (!fresh) {
-    draft_.diagnostics.error(at.where, "the medium " + in_quotes(name) + " is defined twice (first at " +
+    draft_.diagnostics.error(at.where, "the medium " + in_quotes(name) +
+                                           " is defined twice (first at " +
                                            found->second.medium.where.to_string() + ")");
     return;
   }
@@ -104,7 +111,8 @@ std::optional<std::uint32_t> SceneBuilder::side_of(const Word& medium) {
   return static_cast<std::uint32_t>(draft_.media.uses.size() - 1);
 }
 
-void SceneBuilder::medium_interface(const Statement&, const Word& inside, const std::optional<Word>& outside) {
+void SceneBuilder::medium_interface(const Statement&, const Word& inside,
+                                    const std::optional<Word>& outside) {
   to_.state.media.inside = side_of(inside);
   to_.state.media.outside = outside ? side_of(*outside) : to_.state.media.inside;
 }
@@ -113,10 +121,12 @@ void SceneBuilder::light_source(const Statement& at, const std::string& type, Pa
   Parameters given = to_.parameters(at, at.of(type), std::move(own), "light");
   const glm::dmat4 world_from_light = to_.state.transform.place_of_light(type, draft_.diagnostics);
   if (!to_.check_type(at, type)) return;
-  if (auto light = make_light(type, given, world_from_light, to_.light_files)) draft_.scene.lights.push_back(std::move(*light));
+  if (auto light = make_light(type, given, world_from_light, to_.light_files))
+    draft_.scene.lights.push_back(std::move(*light));
 }
 
-void SceneBuilder::area_light_source(const Statement& at, const std::string& type, ParameterList own) {
+void SceneBuilder::area_light_source(const Statement& at, const std::string& type,
+                                     ParameterList own) {
   Parameters given = to_.parameters(at, at.of(type), std::move(own), "light");
   if (to_.check_type(at, type)) to_.state.emission = make_area_emission(given, to_.light_files);
 }
@@ -130,13 +140,16 @@ void SceneBuilder::shape(const Statement& at, const std::string& type, Parameter
   const auto by_name = [this](const std::string& name, const SourceLocation& where) {
     return draft_.materials.use_of_name(name, where);
   };
-  const auto finished = [this](const std::string& name, std::string& problem) { return finished_object(name, problem); };
+  const auto finished = [this](const std::string& name, std::string& problem) {
+    return finished_object(name, problem);
+  };
   Shape shape = make_shape(type, given, state.material, {draft_.textures, by_name, finished});
   shape.world_from_object = state.transform.matrix();
   shape.reverse_orientation = state.reverse_orientation;
   shape.emission = state.emission;
   shape.media = state.media;
-  if (!shape.one_sided && given.has("onesided")) draft_.materials.said_two_sided.insert(shape.where.to_string());
+  if (!shape.one_sided && given.has("onesided"))
+    draft_.materials.said_two_sided.insert(shape.where.to_string());
   const auto& open = draft_.objects.open;
   (open ? draft_.scene.objects[*open].shapes : draft_.scene.shapes).push_back(std::move(shape));
 }
@@ -145,13 +158,14 @@ const Object* SceneBuilder::finished_object(const std::string& name, std::string
   const ObjectDraft& objects = draft_.objects;
   const auto found = objects.names.find(name);
   if (found == objects.names.end()) {
-    problem = "names the object " + in_quotes(name) + ", which is not defined before this" + draft_.nearest(name, objects.names);
+    problem = "names the object " + in_quotes(name) + ", which is not defined before this" +
+              draft_.nearest(name, objects.names);
     return nullptr;
   }
   const Object& object = draft_.scene.objects[found->second];
   if (objects.open != found->second) return &object;
-  problem = "names the object " + in_quotes(name) + ", which is being defined (" + object.where.to_string() +
-            "): a csg cannot hold itself";
+  problem = "names the object " + in_quotes(name) + ", which is being defined (" +
+            object.where.to_string() + "): a csg cannot hold itself";
   return nullptr;
 }
 

@@ -22,7 +22,8 @@ void CurrentTransform::multiply(const Statement& at, const glm::dmat4& matrix) {
     return;
   }
   if (!is_affine(matrix) && !skewed_)
-    skewed_ = {at.where, std::string(at.directive) + " is not affine (its last row must be 0 0 0 1)"};
+    skewed_ = {at.where,
+               std::string(at.directive) + " is not affine (its last row must be 0 0 0 1)"};
   set(ctm_ * matrix);
 }
 
@@ -49,7 +50,8 @@ void CurrentTransform::check_place(Diagnostics& diagnostics) const {
     if (bad) diagnostics.error(bad->where, bad->what, bad->where.to_string());
 }
 
-glm::dmat4 CurrentTransform::place_of_light(const std::string& type, Diagnostics& diagnostics) const {
+glm::dmat4 CurrentTransform::place_of_light(const std::string& type,
+                                            Diagnostics& diagnostics) const {
   if (type != "infinite" || !skewed_ || flat_) {
     check_place(diagnostics);
     return ctm_;
@@ -61,7 +63,9 @@ void TransformBuilder::active_transform(const Statement& at, const Word& which) 
   check_name(at.directive, which.text, which.where, to_.draft.diagnostics);
 }
 
-void TransformBuilder::concat_transform(const Statement& at, const glm::dmat4& matrix) { current().multiply(at, matrix); }
+void TransformBuilder::concat_transform(const Statement& at, const glm::dmat4& matrix) {
+  current().multiply(at, matrix);
+}
 
 void TransformBuilder::transform(const Statement& at, const glm::dmat4& matrix) {
   current().restart(glm::dmat4(1));
@@ -84,22 +88,26 @@ void TransformBuilder::coordinate_system(const Statement&, const Word& name) {
 }
 
 void TransformBuilder::coord_sys_transform(const Statement&, const Word& name) {
-  if (const auto found = to_.coordinate_systems.find(name.text); found != to_.coordinate_systems.end())
+  if (const auto found = to_.coordinate_systems.find(name.text);
+      found != to_.coordinate_systems.end())
     return current().restart(found->second);
-  to_.draft.diagnostics.error(
-      name.where, "unknown coordinate system " + in_quotes(name.text) + to_.draft.nearest(name.text, to_.coordinate_systems));
+  to_.draft.diagnostics.error(name.where, "unknown coordinate system " + in_quotes(name.text) +
+                                              to_.draft.nearest(name.text, to_.coordinate_systems));
 }
 
-void TransformBuilder::look_at(const Statement& at, const glm::dvec3& eye, const glm::dvec3& target, const glm::dvec3& up) {
+void TransformBuilder::look_at(const Statement& at, const glm::dvec3& eye, const glm::dvec3& target,
+                               const glm::dvec3& up) {
   if (const auto world_from_camera = camera_looking(eye, target, up))
     current().set(current().matrix() * glm::affineInverse(*world_from_camera));
   else
-    to_.draft.diagnostics.error(at.where, "LookAt has no direction (the points coincide, or up lies along the view)");
+    to_.draft.diagnostics.error(
+        at.where, "LookAt has no direction (the points coincide, or up lies along the view)");
 }
 
 void TransformBuilder::rotate(const Statement& at, double degrees, const glm::dvec3& axis) {
   if (glm::length(axis) > 0)
-    current().multiply(at, glm::rotate(glm::dmat4(1), degrees * glm::pi<double>() / 180, glm::normalize(axis)));
+    current().multiply(
+        at, glm::rotate(glm::dmat4(1), degrees * glm::pi<double>() / 180, glm::normalize(axis)));
   else
     to_.draft.diagnostics.error(at.where, "Rotate has no axis");
 }

@@ -15,7 +15,9 @@ namespace caplet::pbrt {
 
 namespace {
 
-const Format& format_named(const std::string& name) { return *std::ranges::find(formats(), name, &Format::name); }
+const Format& format_named(const std::string& name) {
+  return *std::ranges::find(formats(), name, &Format::name);
+}
 
 /// Removes the file's materials, so that the statement's material is used.
 void take_off_materials(Scene& scene) {
@@ -32,17 +34,21 @@ void take_off_materials(Scene& scene) {
   for (Object& object : scene.objects) std::ranges::for_each(object.shapes, visit);
 }
 
-/// Returns the value of an option in a statement. Files that it names lie where the scene's other files do.
+/// Returns the value of an option in a statement. Files that it names lie where the scene's other
+/// files do.
 std::string value_of(Parameters& given, const std::string& option) {
   std::string value = given.text(option, "");
   if (option != "color" && option != "positions" && option != "components") return value;
   std::string file = resolve_file(value, given.where(option), given.main_file());
-  return option != "color" || is_there(file, given.where(option)) ? file : value;  // most colours are keywords
+  return option != "color" || is_there(file, given.where(option))
+             ? file
+             : value;  // most colours are keywords
 }
 
-/// Reads the file of the statement; no value where it cannot be read (reported). `own_materials` receives whether the materials
-/// of the file count.
-std::optional<Imported> read_file(const std::string& type, Parameters& given, const std::string& path, const ImageReader& images,
+/// Reads the file of the statement; no value where it cannot be read (reported). `own_materials`
+/// receives whether the materials of the file count.
+std::optional<Imported> read_file(const std::string& type, Parameters& given,
+                                  const std::string& path, const ImageReader& images,
                                   bool& own_materials) try {
   const Format* format = type == "file" ? &format_of(path) : &format_named(type);
   if (format->name == "pbrt-v4") throw InputError("a pbrt scene is read by Include or Import");
@@ -96,10 +102,12 @@ class AsStated {
 
 }  // namespace
 
-void add_shapes_of_file(const Statement& at, const std::string& type, Parameters& given, Building& to) {
+void add_shapes_of_file(const Statement& at, const std::string& type, Parameters& given,
+                        Building& to) {
   if (!given.has("filename")) given.error("\"string filename\" is missing");
   const std::string name = given.text("filename", ""), prefix = given.text("name", "");
-  const std::string path = name.empty() ? name : resolve_file(name, given.where("filename"), given.main_file());
+  const std::string path =
+      name.empty() ? name : resolve_file(name, given.where("filename"), given.main_file());
   const bool one_sided = given.boolean("onesided", false), says_sides = given.has("onesided");
   std::optional<Imported> file;
   bool own_materials = false;
@@ -110,19 +118,24 @@ void add_shapes_of_file(const Statement& at, const std::string& type, Parameters
   const auto& open = to.draft.objects.open;
   if (open && !part.instances.empty())
     return to.draft.diagnostics.error(
-        at.where, path + " holds instances, which cannot be within ObjectBegin: the statement belongs outside");
+        at.where,
+        path +
+            " holds instances, which cannot be within ObjectBegin: the statement belongs outside");
   if (file->has_camera || !part.lights.empty())
-    to.draft.diagnostics.warning(at.where, "the shapes alone of " + path + " are taken: not its camera and lights");
+    to.draft.diagnostics.warning(
+        at.where, "the shapes alone of " + path + " are taken: not its camera and lights");
   part.lights.clear();
   if (!own_materials) take_off_materials(part);
   const std::size_t first_shape = scene.shapes.size(), first_instance = scene.instances.size();
   if (!prefix.empty()) prefix_names(part, prefix);
   const Appended added = append(scene, std::move(part));
   AsStated as_stated(at, to, own_materials, one_sided);
-  for (std::size_t i = first_shape; i < scene.shapes.size(); ++i) as_stated.put(scene.shapes[i], false);
+  for (std::size_t i = first_shape; i < scene.shapes.size(); ++i)
+    as_stated.put(scene.shapes[i], false);
   for (std::size_t i = added.objects; i < scene.objects.size(); ++i)
     for (Shape& shape : scene.objects[i].shapes) as_stated.put(shape, true);
-  for (std::size_t i = first_instance; i < scene.instances.size(); ++i) as_stated.put(scene.instances[i]);
+  for (std::size_t i = first_instance; i < scene.instances.size(); ++i)
+    as_stated.put(scene.instances[i]);
   if (says_sides && !one_sided) to.draft.materials.said_two_sided.insert(at.where.to_string());
   if (!open) return;
   const auto begin = scene.shapes.begin() + static_cast<std::ptrdiff_t>(first_shape);

@@ -23,7 +23,8 @@ std::vector<glm::vec3> vectors3(Parameters& parameters, const Parameter* values)
   const auto& n = values->numbers;
   out.reserve(n.size() / 3);
   for (std::size_t i = 0; i + 2 < n.size(); i += 3)
-    out.emplace_back(to_float(parameters, values->name, n[i]), to_float(parameters, values->name, n[i + 1]),
+    out.emplace_back(to_float(parameters, values->name, n[i]),
+                     to_float(parameters, values->name, n[i + 1]),
                      to_float(parameters, values->name, n[i + 2]));
   return out;
 }
@@ -50,7 +51,9 @@ double positive_length(Parameters& parameters, std::string_view name, double fal
   return fallback;
 }
 
-double positive_radius(Parameters& parameters, double fallback) { return positive_length(parameters, "radius", fallback); }
+double positive_radius(Parameters& parameters, double fallback) {
+  return positive_length(parameters, "radius", fallback);
+}
 
 double phi_max(Parameters& parameters) {
   const double degrees = parameters.number("phimax", 360);
@@ -67,7 +70,9 @@ void ReadFields::corners(const char* name0, const char* name1, glm::dvec3& p0, g
   p1 = glm::max(a, b);
 }
 
-void ReadFields::positive(const char* name, double& value) { value = positive_length(parameters_, name, value); }
+void ReadFields::positive(const char* name, double& value) {
+  value = positive_length(parameters_, name, value);
+}
 
 FieldCheck::FieldCheck(Parameters& parameters) : parameters_(parameters) {}
 

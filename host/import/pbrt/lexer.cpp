@@ -14,7 +14,9 @@ namespace caplet::pbrt {
 
 namespace {
 
-bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r' || c == '\f' || c == '\v'; }
+bool is_blank(char c) {
+  return c == ' ' || c == '\t' || c == '\n' || c == '\r' || c == '\f' || c == '\v';
+}
 bool ends_word(char c) { return is_blank(c) || c == '"' || c == '[' || c == ']' || c == '#'; }
 
 std::string_view without_plus(std::string_view text) {
@@ -28,7 +30,8 @@ std::string in_quotes(std::string_view text) {
   constexpr std::size_t longest = 60;
   if (!may_quote()) return std::string("\"") + withheld + "\"";
   std::string out = "\"";
-  for (char c : text.substr(0, longest)) out += static_cast<unsigned char>(c) < 32 || c == 127 ? '?' : c;
+  for (char c : text.substr(0, longest))
+    out += static_cast<unsigned char>(c) < 32 || c == 127 ? '?' : c;
   return out + (text.size() > longest ? "...\"" : "\"");
 }
 
@@ -36,10 +39,14 @@ double parse_number(const Token& token, const std::string& file) {
   const std::string_view text = without_plus(token.text);
   double value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (token.kind != Token::Kind::word || error == std::errc::invalid_argument || end != text.data() + text.size())
+  if (token.kind != Token::Kind::word || error == std::errc::invalid_argument ||
+      end != text.data() + text.size())
     throw SyntaxError{place_of(token, file), "expected a number, found " + in_quotes(token.text)};
-  if (error == std::errc::result_out_of_range) value = std::strtod(std::string(text).c_str(), nullptr);
-  if (!std::isfinite(value)) throw SyntaxError{place_of(token, file), "the number " + in_quotes(token.text) + " is not finite"};
+  if (error == std::errc::result_out_of_range)
+    value = std::strtod(std::string(text).c_str(), nullptr);
+  if (!std::isfinite(value))
+    throw SyntaxError{place_of(token, file),
+                      "the number " + in_quotes(token.text) + " is not finite"};
   return value;
 }
 
@@ -47,8 +54,10 @@ int parse_integer(const Token& token, const std::string& file) {
   const std::string_view text = without_plus(token.text);
   int value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (token.kind == Token::Kind::word && error == std::errc::result_out_of_range && end == text.data() + text.size())
-    throw SyntaxError{place_of(token, file), "the integer " + in_quotes(token.text) + " is out of range (32 bits)"};
+  if (token.kind == Token::Kind::word && error == std::errc::result_out_of_range &&
+      end == text.data() + text.size())
+    throw SyntaxError{place_of(token, file),
+                      "the integer " + in_quotes(token.text) + " is out of range (32 bits)"};
   if (token.kind != Token::Kind::word || error != std::errc() || end != text.data() + text.size())
     throw SyntaxError{place_of(token, file), "expected an integer, found " + in_quotes(token.text)};
   return value;
@@ -91,7 +100,8 @@ void Lexer::take_numbers(std::vector<double>& numbers, bool whole) {
     const char* const at = text_.data() + at_;
     double value = 0;
     int count = 0;
-    const auto [behind, error] = whole ? std::from_chars(at, end, count) : std::from_chars(at, end, value);
+    const auto [behind, error] =
+        whole ? std::from_chars(at, end, count) : std::from_chars(at, end, value);
     if (error != std::errc() || behind == end || !(is_blank(*behind) || *behind == ']')) return;
     if (!std::isfinite(value)) return;
     numbers.push_back(whole ? count : value);
@@ -134,7 +144,8 @@ Token Lexer::scan_string() {
     constexpr std::string_view escapes = "nrtbf\\'\"", meanings = "\n\r\t\b\f\\'\"";
     const SourceLocation here{file_, line_, column()};
     ++at_;
-    const std::size_t which = at_ < text_.size() ? escapes.find(text_[at_]) : std::string_view::npos;
+    const std::size_t which =
+        at_ < text_.size() ? escapes.find(text_[at_]) : std::string_view::npos;
     if (which != std::string_view::npos) {
       *unescaped += meanings[which];
       ++at_;
@@ -143,8 +154,10 @@ Token Lexer::scan_string() {
       escape_place = here;
     }
   }
-  if (at_ == text_.size() || text_[at_] == '\n') throw SyntaxError{place(token), "this string is not closed on its line"};
-  token.text = unescaped ? std::string_view(*unescaped) : std::string_view(text_).substr(start, at_ - start);
+  if (at_ == text_.size() || text_[at_] == '\n')
+    throw SyntaxError{place(token), "this string is not closed on its line"};
+  token.text =
+      unescaped ? std::string_view(*unescaped) : std::string_view(text_).substr(start, at_ - start);
   ++at_;
   if (bad_escape) throw SyntaxError{escape_place, "unknown escape in a string"};
   return token;

@@ -21,7 +21,8 @@ namespace {
 
 /// Returns pbrt's default illuminant: the colour space's white.
 Spectrum white(Parameters& parameters, std::string_view name) {
-  return parameters.spectrum(name, SpectrumUse::illuminant).value_or(RgbSpectrum{glm::dvec3(1), parameters.space()});
+  return parameters.spectrum(name, SpectrumUse::illuminant)
+      .value_or(RgbSpectrum{glm::dvec3(1), parameters.space()});
 }
 
 std::optional<double> positive_or_none(Parameters& parameters, std::string_view name) {
@@ -36,7 +37,8 @@ double scale_of(Parameters& parameters) {
 }
 
 /// Returns the unit direction from -> to in world space; reports when both are the same point.
-glm::dvec3 direction(Parameters& parameters, const glm::dvec3& from, const glm::dvec3& to, const glm::dmat4& world_from_light) {
+glm::dvec3 direction(Parameters& parameters, const glm::dvec3& from, const glm::dvec3& to,
+                     const glm::dmat4& world_from_light) {
   const glm::dvec3 along(world_from_light * glm::dvec4(to - from, 0));
   const double length = glm::length(along);
   if (length > 0 && std::isfinite(length)) return is_unit(length) ? along : along / length;
@@ -49,7 +51,8 @@ glm::dmat3 rotation_of(Parameters& parameters, const glm::dmat4& world_from_ligh
   const glm::dmat3 a(world_from_light);
   const double scale = glm::length(a[0]);
   const glm::dmat3 r = is_unit(scale) ? a : a / scale;
-  // Matrices in scene files have six digits; a deviation from orthonormal beyond 1e-3 means a shear or an uneven scale.
+  // Matrices in scene files have six digits; a deviation from orthonormal beyond 1e-3 means a shear
+  // or an uneven scale.
   const glm::dmat3 error = glm::transpose(r) * r - glm::dmat3(1);
   bool orthonormal = true;
   for (int i = 0; i < 3; ++i)
@@ -63,7 +66,8 @@ std::string file_of(Parameters& parameters, const char* name) {
 }
 
 std::string size_of(Parameters& parameters, const char* name, const EnvironmentImage& image) {
-  return file_of(parameters, name) + " is " + std::to_string(image.width) + " x " + std::to_string(image.height) + " pixels";
+  return file_of(parameters, name) + " is " + std::to_string(image.width) + " x " +
+         std::to_string(image.height) + " pixels";
 }
 
 /// Reads the fields of scene/lights.def.
@@ -73,7 +77,8 @@ struct LightReader : FieldReader {
 
   void emission(const Field& field, Spectrum& value) { value = white(parameters, field.name); }
   void position(const Field& field, glm::dvec3& value) {
-    value = glm::dvec3(world_from_light * glm::dvec4(parameters.point(field.name, glm::dvec3(0)), 1));
+    value =
+        glm::dvec3(world_from_light * glm::dvec4(parameters.point(field.name, glm::dvec3(0)), 1));
   }
   void place(glm::dvec3& position, glm::dmat3& rotation) {
     position = glm::dvec3(world_from_light[3]);
@@ -85,7 +90,8 @@ struct LightReader : FieldReader {
   void directions(const Field& field, std::shared_ptr<const EnvironmentImage>& value) {
     image(field, value);
     if (value && value->width != value->height)
-      parameters.error(field.name, size_of(parameters, field.name, *value) + ", and not square (equal-area)");
+      parameters.error(field.name,
+                       size_of(parameters, field.name, *value) + ", and not square (equal-area)");
   }
   void profile(const Field& field, std::shared_ptr<const IesProfile>& value) {
     if (is_there(field)) value = files.profile(parameters, field.name);
@@ -95,9 +101,12 @@ struct LightReader : FieldReader {
                             parameters.point(to.name, glm::dvec3(0, 0, 1)), world_from_light);
   }
   void cone(double& total_angle, double& falloff_start_angle) {
-    const double cone = parameters.number("coneangle", 30), delta = parameters.number("conedeltaangle", 5);
-    if (!(cone > 0 && cone <= 180)) parameters.error("coneangle", "must be above 0 and at most 180 degrees");
-    if (!(delta >= 0 && delta <= cone)) parameters.error("conedeltaangle", "must lie between 0 and \"coneangle\"");
+    const double cone = parameters.number("coneangle", 30),
+                 delta = parameters.number("conedeltaangle", 5);
+    if (!(cone > 0 && cone <= 180))
+      parameters.error("coneangle", "must be above 0 and at most 180 degrees");
+    if (!(delta >= 0 && delta <= cone))
+      parameters.error("conedeltaangle", "must lie between 0 and \"coneangle\"");
     total_angle = cone * glm::pi<double>() / 180;
     falloff_start_angle = (cone - delta) * glm::pi<double>() / 180;
   }
@@ -106,10 +115,12 @@ struct LightReader : FieldReader {
     light.radiance = white(parameters, "L");
     if (const std::string preset = parameters.text("preset", ""); !preset.empty()) {
       for (const char* other : {"L", "filename"})
-        if (parameters.has(other)) parameters.error("preset", "cannot be combined with " + in_quotes(other));
+        if (parameters.has(other))
+          parameters.error("preset", "cannot be combined with " + in_quotes(other));
       light.image = light_preset(preset);
       if (!light.image)
-        return parameters.error("preset", "is " + in_quotes(preset) + "; the nearest known name is " +
+        return parameters.error("preset", "is " + in_quotes(preset) +
+                                              "; the nearest known name is " +
                                               in_quotes(nearest_name(preset, light_presets())));
       light.world_from_light = rotation_of(parameters, world_from_light);
     } else if (!parameters.text("filename", "").empty()) {
@@ -133,15 +144,17 @@ struct LightReader : FieldReader {
   void portal(InfiniteLight& light, const Parameter& corners) {
     if (corners.numbers.size() != 12) return parameters.error("portal", "must be four points");
     LightPortal& to = light.portal.emplace();
-    for (std::size_t i = 0; i < 4; ++i) to[i] = {corners.numbers[3 * i], corners.numbers[3 * i + 1], corners.numbers[3 * i + 2]};
+    for (std::size_t i = 0; i < 4; ++i)
+      to[i] = {corners.numbers[3 * i], corners.numbers[3 * i + 1], corners.numbers[3 * i + 2]};
   }
 };
 
 }  // namespace
 
 template <class File, class Read>
-std::shared_ptr<const File> LightFiles::file(Parameters& parameters, const char* name, Read&& read,
-                                             std::map<std::string, std::shared_ptr<const File>>& files) {
+std::shared_ptr<const File> LightFiles::file(
+    Parameters& parameters, const char* name, Read&& read,
+    std::map<std::string, std::shared_ptr<const File>>& files) {
   const std::string given = parameters.text(name, "");
   const std::string path = file_of(parameters, name);
   std::error_code ignored;
@@ -149,7 +162,8 @@ std::shared_ptr<const File> LightFiles::file(Parameters& parameters, const char*
     parameters.error(name, "no such file " + in_quotes(path));
     return nullptr;
   }
-  const auto [found, fresh] = files.try_emplace(std::filesystem::weakly_canonical(path, ignored).string(), nullptr);
+  const auto [found, fresh] =
+      files.try_emplace(std::filesystem::weakly_canonical(path, ignored).string(), nullptr);
   if (!fresh && found->second) return found->second;
   try {
     found->second = read(path);
@@ -159,7 +173,8 @@ std::shared_ptr<const File> LightFiles::file(Parameters& parameters, const char*
   return found->second;
 }
 
-std::shared_ptr<const EnvironmentImage> LightFiles::image(Parameters& parameters, const char* name) {
+std::shared_ptr<const EnvironmentImage> LightFiles::image(Parameters& parameters,
+                                                          const char* name) {
   const auto read = [&](const std::string& path) {
     auto image = std::make_shared<EnvironmentImage>(reader_.read_rgb(path));
     if (image->width < 1 || image->height < 1) throw InputError(path + " has no pixels");
@@ -171,21 +186,24 @@ std::shared_ptr<const EnvironmentImage> LightFiles::image(Parameters& parameters
 
 std::shared_ptr<const IesProfile> LightFiles::profile(Parameters& parameters, const char* name) {
   return file(
-      parameters, name, [](const std::string& path) { return std::make_shared<IesProfile>(read_ies(path)); }, profiles_);
+      parameters, name,
+      [](const std::string& path) { return std::make_shared<IesProfile>(read_ies(path)); },
+      profiles_);
 }
 
-std::optional<Light> make_light(const std::string& type, Parameters& parameters, const glm::dmat4& world_from_light,
-                                LightFiles& files) {
+std::optional<Light> make_light(const std::string& type, Parameters& parameters,
+                                const glm::dmat4& world_from_light, LightFiles& files) {
   Light light;
   light.where = parameters.where();
   light.scale = scale_of(parameters);
-#define LIGHT_MODEL(name, Type)                                                                                \
-  if (type == #name) {                                                                                         \
-    if (Type::unit == LightUnit::power) light.power = positive_or_none(parameters, "power");                   \
-    if (Type::unit == LightUnit::illuminance) light.illuminance = positive_or_none(parameters, "illuminance"); \
-    Type model;                                                                                                \
-    Type::fields(model, LightReader{{parameters}, world_from_light, files});                                   \
-    light.model = std::move(model);                                                                            \
+#define LIGHT_MODEL(name, Type)                                                              \
+  if (type == #name) {                                                                       \
+    if (Type::unit == LightUnit::power) light.power = positive_or_none(parameters, "power"); \
+    if (Type::unit == LightUnit::illuminance)                                                \
+      light.illuminance = positive_or_none(parameters, "illuminance");                       \
+    Type model;                                                                              \
+    Type::fields(model, LightReader{{parameters}, world_from_light, files});                 \
+    light.model = std::move(model);                                                          \
   }
 #include "scene/lights.def"
   parameters.finish();

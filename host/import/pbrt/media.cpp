@@ -57,7 +57,8 @@ struct MediumReader : FieldReader {
   void volume(SparseGridPointer& density, SparseGridPointer& temperature, glm::dmat4& place) {
     place = world_from_medium;
     if (!parameters.has("filename")) return parameters.error("\"string filename\" is missing");
-    const std::string file = resolve_file(parameters.text("filename", ""), parameters.where("filename"), parameters.main_file());
+    const std::string file = resolve_file(parameters.text("filename", ""),
+                                          parameters.where("filename"), parameters.main_file());
     try {
       density = read_nanovdb(file, "density", parameters.where("filename"));
       temperature = read_nanovdb(file, "temperature", parameters.where("filename"));
@@ -69,15 +70,19 @@ struct MediumReader : FieldReader {
   void number(Field field, double& value) {
     // pbrt-v4 accepts these older names.
     const std::string_view asked = field.name;
-    const char* const older = asked == "temperatureoffset" ? "temperaturecutoff" : asked == "Lescale" ? "LeScale" : field.name;
-    if (older != field.name && !parameters.has(field.name) && parameters.has(older)) field.name = older;
+    const char* const older = asked == "temperatureoffset" ? "temperaturecutoff"
+                              : asked == "Lescale"         ? "LeScale"
+                                                           : field.name;
+    if (older != field.name && !parameters.has(field.name) && parameters.has(older))
+      field.name = older;
     FieldReader::number(field, value);
   }
   void bounds(MediumBounds& of) {
     const glm::dvec3 p0 = parameters.point("p0", of.p0), p1 = parameters.point("p1", of.p1);
     of = {glm::min(p0, p1), glm::max(p0, p1), world_from_medium};
     for (int k = 0; k < 3; ++k)
-      if (of.p0[k] == of.p1[k]) return parameters.error(parameters.has("p1") ? "p1" : "p0", "makes the medium's box flat");
+      if (of.p0[k] == of.p1[k])
+        return parameters.error(parameters.has("p1") ? "p1" : "p0", "makes the medium's box flat");
   }
   void counts(GridCounts& of) {
     double cells = 1;
@@ -87,25 +92,30 @@ struct MediumReader : FieldReader {
       of[k] = std::max(of[k], 1);
       cells *= of[k];
     }
-    if (cells > static_cast<double>(most_grid_cells)) parameters.error("the grid has more than 2^28 cells");
+    if (cells > static_cast<double>(most_grid_cells))
+      parameters.error("the grid has more than 2^28 cells");
   }
   void grid(const Field& field, FloatGrid& of, const GridCounts& counts, bool is_needed) {
     const char* const name = field.name;
     const Parameter* given = parameters.values(name, {"float"});
-    if (!given && is_needed && !parameters.has(name)) parameters.error("\"float " + std::string(name) + "\" is missing");
+    if (!given && is_needed && !parameters.has(name))
+      parameters.error("\"float " + std::string(name) + "\" is missing");
     if (given) of = values(name, *given, counts, 1);
   }
   void grid(const Field& field, ColorGrid& of, const GridCounts& counts) {
     const Parameter* given = parameters.values(field.name, {"rgb"});
     if (given) of = {values(field.name, *given, counts, 3), given->space};
   }
-  FloatGrid values(const char* name, const Parameter& given, const GridCounts& counts, std::size_t each) {
+  FloatGrid values(const char* name, const Parameter& given, const GridCounts& counts,
+                   std::size_t each) {
     const auto expected = static_cast<double>(each) * counts[0] * counts[1] * counts[2];
     if (static_cast<double>(given.numbers.size()) != expected) {
-      parameters.error(name, "has " + std::to_string(given.numbers.size() / each) + " values, but a grid of " +
-                                 std::to_string(counts[0]) + " x " + std::to_string(counts[1]) + " x " +
-                                 std::to_string(counts[2]) + " cells takes " +
-                                 std::to_string(static_cast<long long>(expected) / static_cast<long long>(each)));
+      parameters.error(
+          name,
+          "has " + std::to_string(given.numbers.size() / each) + " values, but a grid of " +
+              std::to_string(counts[0]) + " x " + std::to_string(counts[1]) + " x " +
+              std::to_string(counts[2]) + " cells takes " +
+              std::to_string(static_cast<long long>(expected) / static_cast<long long>(each)));
       return nullptr;
     }
     std::vector<float> out;

@@ -32,9 +32,11 @@ std::vector<std::string> shape_types() {
 }
 
 /// Sorts both lists, and removes accepted names from the refused ones.
-NameTable table_of(std::string directive, std::vector<std::string> accepted, std::vector<std::string> refused) {
+NameTable table_of(std::string directive, std::vector<std::string> accepted,
+                   std::vector<std::string> refused) {
   std::ranges::sort(accepted);
-  std::erase_if(refused, [&](const std::string& name) { return std::ranges::binary_search(accepted, name); });
+  std::erase_if(
+      refused, [&](const std::string& name) { return std::ranges::binary_search(accepted, name); });
   return {std::move(directive), std::move(accepted), std::move(refused)};
 }
 
@@ -65,8 +67,10 @@ const std::vector<NameTable>& name_tables() {
       {"Camera", {"orthographic", "perspective", "spherical"}, {"realistic"}},
       table_of("ColorSpace", {color_space_names.begin(), color_space_names.end()}, {}),
       {"Film", {"gbuffer", "rgb", "spectral"}, {}},
-      table_of("Integrator", with(integrator_names, {"bdpt", "lightpath", "mlt", "simplevolpath", "sppm", "volpath"}),
-               {"function"}),
+      table_of(
+          "Integrator",
+          with(integrator_names, {"bdpt", "lightpath", "mlt", "simplevolpath", "sppm", "volpath"}),
+          {"function"}),
       table_of("LightSource",
                {
 #define LIGHT_MODEL(name, Type) #name,
@@ -85,11 +89,12 @@ const std::vector<NameTable>& name_tables() {
 #define MATERIAL_MODEL(name, Type) #name,
 #include "scene/materials.def"
                },
-               {"coatedconductor", "coateddiffuse", "diffusetransmission", "hair", "interface", "measured", "mix", "subsurface",
-                "thindielectric"}),
+               {"coatedconductor", "coateddiffuse", "diffusetransmission", "hair", "interface",
+                "measured", "mix", "subsurface", "thindielectric"}),
       {"Option",
-       {"disablepixeljitter", "disabletexturefiltering", "disablewavelengthjitter", "displacementedgescale", "forcediffuse",
-        "pixelstats", "rendercoordsys", "seed", "wavefront"},
+       {"disablepixeljitter", "disabletexturefiltering", "disablewavelengthjitter",
+        "displacementedgescale", "forcediffuse", "pixelstats", "rendercoordsys", "seed",
+        "wavefront"},
        {"msereferenceimage", "msereferenceout"}},
       table_of("PixelFilter", {filter_names.begin(), filter_names.end()}, {}),
       table_of("Sampler", with(sampler_names, {"halton", "paddedsobol", "pmj02bn"}), {}),
@@ -101,7 +106,8 @@ const std::vector<NameTable>& name_tables() {
 #define OWN_TEXTURE_MODEL(name, Type)
 #include "scene/textures.def"
                },
-               {"bilerp", "checkerboard", "directionmix", "dots", "fbm", "imagemap", "marble", "ptex", "windy", "wrinkled"}),
+               {"bilerp", "checkerboard", "directionmix", "dots", "fbm", "imagemap", "marble",
+                "ptex", "windy", "wrinkled"}),
   };
   return tables;
 }
@@ -161,7 +167,8 @@ bool contains(const std::vector<std::string>& names, const std::string& name) {
 
 bool is_known_name(std::string_view directive, const std::string& name) {
   return std::ranges::any_of(name_tables(), [&](const NameTable& table) {
-    return table.directive == directive && (contains(table.accepted, name) || contains(table.refused, name));
+    return table.directive == directive &&
+           (contains(table.accepted, name) || contains(table.refused, name));
   });
 }
 
@@ -169,18 +176,21 @@ Refusal refusal_of(std::string_view directive, const std::string& name) {
   for (const NameTable& table : name_tables()) {
     if (table.directive != directive) continue;
     if (contains(table.accepted, name)) return {};
-    if (contains(table.refused, name)) return {fmt::format("{} \"{}\" is not rendered yet", table.directive, name)};
+    if (contains(table.refused, name))
+      return {fmt::format("{} \"{}\" is not rendered yet", table.directive, name)};
     const std::string unknown = fmt::format("unknown {} {}", table.directive, in_quotes(name));
     if (const std::string old = v3_name(directive, name); !old.empty())
       return {fmt::format("{}: that is {}", unknown, old), false};
     std::vector<std::string> known = table.accepted;
     known.insert(known.end(), table.refused.begin(), table.refused.end());
-    return {fmt::format("{}; the nearest known name is \"{}\"", unknown, nearest_name(name, known)), false};
+    return {fmt::format("{}; the nearest known name is \"{}\"", unknown, nearest_name(name, known)),
+            false};
   }
   return {"unknown directive " + in_quotes(directive), false};
 }
 
-bool check_name(std::string_view directive, const std::string& name, const SourceLocation& where, Diagnostics& diagnostics) {
+bool check_name(std::string_view directive, const std::string& name, const SourceLocation& where,
+                Diagnostics& diagnostics) {
   const Refusal refusal = refusal_of(directive, name);
   if (refusal.text.empty()) return true;
   diagnostics.error(where, refusal.text, refusal.text);

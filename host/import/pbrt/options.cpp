@@ -34,25 +34,41 @@ void warn(Parameters& parameters, std::string_view name, const std::string& mess
 
 /// Lists the camera sensors whose response curves pbrt-v4 has.
 const std::vector<std::string>& camera_sensors() {
-  static const std::vector<std::string> names = {
-      "canon_eos_100d",     "canon_eos_1dx_mkii", "canon_eos_200d", "canon_eos_200d_mkii", "canon_eos_5d",   "canon_eos_5d_mkii",
-      "canon_eos_5d_mkiii", "canon_eos_5d_mkiv",  "canon_eos_5ds",  "canon_eos_m",         "cie1931",        "hasselblad_l1d_20c",
-      "nikon_d810",         "nikon_d850",         "sony_ilce_6400", "sony_ilce_7m3",       "sony_ilce_7rm3", "sony_ilce_9"};
+  static const std::vector<std::string> names = {"canon_eos_100d",
+                                                 "canon_eos_1dx_mkii",
+                                                 "canon_eos_200d",
+                                                 "canon_eos_200d_mkii",
+                                                 "canon_eos_5d",
+                                                 "canon_eos_5d_mkii",
+                                                 "canon_eos_5d_mkiii",
+                                                 "canon_eos_5d_mkiv",
+                                                 "canon_eos_5ds",
+                                                 "canon_eos_m",
+                                                 "cie1931",
+                                                 "hasselblad_l1d_20c",
+                                                 "nikon_d810",
+                                                 "nikon_d850",
+                                                 "sony_ilce_6400",
+                                                 "sony_ilce_7m3",
+                                                 "sony_ilce_7rm3",
+                                                 "sony_ilce_9"};
   return names;
 }
 
-/// Reads "sensor" and "whitebalance". For a camera's sensor only pbrt-v4's white balance is applied, not its response curves.
+/// Reads "sensor" and "whitebalance". For a camera's sensor only pbrt-v4's white balance is
+/// applied, not its response curves.
 void set_sensor(Parameters& parameters, FilmSettings& film) {
   const std::string sensor = parameters.text("sensor", "cie1931");
   const auto& known = camera_sensors();
   if (std::ranges::find(known, sensor) == known.end())
-    return parameters.error("sensor",
-                            "is " + in_quotes(sensor) + "; the nearest known name is \"" + nearest_name(sensor, known) + "\"");
+    return parameters.error("sensor", "is " + in_quotes(sensor) + "; the nearest known name is \"" +
+                                          nearest_name(sensor, known) + "\"");
   if (film.white_balance > 0 && !(film.white_balance >= 1000 && film.white_balance <= 25000))
     parameters.error("whitebalance", must_lie_within(1000, 25000) + " kelvin");
   if (sensor == "cie1931") return;
   if (film.white_balance == 0) film.white_balance = 6500;
-  warn(parameters, "sensor", "the colours are those of the CIE 1931 observer, not of " + in_quotes(sensor));
+  warn(parameters, "sensor",
+       "the colours are those of the CIE 1931 observer, not of " + in_quotes(sensor));
 }
 
 /// Reads the direction and the up axis of an automatic camera.
@@ -89,8 +105,8 @@ std::optional<Backdrop> backdrop_of(Parameters& parameters, const ImageReader* i
     try {
       if (!images) throw InputError("pictures cannot be read here");
       out.kind = Backdrop::Kind::image;
-      out.image = std::make_shared<const EnvironmentImage>(
-          images->read_rgb(resolve_file(name, parameters.where("backgroundfile"), parameters.main_file())));
+      out.image = std::make_shared<const EnvironmentImage>(images->read_rgb(
+          resolve_file(name, parameters.where("backgroundfile"), parameters.main_file())));
     } catch (const InputError& error) {
       parameters.error("backgroundfile", error.what());
       return std::nullopt;
@@ -105,23 +121,27 @@ Projection projection_of(const std::string& type, Parameters& parameters) {
   if (type == "orthographic") return OrthographicProjection{};
   if (type == "spherical") {
     int mapping = 0;
-    FieldReader{parameters}.choice(SphericalProjection::mapping_field, mapping, SphericalProjection::mapping_names);
+    FieldReader{parameters}.choice(SphericalProjection::mapping_field, mapping,
+                                   SphericalProjection::mapping_names);
     return SphericalProjection{static_cast<SphericalProjection::Mapping>(mapping)};
   }
   const double given = parameters.number("fov", 90), half = parameters.number("halffov", -1);
   const double degrees = half > 0 ? 2 * half : given;
   if (degrees > 0 && degrees < 180) return PerspectiveProjection{degrees * glm::pi<double>() / 180};
-  parameters.error(half > 0 ? "halffov" : "fov", half > 0 ? "must be below 90 degrees" : "must be above 0 and below 180 degrees");
+  parameters.error(half > 0 ? "halffov" : "fov",
+                   half > 0 ? "must be below 90 degrees" : "must be above 0 and below 180 degrees");
   return PerspectiveProjection{};
 }
 
 }  // namespace
 
-void set_camera(const std::string& type, Parameters& parameters, const glm::dmat4& world_from_camera, Scene& scene) {
+void set_camera(const std::string& type, Parameters& parameters,
+                const glm::dmat4& world_from_camera, Scene& scene) {
   Camera camera;
   camera.world_from_camera = world_from_camera;
   camera.projection = projection_of(type, parameters);
-  if (parameters.has("frameaspectratio")) camera.frame_aspect_ratio = positive(parameters, "frameaspectratio", 1);
+  if (parameters.has("frameaspectratio"))
+    camera.frame_aspect_ratio = positive(parameters, "frameaspectratio", 1);
   if (const Parameter* window = parameters.values("screenwindow", {"float"})) {
     const auto& v = window->numbers;
     if (v.size() != 4)
@@ -132,13 +152,17 @@ void set_camera(const std::string& type, Parameters& parameters, const glm::dmat
       camera.screen_window = {v[0], v[1], v[2], v[3]};
   }
   Camera::fields(camera, FieldReader{parameters});
-  const bool has_parallel_lens = is_orthographic(camera) && parameters.boolean(Camera::parallel_lens_field.name, false);
+  const bool has_parallel_lens =
+      is_orthographic(camera) && parameters.boolean(Camera::parallel_lens_field.name, false);
   if (is_orthographic(camera) && camera.lens_radius > 0 && !has_parallel_lens) {
-    // All rays of pbrt-v4 then leave the same lens: a perspective through the window at the focal distance.
+    // All rays of pbrt-v4 then leave the same lens: a perspective through the window at the focal
+    // distance.
     camera.projection = PerspectiveProjection{2 * std::atan(1 / camera.focal_distance)};
-    warn(parameters, "lensradius", "makes a perspective of it, as in pbrt-v4; with \"bool parallellens\" true it makes none");
+    warn(parameters, "lensradius",
+         "makes a perspective of it, as in pbrt-v4; with \"bool parallellens\" true it makes none");
   }
-  const double open = parameters.number("shutteropen", 0), close = parameters.number("shutterclose", 1);
+  const double open = parameters.number("shutteropen", 0),
+               close = parameters.number("shutterclose", 1);
   if (close > open)
     scene.film.exposure_time = close - open;
   else
@@ -151,7 +175,8 @@ void set_camera(const std::string& type, Parameters& parameters, const glm::dmat
   scene.camera = camera;
 }
 
-void set_film(const std::string& type, Parameters& parameters, ColorSpace space, Scene& scene, const ImageReader* images) {
+void set_film(const std::string& type, Parameters& parameters, ColorSpace space, Scene& scene,
+              const ImageReader* images) {
   FilmSettings film;
   film.exposure_time = scene.film.exposure_time;
   film.space = space;
@@ -160,7 +185,8 @@ void set_film(const std::string& type, Parameters& parameters, ColorSpace space,
   if (const Parameter* bounds = parameters.values("pixelbounds", {"integer"})) {
     const auto& v = bounds->numbers;
     if (v.size() == 4)
-      film.crop = {static_cast<int>(v[0]), static_cast<int>(v[1]), static_cast<int>(v[2]), static_cast<int>(v[3])};
+      film.crop = {static_cast<int>(v[0]), static_cast<int>(v[1]), static_cast<int>(v[2]),
+                   static_cast<int>(v[3])};
     else
       parameters.error("pixelbounds", "takes 4 values, not " + std::to_string(v.size()));
   }
@@ -177,11 +203,13 @@ void set_film(const std::string& type, Parameters& parameters, ColorSpace space,
     else if (film.crop)
       parameters.error("cropwindow", "cannot be combined with \"pixelbounds\"");
     else
-      film.crop = {pixel(v[0], film.width), pixel(v[1], film.width), pixel(v[2], film.height), pixel(v[3], film.height)};
+      film.crop = {pixel(v[0], film.width), pixel(v[1], film.width), pixel(v[2], film.height),
+                   pixel(v[3], film.height)};
   }
   if (film.crop) {
     const auto& c = *film.crop;
-    if (!(0 <= c[0] && c[0] < c[1] && c[1] <= film.width && 0 <= c[2] && c[2] < c[3] && c[3] <= film.height))
+    if (!(0 <= c[0] && c[0] < c[1] && c[1] <= film.width && 0 <= c[2] && c[2] < c[3] &&
+          c[3] <= film.height))
       parameters.error(parameters.has("pixelbounds") ? "pixelbounds" : "cropwindow",
                        "must be x0, x1, y0, y1 of a part of the image that is not empty");
   }
@@ -203,13 +231,15 @@ void set_film(const std::string& type, Parameters& parameters, ColorSpace space,
 
 void set_filter(const std::string& type, Parameters& parameters, Scene& scene) {
   PixelFilter filter;
-  filter.set_kind(schema::kind_of<PixelFilter::Kind>(type, filter_names).value_or(PixelFilter::Kind::gaussian));
+  filter.set_kind(
+      schema::kind_of<PixelFilter::Kind>(type, filter_names).value_or(PixelFilter::Kind::gaussian));
   PixelFilter::fields(filter, FieldReader{parameters});
   parameters.finish();
   scene.filter = filter;
 }
 
-std::optional<std::uint32_t> set_sampler(const std::string& type, Parameters& parameters, Scene& scene) {
+std::optional<std::uint32_t> set_sampler(const std::string& type, Parameters& parameters,
+                                         Scene& scene) {
   SamplerSettings sampler;
   const bool has_seed = parameters.has("seed");
   const auto kind = schema::kind_of<SamplerSettings::Kind>(type, sampler_names);
@@ -223,7 +253,8 @@ std::optional<std::uint32_t> set_sampler(const std::string& type, Parameters& pa
     else
       sampler.samples_per_pixel = static_cast<int>(samples);
   }
-  if (type == "halton" || type == "paddedsobol" || type == "sobol" || type == "zsobol") parameters.text("randomization", "");
+  if (type == "halton" || type == "paddedsobol" || type == "sobol" || type == "zsobol")
+    parameters.text("randomization", "");
   parameters.finish();
   const std::uint32_t seed = std::exchange(sampler.seed, scene.sampler.seed);
   scene.sampler = sampler;
@@ -232,7 +263,8 @@ std::optional<std::uint32_t> set_sampler(const std::string& type, Parameters& pa
 
 void set_integrator(const std::string& type, Parameters& parameters, Scene& scene) {
   IntegratorSettings integrator;
-  const auto kind = schema::kind_of<IntegratorSettings::Kind>(type == "volpath" ? "path" : type, integrator_names);
+  const auto kind = schema::kind_of<IntegratorSettings::Kind>(type == "volpath" ? "path" : type,
+                                                              integrator_names);
   integrator.kind = kind.value_or(IntegratorSettings::Kind::path);
   if (!kind) warn(parameters, {}, "rendered by the path tracer, which converges to the same image");
   IntegratorSettings::fields(integrator, FieldReader{parameters});
@@ -244,9 +276,11 @@ void set_integrator(const std::string& type, Parameters& parameters, Scene& scen
   // These write additional pictures, or affect only noise.
   if (type == "bdpt")
     for (const char* name : {"visualizestrategies", "visualizeweights"}) parameters.ignore(name);
-  if (type == "path" || type == "volpath" || type == "simplevolpath") parameters.ignore("rrthreshold");
+  if (type == "path" || type == "volpath" || type == "simplevolpath")
+    parameters.ignore("rrthreshold");
   if (type == "mlt")
-    for (const char* name : {"bootstrapsamples", "chains", "mutationsperpixel", "largestepprobability", "sigma"})
+    for (const char* name :
+         {"bootstrapsamples", "chains", "mutationsperpixel", "largestepprobability", "sigma"})
       parameters.ignore(name);
   if (type == "sppm")
     for (const char* name : {"photonsperiteration", "radius", "seed"}) parameters.ignore(name);
@@ -259,12 +293,13 @@ void check_accelerator(const std::string& type, Parameters& parameters) {
     if (type == "bvh") parameters.ignore(name);
   for (const char* name : {"intersectcost", "traversalcost", "emptybonus", "maxprims", "maxdepth"})
     if (type == "kdtree") parameters.ignore(name);
-  log::info("{}: {} has no effect on the image and is ignored", parameters.where().to_string(), parameters.owner());
+  log::info("{}: {} has no effect on the image and is ignored", parameters.where().to_string(),
+            parameters.owner());
   parameters.finish();
 }
 
-std::optional<std::uint32_t> set_option(const std::string& name, const Token& value, const std::string& file,
-                                        Diagnostics& diagnostics) {
+std::optional<std::uint32_t> set_option(const std::string& name, const Token& value,
+                                        const std::string& file, Diagnostics& diagnostics) {
   const auto wrong = [&](const std::string& message) {
     diagnostics.error(place_of(value, file), "Option " + in_quotes(name) + " " + message);
   };
@@ -276,7 +311,8 @@ std::optional<std::uint32_t> set_option(const std::string& name, const Token& va
       wrong("must be \"camera\", \"cameraworld\" or \"world\", not " + in_quotes(value.text));
   } else if (value.text != "true" && value.text != "false") {
     wrong("must be true or false, not " + in_quotes(value.text));
-  } else if (value.text == "true" && name != "disabletexturefiltering" && name != "pixelstats" && name != "wavefront") {
+  } else if (value.text == "true" && name != "disabletexturefiltering" && name != "pixelstats" &&
+             name != "wavefront") {
     wrong("is not rendered yet");
   }
   return std::nullopt;

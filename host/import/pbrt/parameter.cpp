@@ -22,12 +22,14 @@ struct TypeRow {
 
 const std::vector<TypeRow>& type_rows() {
   static const std::vector<TypeRow> rows = {
-      {"integer", "integer", 1, false},   {"float", "float", 1, false},   {"bool", "bool", 1, false},
-      {"string", "string", 1, false},     {"point2", "point2", 2, false}, {"vector2", "vector2", 2, false},
-      {"point3", "point3", 3, false},     {"point", "point3", 3, false},  {"vector3", "vector3", 3, false},
-      {"vector", "vector3", 3, false},    {"normal", "normal", 3, false}, {"normal3", "normal", 3, false},
-      {"spectrum", "spectrum", 1, false}, {"rgb", "rgb", 3, false},       {"blackbody", "blackbody", 1, true},
-      {"texture", "texture", 1, true}};
+      {"integer", "integer", 1, false},    {"float", "float", 1, false},
+      {"bool", "bool", 1, false},          {"string", "string", 1, false},
+      {"point2", "point2", 2, false},      {"vector2", "vector2", 2, false},
+      {"point3", "point3", 3, false},      {"point", "point3", 3, false},
+      {"vector3", "vector3", 3, false},    {"vector", "vector3", 3, false},
+      {"normal", "normal", 3, false},      {"normal3", "normal", 3, false},
+      {"spectrum", "spectrum", 1, false},  {"rgb", "rgb", 3, false},
+      {"blackbody", "blackbody", 1, true}, {"texture", "texture", 1, true}};
   return rows;
 }
 
@@ -39,7 +41,8 @@ const TypeRow* find_type(std::string_view name) {
 
 std::string unknown_type(std::string_view type) {
   const std::string unknown = "unknown parameter type " + in_quotes(type);
-  if (const std::string old = v3_name("type", type); !old.empty()) return unknown + ": that is " + old;
+  if (const std::string old = v3_name("type", type); !old.empty())
+    return unknown + ": that is " + old;
   std::vector<std::string> known;
   for (const TypeRow& row : type_rows()) known.emplace_back(row.name);
   return unknown + "; the nearest known type is \"" + nearest_name(type, known) + "\"";
@@ -63,16 +66,24 @@ void add_value(Parameter& parameter, const Token& token, const Lexer& lexer) {
   const bool is_string = token.kind == Token::Kind::string;
   if (parameter.type == "bool") {
     if (token.text != "true" && token.text != "false")
-      throw SyntaxError{lexer.place(token), "expected true or false, found " + in_quotes(token.text)};
+      throw SyntaxError{lexer.place(token),
+                        "expected true or false, found " + in_quotes(token.text)};
     parameter.bools.push_back(token.text == "true");
-  } else if (parameter.type == "string" || parameter.type == "texture" || (parameter.type == "spectrum" && is_string)) {
-    if (!is_string) throw SyntaxError{lexer.place(token), "expected a quoted string, found " + in_quotes(token.text)};
+  } else if (parameter.type == "string" || parameter.type == "texture" ||
+             (parameter.type == "spectrum" && is_string)) {
+    if (!is_string)
+      throw SyntaxError{lexer.place(token),
+                        "expected a quoted string, found " + in_quotes(token.text)};
     parameter.strings.emplace_back(token.text);
   } else if (parameter.type == "integer") {
-    if (is_string) throw SyntaxError{lexer.place(token), "expected an integer, found the string " + in_quotes(token.text)};
+    if (is_string)
+      throw SyntaxError{lexer.place(token),
+                        "expected an integer, found the string " + in_quotes(token.text)};
     parameter.numbers.push_back(parse_integer(token, lexer.file()));
   } else {
-    if (is_string) throw SyntaxError{lexer.place(token), "expected a number, found the string " + in_quotes(token.text)};
+    if (is_string)
+      throw SyntaxError{lexer.place(token),
+                        "expected a number, found the string " + in_quotes(token.text)};
     parameter.numbers.push_back(parse_number(token, lexer.file()));
   }
 }
@@ -80,7 +91,8 @@ void add_value(Parameter& parameter, const Token& token, const Lexer& lexer) {
 void skip_values(Lexer& lexer) {
   if (lexer.peek().kind == Token::Kind::close) lexer.next();
   if (lexer.peek().kind != Token::Kind::open) return;
-  while (lexer.peek().kind != Token::Kind::close && lexer.peek().kind != Token::Kind::end) lexer.next();
+  while (lexer.peek().kind != Token::Kind::close && lexer.peek().kind != Token::Kind::end)
+    lexer.next();
   if (lexer.peek().kind == Token::Kind::close) lexer.next();
 }
 
@@ -88,7 +100,8 @@ bool takes_numbers(const std::string& type) {
   return type != "bool" && type != "string" && type != "texture" && type != "spectrum";
 }
 
-/// Parses the values after a declaration. The first wrong value is kept in `problem`, and the rest is skipped.
+/// Parses the values after a declaration. The first wrong value is kept in `problem`, and the rest
+/// is skipped.
 void parse_values(Parameter& parameter, Lexer& lexer, std::optional<SyntaxError>& problem) {
   const auto add = [&](const Token& token) {
     if (problem) return;
@@ -100,16 +113,20 @@ void parse_values(Parameter& parameter, Lexer& lexer, std::optional<SyntaxError>
   };
   if (lexer.peek().kind != Token::Kind::open) {
     if (lexer.peek().kind != Token::Kind::word && lexer.peek().kind != Token::Kind::string)
-      throw SyntaxError{lexer.place(lexer.peek()),
-                        "the parameter " + in_quotes(parameter.type + " " + parameter.name) + " has no value"};
+      throw SyntaxError{
+          lexer.place(lexer.peek()),
+          "the parameter " + in_quotes(parameter.type + " " + parameter.name) + " has no value"};
     add(lexer.next());
     return;
   }
   const Token open = lexer.next();
-  if (takes_numbers(parameter.type)) lexer.take_numbers(parameter.numbers, parameter.type == "integer");
+  if (takes_numbers(parameter.type))
+    lexer.take_numbers(parameter.numbers, parameter.type == "integer");
   while (lexer.peek().kind != Token::Kind::close) {
-    if (lexer.peek().kind == Token::Kind::end) throw SyntaxError{lexer.place(open), "this bracket is never closed"};
-    if (lexer.peek().kind == Token::Kind::open) throw SyntaxError{lexer.place(lexer.peek()), "a bracket within brackets"};
+    if (lexer.peek().kind == Token::Kind::end)
+      throw SyntaxError{lexer.place(open), "this bracket is never closed"};
+    if (lexer.peek().kind == Token::Kind::open)
+      throw SyntaxError{lexer.place(lexer.peek()), "a bracket within brackets"};
     add(lexer.next());
   }
   lexer.next();
@@ -132,31 +149,40 @@ class GivenNames {
   std::unordered_map<std::string, std::size_t> table_;
 };
 
-/// Returns the lexer at the next parameter, or null. A statement at the end of an included file continues after the Include, as
-/// in pbrt-v4.
+/// Returns the lexer at the next parameter, or null. A statement at the end of an included file
+/// continues after the Include, as in pbrt-v4.
 Lexer* at_parameter(Lexer& lexer) {
   Lexer* at = &lexer;
   while (at && at->peek().kind == Token::Kind::end) at = at->behind();
   return at && at->peek().kind == Token::Kind::string ? at : nullptr;
 }
 
-std::string plural(std::size_t count) { return std::to_string(count) + (count == 1 ? " value" : " values"); }
+std::string plural(std::size_t count) {
+  return std::to_string(count) + (count == 1 ? " value" : " values");
+}
 
 /// Returns the error in a parameter's number of values; empty when it is right.
 std::string check_count(const Parameter& parameter, const TypeRow& row) {
-  const std::size_t count = parameter.numbers.size() + parameter.strings.size() + parameter.bools.size();
+  const std::size_t count =
+      parameter.numbers.size() + parameter.strings.size() + parameter.bools.size();
   const std::string name = in_quotes(parameter.type + " " + parameter.name);
   if (count == 0) return "the parameter " + name + " has no value";
   if (parameter.type == "spectrum") {
-    if (!parameter.strings.empty() && !parameter.numbers.empty()) return name + " mixes names and numbers";
-    if (parameter.strings.size() > 1) return name + " takes one name or file, not " + std::to_string(parameter.strings.size());
-    if (parameter.numbers.size() % 2) return name + " takes pairs of wavelength and value, not " + plural(count);
+    if (!parameter.strings.empty() && !parameter.numbers.empty())
+      return name + " mixes names and numbers";
+    if (parameter.strings.size() > 1)
+      return name + " takes one name or file, not " + std::to_string(parameter.strings.size());
+    if (parameter.numbers.size() % 2)
+      return name + " takes pairs of wavelength and value, not " + plural(count);
     for (std::size_t i = 2; i < parameter.numbers.size(); i += 2)
-      if (parameter.numbers[i] <= parameter.numbers[i - 2]) return name + ": wavelengths must ascend";
+      if (parameter.numbers[i] <= parameter.numbers[i - 2])
+        return name + ": wavelengths must ascend";
     return {};
   }
-  if (row.single && count != row.multiple) return name + " takes " + plural(row.multiple) + ", not " + std::to_string(count);
-  if (count % row.multiple) return name + " takes a multiple of " + plural(row.multiple) + ", not " + std::to_string(count);
+  if (row.single && count != row.multiple)
+    return name + " takes " + plural(row.multiple) + ", not " + std::to_string(count);
+  if (count % row.multiple)
+    return name + " takes a multiple of " + plural(row.multiple) + ", not " + std::to_string(count);
   return {};
 }
 
@@ -176,9 +202,11 @@ std::vector<Parameter> parse_parameters(Lexer& statement, Diagnostics& diagnosti
     const TypeRow* row = find_type(type);
     if (type.empty() || !row) {
       if (type.empty())
-        diagnostics.error(parameter.where, "expected a parameter (\"type name\"), found " + in_quotes(declaration.text));
+        diagnostics.error(parameter.where, "expected a parameter (\"type name\"), found " +
+                                               in_quotes(declaration.text));
       else
-        diagnostics.error(parameter.where, unknown_type(type), "parameter type " + std::string(type));
+        diagnostics.error(parameter.where, unknown_type(type),
+                          "parameter type " + std::string(type));
       if (lexer.peek().kind == Token::Kind::open || type.empty())
         skip_values(lexer);
       else if (lexer.peek().kind == Token::Kind::word || lexer.peek().kind == Token::Kind::string)
@@ -190,17 +218,19 @@ std::vector<Parameter> parse_parameters(Lexer& statement, Diagnostics& diagnosti
     std::optional<SyntaxError> problem;
     parse_values(parameter, lexer, problem);
     if (problem) {
-      diagnostics.error(problem->where, in_quotes(parameter.type + " " + parameter.name) + ": " + problem->message);
+      diagnostics.error(problem->where,
+                        in_quotes(parameter.type + " " + parameter.name) + ": " + problem->message);
       parameter.broken = true;
     } else if (const std::string complaint = check_count(parameter, *row); !complaint.empty()) {
       diagnostics.error(parameter.where, complaint);
       parameter.broken = true;
     }
     if (Parameter* first = given.find(parameters, parameter.name)) {
-      const std::string twice =
-          "the parameter " + in_quotes(parameter.name) + " is given twice (first at " + first->where.to_string() + ")";
+      const std::string twice = "the parameter " + in_quotes(parameter.name) +
+                                " is given twice (first at " + first->where.to_string() + ")";
       if (first->type != parameter.type) {
-        diagnostics.error(parameter.where, twice + ", as " + first->type + " and as " + parameter.type);
+        diagnostics.error(parameter.where,
+                          twice + ", as " + first->type + " and as " + parameter.type);
         continue;
       }
       parameter.again = twice + ": this one counts";

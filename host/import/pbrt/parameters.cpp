@@ -21,15 +21,20 @@ namespace {
 /// Returns a texture's refusal without its place.
 std::string kind_of(const std::string& refusal) { return refusal.substr(0, refusal.find(" (")); }
 
-/// Returns whether values without a stated type fit this one. A spectrum of one number is a float, of three numbers an rgb.
+/// Returns whether values without a stated type fit this one. A spectrum of one number is a float,
+/// of three numbers an rgb.
 bool suits(const Parameter& parameter, std::string_view type) {
   const std::size_t count = parameter.numbers.size();
   if (!parameter.bools.empty()) return type == "bool";
-  if (!parameter.strings.empty()) return type == "string" || type == "spectrum" || type == "texture";
-  if (type == "bool" || type == "string" || type == "texture" || type == "blackbody" || count == 0) return false;
+  if (!parameter.strings.empty())
+    return type == "string" || type == "spectrum" || type == "texture";
+  if (type == "bool" || type == "string" || type == "texture" || type == "blackbody" || count == 0)
+    return false;
   if (type == "spectrum") return count > 3 && count % 2 == 0;
   if (type == "integer")
-    return std::ranges::all_of(parameter.numbers, [](double x) { return x == std::floor(x) && std::abs(x) <= 2147483647.0; });
+    return std::ranges::all_of(parameter.numbers, [](double x) {
+      return x == std::floor(x) && std::abs(x) <= 2147483647.0;
+    });
   return count % values_each(type) == 0;
 }
 
@@ -71,13 +76,15 @@ struct SpectrumOf {
     return std::nullopt;
   }
   std::nullopt_t wrong_count(std::size_t count) {
-    return wrong("takes " + std::to_string(count) + (count == 1 ? " value, not " : " values, not ") +
+    return wrong("takes " + std::to_string(count) +
+                 (count == 1 ? " value, not " : " values, not ") +
                  std::to_string(given.numbers.size()));
   }
   std::optional<Spectrum> texture(const TextureTable& textures) {
     const TextureValue* found = textures.find(given.strings[0], false);
     if (!found || found->is_float)
-      return wrong((found ? "needs a spectrum texture, not the float texture " : "names an unknown texture, ") +
+      return wrong((found ? "needs a spectrum texture, not the float texture "
+                          : "names an unknown texture, ") +
                    in_quotes(given.strings[0]));
     if (!found->refusal.empty()) {
       parameters.error(given.name, "uses " + found->refusal, kind_of(found->refusal));
@@ -89,7 +96,8 @@ struct SpectrumOf {
   std::optional<Spectrum> constant() {
     if (given.numbers.size() != 1) return wrong_count(1);
     if (given.numbers[0] < 0) return wrong("must not be negative");
-    if (use == SpectrumUse::albedo && given.numbers[0] > 1) return wrong("is a reflectance above 1");
+    if (use == SpectrumUse::albedo && given.numbers[0] > 1)
+      return wrong("is a reflectance above 1");
     return ConstantSpectrum{given.numbers[0]};
   }
   std::optional<Spectrum> rgb() {
@@ -113,7 +121,8 @@ struct SpectrumOf {
         return wrong("names neither a known spectrum nor a file, " + in_quotes(given.strings[0]) +
                      (parameters.diagnostics().is_full()
                           ? ""
-                          : "; the nearest known name is \"" + nearest_name(given.strings[0], named_spectrum_names()) + "\""));
+                          : "; the nearest known name is \"" +
+                                nearest_name(given.strings[0], named_spectrum_names()) + "\""));
       try {
         out = read_spectrum_file(file, given.where);
       } catch (const InputError& problem) {
@@ -143,7 +152,8 @@ void add_errors(const InputError& problem, const SourceLocation& where, Diagnost
       diagnostics.error(where, message);
 }
 
-std::string resolve_file(const std::string& name, const SourceLocation& where, const std::string& main_file) {
+std::string resolve_file(const std::string& name, const SourceLocation& where,
+                         const std::string& main_file) {
   namespace fs = std::filesystem;
   const fs::path path(name);
   check_may_read(path.is_absolute() ? path : fs::path(where.file).parent_path() / path, where);
@@ -154,8 +164,9 @@ std::string resolve_file(const std::string& name, const SourceLocation& where, c
   return is_there(main, where) ? main.string() : beside.string();
 }
 
-Parameters::Parameters(std::vector<Parameter> own, SharedParameters attributes, std::string owner, SourceLocation where,
-                       const std::string& main_file, ColorSpace space, Diagnostics& diagnostics)
+Parameters::Parameters(std::vector<Parameter> own, SharedParameters attributes, std::string owner,
+                       SourceLocation where, const std::string& main_file, ColorSpace space,
+                       Diagnostics& diagnostics)
     : own_(std::move(own)),
       attributes_(std::move(attributes)),
       owner_(std::move(owner)),
@@ -195,7 +206,8 @@ void Parameters::error(std::string_view name, const std::string& message, const 
 
 bool Parameters::has(std::string_view name) { return find(name) != nullptr; }
 
-const Parameter* Parameters::values(std::string_view name, std::initializer_list<std::string_view> types) {
+const Parameter* Parameters::values(std::string_view name,
+                                    std::initializer_list<std::string_view> types) {
   Parameter* parameter = find(name);
   if (!parameter || parameter->broken) return nullptr;
   if (parameter->type.empty()) {
@@ -208,7 +220,8 @@ const Parameter* Parameters::values(std::string_view name, std::initializer_list
     }
     if (parameter->type.empty()) {
       std::string wanted;
-      for (const std::string_view type : types) wanted += (wanted.empty() ? "" : " or ") + std::string(type);
+      for (const std::string_view type : types)
+        wanted += (wanted.empty() ? "" : " or ") + std::string(type);
       error(name, mismatch(*parameter, wanted));
       parameter->broken = true;
       return nullptr;
@@ -256,7 +269,8 @@ std::string Parameters::text(std::string_view name, const std::string& fallback)
 glm::dvec3 Parameters::point(std::string_view name, const glm::dvec3& fallback) {
   const Parameter* parameter = values(name, {"point3"});
   if (!parameter) return fallback;
-  if (parameter->numbers.size() == 3) return {parameter->numbers[0], parameter->numbers[1], parameter->numbers[2]};
+  if (parameter->numbers.size() == 3)
+    return {parameter->numbers[0], parameter->numbers[1], parameter->numbers[2]};
   error(name, "takes 1 point, not " + std::to_string(parameter->numbers.size() / 3));
   return fallback;
 }
@@ -264,18 +278,22 @@ glm::dvec3 Parameters::point(std::string_view name, const glm::dvec3& fallback) 
 glm::dvec3 Parameters::vector(std::string_view name, const glm::dvec3& fallback) {
   const Parameter* parameter = values(name, {"vector3"});
   if (!parameter) return fallback;
-  if (parameter->numbers.size() == 3) return {parameter->numbers[0], parameter->numbers[1], parameter->numbers[2]};
+  if (parameter->numbers.size() == 3)
+    return {parameter->numbers[0], parameter->numbers[1], parameter->numbers[2]};
   error(name, "takes 1 vector, not " + std::to_string(parameter->numbers.size() / 3));
   return fallback;
 }
 
-std::optional<Spectrum> Parameters::spectrum(std::string_view name, SpectrumUse use, const TextureTable* textures) {
-  const Parameter* parameter = textures ? values(name, {"rgb", "spectrum", "blackbody", "float", "texture"})
-                                        : values(name, {"rgb", "spectrum", "blackbody", "float"});
+std::optional<Spectrum> Parameters::spectrum(std::string_view name, SpectrumUse use,
+                                             const TextureTable* textures) {
+  const Parameter* parameter =
+      textures ? values(name, {"rgb", "spectrum", "blackbody", "float", "texture"})
+               : values(name, {"rgb", "spectrum", "blackbody", "float"});
   return parameter ? SpectrumOf{*this, *parameter, use}.read(textures) : std::nullopt;
 }
 
-double Parameters::number_or_texture(std::string_view name, double fallback, const TextureTable& textures) {
+double Parameters::number_or_texture(std::string_view name, double fallback,
+                                     const TextureTable& textures) {
   const Parameter* parameter = values(name, {"float", "texture"});
   if (!parameter) return fallback;
   if (parameter->type == "float") return number(name, fallback);
@@ -283,7 +301,8 @@ double Parameters::number_or_texture(std::string_view name, double fallback, con
   if (!found)
     error(name, "names an unknown texture, " + in_quotes(parameter->strings[0]));
   else if (!found->is_float)
-    error(name, "needs a float texture, not the spectrum texture " + in_quotes(parameter->strings[0]));
+    error(name,
+          "needs a float texture, not the spectrum texture " + in_quotes(parameter->strings[0]));
   else if (!found->refusal.empty())
     error(name, "uses " + found->refusal, kind_of(found->refusal));
   else if (found->texture)
@@ -293,11 +312,13 @@ double Parameters::number_or_texture(std::string_view name, double fallback, con
   return fallback;
 }
 
-std::optional<std::uint32_t> Parameters::texture(std::string_view name, bool is_float, const TextureTable& textures) {
+std::optional<std::uint32_t> Parameters::texture(std::string_view name, bool is_float,
+                                                 const TextureTable& textures) {
   const Parameter* parameter = find(name);
   if (!parameter || parameter->type != "texture") return std::nullopt;
   const TextureValue* found = textures.find(parameter->strings[0], is_float);
-  return found && found->is_float == is_float && found->refusal.empty() ? found->texture : std::nullopt;
+  return found && found->is_float == is_float && found->refusal.empty() ? found->texture
+                                                                        : std::nullopt;
 }
 
 void Parameters::ignore(std::string_view name) { find(name); }
@@ -312,7 +333,8 @@ void Parameters::finish() {
     if (const std::string old = v3_parameter(directive, parameter.name); !old.empty())
       message += ": that is " + old;
     else if (!asked_.empty() && !diagnostics_->is_full())
-      message += "; the nearest known name is \"" + nearest_name(parameter.name, {asked_.begin(), asked_.end()}) + "\"";
+      message += "; the nearest known name is \"" +
+                 nearest_name(parameter.name, {asked_.begin(), asked_.end()}) + "\"";
     diagnostics_->error(parameter.where, message, directive + unknown);
   }
 }

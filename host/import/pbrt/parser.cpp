@@ -23,7 +23,8 @@ struct Directive {
 
 /// Calls a method of the interface of the target that has it.
 template <class Interface, class... Taken, class... Given>
-void call(Parser& parser, void (Interface::*method)(const Statement&, Taken...), Arguments& from, Given&&... given) {
+void call(Parser& parser, void (Interface::*method)(const Statement&, Taken...), Arguments& from,
+          Given&&... given) {
   (std::get<Interface&>(parser.target()).*method)(from.statement(), std::forward<Given>(given)...);
 }
 
@@ -61,7 +62,8 @@ void with_vector(Arguments& given, Parser& parser) {
 
 void active_transform(Arguments& given, Parser& parser) {
   const Token token = given.lexer().next();
-  call(parser, &TransformTarget::active_transform, given, Word{std::string(token.text), given.lexer().place(token)});
+  call(parser, &TransformTarget::active_transform, given,
+       Word{std::string(token.text), given.lexer().place(token)});
 }
 
 void attribute(Arguments& given, Parser& parser) {
@@ -71,12 +73,16 @@ void attribute(Arguments& given, Parser& parser) {
 
 void import_file(Arguments& given, Parser& parser) {
   call(parser, &StateTarget::import, given, given.string("a file name"),
-       [&](const std::string& file, std::string text) { parser.parse(file, std::move(text), nullptr); });
+       [&](const std::string& file, std::string text) {
+         parser.parse(file, std::move(text), nullptr);
+       });
 }
 
 void include_file(Arguments& given, Parser& parser) {
   call(parser, &StateTarget::include, given, given.string("a file name"),
-       [&](const std::string& file, std::string text) { parser.parse(file, std::move(text), &given.lexer()); });
+       [&](const std::string& file, std::string text) {
+         parser.parse(file, std::move(text), &given.lexer());
+       });
 }
 
 void look_at(Arguments& given, Parser& parser) {
@@ -101,14 +107,16 @@ void object_instance(Arguments& given, Parser& parser) {
 
 void option(Arguments& given, Parser& parser) {
   std::string name = given.string("a name").text;
-  if (const std::size_t blank = name.find_last_of(" \t"); blank != std::string::npos) name = name.substr(blank + 1);
+  if (const std::size_t blank = name.find_last_of(" \t"); blank != std::string::npos)
+    name = name.substr(blank + 1);
   Lexer& lexer = given.lexer();
   const bool bracket = lexer.peek().kind == Token::Kind::open;
   if (bracket) lexer.next();
   const Token value = lexer.next();
   if (value.kind != Token::Kind::word && value.kind != Token::Kind::string)
     throw SyntaxError{lexer.place(value), "Option needs a value, found " + in_quotes(value.text)};
-  if (bracket && lexer.next().kind != Token::Kind::close) throw SyntaxError{given.statement().where, "Option takes one value"};
+  if (bracket && lexer.next().kind != Token::Kind::close)
+    throw SyntaxError{given.statement().where, "Option takes one value"};
   call(parser, &OptionTarget::option, given, name, value);
 }
 
@@ -119,7 +127,8 @@ void rotate(Arguments& given, Parser& parser) {
 
 void texture(Arguments& given, Parser& parser) {
   const std::string name = given.string("a name").text;
-  const Word kind = given.string("\"float\" or \"spectrum\""), texture_class = given.string("a class");
+  const Word kind = given.string("\"float\" or \"spectrum\""),
+             texture_class = given.string("a class");
   call(parser, &SceneTarget::texture, given, name, kind, texture_class, given.parameters());
 }
 
@@ -184,12 +193,16 @@ const Directive& directive_of(const Token& token, const SourceLocation& where) {
     return map;
   }();
   if (token.kind != Token::Kind::word)
-    throw SyntaxError{where, "expected a directive, found " +
-                                 std::string(token.kind == Token::Kind::string ? "the string " : "") + in_quotes(token.text)};
+    throw SyntaxError{where,
+                      "expected a directive, found " +
+                          std::string(token.kind == Token::Kind::string ? "the string " : "") +
+                          in_quotes(token.text)};
   if (const auto found = by_name.find(token.text); found != by_name.end()) return *found->second;
-  const std::string unknown = "unknown directive " + in_quotes(token.text), old = v3_name("", token.text);
+  const std::string unknown = "unknown directive " + in_quotes(token.text),
+                    old = v3_name("", token.text);
   throw SyntaxError{where,
-                    unknown + (old.empty() ? "; the nearest known name is \"" + nearest_name(token.text, directive_names()) + "\""
+                    unknown + (old.empty() ? "; the nearest known name is \"" +
+                                                 nearest_name(token.text, directive_names()) + "\""
                                            : ": " + old),
                     unknown};
 }
@@ -198,8 +211,10 @@ const Directive& directive_of(const Token& token, const SourceLocation& where) {
 void check_allowed(const Directive& row, const SourceLocation& where, bool in_world) {
   const std::string name = row.name;
   if (row.allowed == Directive::Allowed::options && in_world)
-    throw SyntaxError{where, name + (name == "WorldBegin" ? " is given twice" : " is only allowed before WorldBegin")};
-  if (row.allowed == Directive::Allowed::world && !in_world) throw SyntaxError{where, name + " is only allowed after WorldBegin"};
+    throw SyntaxError{where, name + (name == "WorldBegin" ? " is given twice"
+                                                          : " is only allowed before WorldBegin")};
+  if (row.allowed == Directive::Allowed::world && !in_world)
+    throw SyntaxError{where, name + " is only allowed after WorldBegin"};
 }
 
 }  // namespace
@@ -207,8 +222,8 @@ void check_allowed(const Directive& row, const SourceLocation& where, bool in_wo
 Word Arguments::string(const char* what) {
   const Token& token = lexer_.peek();
   if (token.kind != Token::Kind::string)
-    throw SyntaxError{lexer_.place(token),
-                      std::string(statement_.directive) + " needs " + what + " in quotes, found " + in_quotes(token.text)};
+    throw SyntaxError{lexer_.place(token), std::string(statement_.directive) + " needs " + what +
+                                               " in quotes, found " + in_quotes(token.text)};
   SourceLocation where = lexer_.place(token);
   return {std::string(lexer_.next().text), std::move(where)};
 }
@@ -216,7 +231,8 @@ Word Arguments::string(const char* what) {
 double Arguments::number() {
   const Token& token = lexer_.peek();
   if (token.kind != Token::Kind::word)
-    throw SyntaxError{lexer_.place(token), std::string(statement_.directive) + " needs a number, found " + in_quotes(token.text)};
+    throw SyntaxError{lexer_.place(token), std::string(statement_.directive) +
+                                               " needs a number, found " + in_quotes(token.text)};
   const double value = parse_number(token, lexer_.file());
   lexer_.next();
   return value;
@@ -235,8 +251,9 @@ glm::dmat4 Arguments::matrix() {
     for (int row = 0; row < 4; ++row) matrix[column][row] = number();
   if (!bracket) return matrix;
   if (lexer_.peek().kind != Token::Kind::close)
-    throw SyntaxError{lexer_.place(lexer_.peek()),
-                      std::string(statement_.directive) + " takes 16 numbers, found " + in_quotes(lexer_.peek().text)};
+    throw SyntaxError{lexer_.place(lexer_.peek()), std::string(statement_.directive) +
+                                                       " takes 16 numbers, found " +
+                                                       in_quotes(lexer_.peek().text)};
   lexer_.next();
   return matrix;
 }
@@ -268,7 +285,8 @@ void Parser::parse_statement(Lexer& lexer, Unproven& in_file) {
   check_allowed(directive, statement.where, in_world_);
   // A known type proves that the file is a scene, whatever else is wrong with it.
   if (const Token& type = lexer.peek(); type.kind == Token::Kind::string)
-    if (is_known_name(statement.directive, std::string(type.text)) || !v3_name(statement.directive, type.text).empty())
+    if (is_known_name(statement.directive, std::string(type.text)) ||
+        !v3_name(statement.directive, type.text).empty())
       in_file.prove();
   if (statement.directive == "WorldBegin") in_world_ = true;
   Arguments given(lexer, statement, diagnostics_);
@@ -276,11 +294,14 @@ void Parser::parse_statement(Lexer& lexer, Unproven& in_file) {
 }
 
 void Parser::skip_to_directive(Lexer& lexer) {
-  static const std::unordered_set<std::string_view> names(directive_names().begin(), directive_names().end());
+  static const std::unordered_set<std::string_view> names(directive_names().begin(),
+                                                          directive_names().end());
   for (;;) {
     try {
       const Token& token = lexer.peek();
-      if (token.kind == Token::Kind::end || (token.kind == Token::Kind::word && names.contains(token.text))) return;
+      if (token.kind == Token::Kind::end ||
+          (token.kind == Token::Kind::word && names.contains(token.text)))
+        return;
       lexer.next();
     } catch (const SyntaxError& error) {
       diagnostics_.error(error.where, error.message);

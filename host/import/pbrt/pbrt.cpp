@@ -24,7 +24,8 @@ Scene pbrt::import_text(const std::string& file, std::string text, const ImageRe
   return presented(import(file, std::move(text), images));
 }
 
-Imported import_pbrt(const std::filesystem::path& path, const ImageReader& images, const ImportOptions&) {
+Imported import_pbrt(const std::filesystem::path& path, const ImageReader& images,
+                     const ImportOptions&) {
   return import(path.string(), read_text(path, {}), images);
 }
 

@@ -18,7 +18,8 @@ namespace {
 std::string file_of(Parameters& parameters) {
   if (!parameters.has("filename")) parameters.error("\"string filename\" is missing");
   const std::string name = parameters.text("filename", "");
-  return name.empty() ? name : resolve_file(name, parameters.where("filename"), parameters.main_file());
+  return name.empty() ? name
+                      : resolve_file(name, parameters.where("filename"), parameters.main_file());
 }
 
 /// Runs a reader of the file in "filename"; its errors are reported with ours.
@@ -34,7 +35,8 @@ auto read_other(Parameters& parameters, Read read) -> decltype(read()) {
 
 Geometry make_ply_mesh(Parameters& parameters) {
   for (const char* name : {"displacement", "displacement.edgelength", "displacement.uvscale"})
-    if (parameters.has(name)) parameters.error(name, "is not rendered yet", "not rendered: " + std::string(name));
+    if (parameters.has(name))
+      parameters.error(name, "is not rendered yet", "not rendered: " + std::string(name));
   const std::string file = file_of(parameters);
   if (file.empty()) return TriangleMeshShape{};
   return read_other(parameters, [&] { return read_ply(file, parameters.where("filename")); });
@@ -45,20 +47,22 @@ Geometry make_capsules(Parameters& parameters, const MaterialIndex& material_ind
   const std::string file = file_of(parameters);
   if (file.empty()) return CapsulesShape{};
   return read_other(parameters, [&] {
-    if (!is_there(file, parameters.where("filename"))) throw InputError(parameters.where("filename"), file + ": no such file");
+    if (!is_there(file, parameters.where("filename")))
+      throw InputError(parameters.where("filename"), file + ": no such file");
     return read_capsules(file, material_index);
   });
 }
 
 template <class Type>
-std::optional<Geometry> made_by_fields(const char* name, const std::string& type, Parameters& parameters) {
+std::optional<Geometry> made_by_fields(const char* name, const std::string& type,
+                                       Parameters& parameters) {
   if constexpr (FieldedShape<Type>)
     if (type == name) return read_fields<Type>(parameters);
   return {};
 }
 
-Geometry make_geometry(const std::string& type, Parameters& parameters, const MaterialIndex& material_or_default,
-                       const ShapeContext& context) {
+Geometry make_geometry(const std::string& type, Parameters& parameters,
+                       const MaterialIndex& material_or_default, const ShapeContext& context) {
 #define SHAPE_TYPE(name, make) \
   if (type == #name) return make;
 #include "import/pbrt/shape_types.def"
@@ -75,18 +79,21 @@ void set_materials(Parameters& parameters, const MaterialIndex& material_index, 
   const std::size_t surfaces = surface_count(shape);
   if (!names || surfaces == 0) return;  // without surfaces the geometry was wrong, and is reported
   if (names->strings.size() != surfaces) {
-    parameters.error("materials", "takes " + std::to_string(surfaces) + (surfaces == 1 ? " name" : " names") +
-                                      ", one a surface, not " + std::to_string(names->strings.size()));
+    parameters.error("materials",
+                     "takes " + std::to_string(surfaces) + (surfaces == 1 ? " name" : " names") +
+                         ", one a surface, not " + std::to_string(names->strings.size()));
     return;
   }
-  for (const std::string& name : names->strings) shape.materials.push_back(material_index(name, names->where));
+  for (const std::string& name : names->strings)
+    shape.materials.push_back(material_index(name, names->where));
   shape.material = shape.materials[0];
   if (surfaces == 1) shape.materials.clear();
 }
 
 }  // namespace
 
-Shape make_shape(const std::string& type, Parameters& parameters, std::uint32_t material, const ShapeContext& context) {
+Shape make_shape(const std::string& type, Parameters& parameters, std::uint32_t material,
+                 const ShapeContext& context) {
   Shape shape;
   shape.where = parameters.where();
   shape.material = material;

@@ -16,14 +16,18 @@ SampledSpectrum parse_spectrum_text(const std::string& file, std::string text) t
   while (lexer.peek().kind != Token::Kind::end) {
     const Token wavelength = lexer.next();
     spectrum.wavelengths.push_back(parse_number(wavelength, lexer.file()));
-    if (spectrum.wavelengths.back() <= 0) throw SyntaxError{lexer.place(wavelength), "a wavelength must be positive"};
-    if (const std::size_t n = spectrum.wavelengths.size(); n > 1 && spectrum.wavelengths[n - 1] <= spectrum.wavelengths[n - 2])
+    if (spectrum.wavelengths.back() <= 0)
+      throw SyntaxError{lexer.place(wavelength), "a wavelength must be positive"};
+    if (const std::size_t n = spectrum.wavelengths.size();
+        n > 1 && spectrum.wavelengths[n - 1] <= spectrum.wavelengths[n - 2])
       throw SyntaxError{lexer.place(wavelength), "wavelengths must ascend"};
-    if (lexer.peek().kind == Token::Kind::end) throw SyntaxError{lexer.place(wavelength), "this wavelength has no value"};
+    if (lexer.peek().kind == Token::Kind::end)
+      throw SyntaxError{lexer.place(wavelength), "this wavelength has no value"};
     spectrum.values.push_back(parse_number(lexer.next(), lexer.file()));
     in_file.prove();
   }
-  if (spectrum.wavelengths.empty()) throw InputError(SourceLocation{file}, "the spectrum file is empty");
+  if (spectrum.wavelengths.empty())
+    throw InputError(SourceLocation{file}, "the spectrum file is empty");
   return spectrum;
 } catch (const SyntaxError& error) {
   throw InputError(error.where, error.message);

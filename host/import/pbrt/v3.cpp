@@ -55,10 +55,12 @@ constexpr RenamedStatement parameters[] = {
     {"Film", "scale", ""},
 };
 
-std::string found(std::span<const RenamedStatement> rows, std::string_view directive, std::string_view name) {
+std::string found(std::span<const RenamedStatement> rows, std::string_view directive,
+                  std::string_view name) {
   for (const RenamedStatement& row : rows)
     if (row.directive == directive && row.name == name)
-      return row.now.empty() ? "pbrt-v3's, which pbrt-v4 does not have" : "pbrt-v3's name for " + std::string(row.now);
+      return row.now.empty() ? "pbrt-v3's, which pbrt-v4 does not have"
+                             : "pbrt-v3's name for " + std::string(row.now);
   return {};
 }
 
@@ -66,7 +68,8 @@ std::string found(std::span<const RenamedStatement> rows, std::string_view direc
 
 std::string v3_name(std::string_view directive, std::string_view name) {
   if (directive.empty() && name == "WorldEnd")
-    return "this scene is in the language of pbrt-v3, Caplet reads that of pbrt-v4; pbrt-v4's own \"pbrt --upgrade\" rewrites it";
+    return "this scene is in the language of pbrt-v3, Caplet reads that of pbrt-v4; pbrt-v4's own "
+           "\"pbrt --upgrade\" rewrites it";
   return found(names, directive, name);
 }
 

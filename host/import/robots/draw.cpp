@@ -27,17 +27,21 @@ namespace caplet {
 namespace {
 
 constexpr glm::dvec4 kGrey{0.5, 0.5, 0.5, 1};
-constexpr double kFar = 50;             // an infinite plane extends so many times the size of the objects on it to each side
+constexpr double kFar =
+    50;  // an infinite plane extends so many times the size of the objects on it to each side
 constexpr double kBrightestSky = 0.35;  // the mean of its radiance
 constexpr std::size_t kMostTriangles = std::size_t{1} << 26;
 constexpr std::size_t kMostTinted = std::size_t{1} << 30;  // bytes
 
 double linear(double screen) { return decoded_value({}, std::clamp(screen, 0.0, 1.0)); }
-RgbSpectrum linear(const glm::dvec3& screen) { return {{linear(screen.r), linear(screen.g), linear(screen.b)}}; }
+RgbSpectrum linear(const glm::dvec3& screen) {
+  return {{linear(screen.r), linear(screen.g), linear(screen.b)}};
+}
 
 class RobotDrawing {
  public:
-  RobotDrawing(const Robot& robot, Scene& scene, const glm::dmat4& world) : robot_(robot), scene_(scene), world_(world) {}
+  RobotDrawing(const Robot& robot, Scene& scene, const glm::dmat4& world)
+      : robot_(robot), scene_(scene), world_(world) {}
 
   void add(const RobotGeom& geom) {
     if (!(rgba_of(geom).a > 0)) return;
@@ -49,10 +53,14 @@ class RobotDrawing {
         return add(geom, SphereShape{1}, glm::scale(glm::dmat4(1), geom.size));
       case GeomKind::capsule: {
         const auto h = static_cast<float>(geom.size.y);
-        return add(geom, CapsulesShape{{{0, 0, -h}}, {{0, 0, h}}, {static_cast<float>(geom.size.x)}, {}, {}}, glm::dmat4(1));
+        return add(
+            geom,
+            CapsulesShape{{{0, 0, -h}}, {{0, 0, h}}, {static_cast<float>(geom.size.x)}, {}, {}},
+            glm::dmat4(1));
       }
       case GeomKind::cylinder:
-        return add(geom, CylinderShape{{0, 0, -geom.size.y}, {0, 0, geom.size.y}, geom.size.x}, glm::dmat4(1));
+        return add(geom, CylinderShape{{0, 0, -geom.size.y}, {0, 0, geom.size.y}, geom.size.x},
+                   glm::dmat4(1));
       case GeomKind::box:
         return add(geom, BoxShape{-geom.size, geom.size}, glm::dmat4(1));
       case GeomKind::mesh:
@@ -77,7 +85,8 @@ class RobotDrawing {
         most[k] = endless ? at[k] + kFar * size : plane->size[k];
       }
       TriangleMeshShape mesh;
-      mesh.positions = {{least.x, least.y, 0}, {most.x, least.y, 0}, {most.x, most.y, 0}, {least.x, most.y, 0}};
+      mesh.positions = {
+          {least.x, least.y, 0}, {most.x, least.y, 0}, {most.x, most.y, 0}, {least.x, most.y, 0}};
       mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
       add(*plane, std::move(mesh), glm::dmat4(1));
       scene_.shapes.back().one_sided = true;
@@ -99,8 +108,9 @@ class RobotDrawing {
     return narrow<std::uint32_t>(scene_.materials.size() - 1);
   }
 
-  /// Plain colours are diffuse. MuJoCo's specular and shininess become an interface whose reflectance at normal incidence is 0.08
-  /// specular, and whose GGX roughness matches Phong's exponent 128 shininess; reflectance is the share of a mirror.
+  /// Plain colours are diffuse. MuJoCo's specular and shininess become an interface whose
+  /// reflectance at normal incidence is 0.08 specular, and whose GGX roughness matches Phong's
+  /// exponent 128 shininess; reflectance is the share of a mirror.
   std::uint32_t material(const RobotGeom& geom, bool has_uvs) {
     const glm::dvec4 rgba = rgba_of(geom);
     const RobotMaterial* of = material_of(geom);
@@ -118,7 +128,8 @@ class RobotDrawing {
       model.base_color = linear(glm::dvec3(rgba));
       const double at_right_angles = std::sqrt(0.08 * of->specular);
       model.eta = (1 + at_right_angles) / (1 - at_right_angles);
-      model.roughness = of->roughness ? *of->roughness : std::pow(2 / (128 * of->shininess + 2), 0.25);
+      model.roughness =
+          of->roughness ? *of->roughness : std::pow(2 / (128 * of->shininess + 2), 0.25);
       model.metallic = of->metallic.value_or(0);
       base.model = model;
       field = "base_color";
@@ -131,20 +142,24 @@ class RobotDrawing {
         metal.reflectance = ConstantSpectrum{1};
         mirror_ = add_material({metal, "mirror", {scene_.source, 0, 0}});
       }
-      out = add_material({MixMaterial{{out, *mirror_}, of->reflectance}, name + " reflecting", {scene_.source, 0, 0}});
+      out = add_material({MixMaterial{{out, *mirror_}, of->reflectance},
+                          name + " reflecting",
+                          {scene_.source, 0, 0}});
     }
     if (!textured) materials_[key] = out;
     return out;
   }
 
   /// Adds the image times the colour, and returns its index.
-  std::uint32_t texture(const RobotGeom& geom, const RobotMaterial& of, const glm::dvec4& rgba, bool has_uvs) {
+  std::uint32_t texture(const RobotGeom& geom, const RobotMaterial& of, const glm::dvec4& rgba,
+                        bool has_uvs) {
     ImagemapTexture image;
     image.filter = 2;
     TextureMapping& mapping = image.mapping;
     glm::dmat4 texture_from_geom(1);
     glm::dvec3 size = geom.size;
-    if (geom.kind == GeomKind::capsule || geom.kind == GeomKind::cylinder) size = {size.x, size.x, size.y};
+    if (geom.kind == GeomKind::capsule || geom.kind == GeomKind::cylinder)
+      size = {size.x, size.x, size.y};
     if (geom.kind == GeomKind::sphere) size = glm::dvec3(size.x);
     if (geom.kind == GeomKind::mesh) size = glm::dvec3(1);
     const glm::bvec3 is_endless(!(size.x > 0), !(size.y > 0), !(size.z > 0));
@@ -161,7 +176,8 @@ class RobotDrawing {
       glm::dvec2 repeat = of.texrepeat;
       for (int k = 0; k < 2; ++k)
         if (of.texuniform && !is_endless[k]) repeat[k] *= size[k];
-      if (geom.kind == GeomKind::plane || geom.kind == GeomKind::box || geom.kind == GeomKind::mesh) {
+      if (geom.kind == GeomKind::plane || geom.kind == GeomKind::box ||
+          geom.kind == GeomKind::mesh) {
         // The texture is projected along z.
         mapping.kind = TextureMapping::Kind::planar;
         mapping.v1 = {0.5 * repeat.x / size.x, 0, 0};
@@ -189,17 +205,19 @@ class RobotDrawing {
   }
 
   /// Multiplies the image by a colour in sRGB, as MuJoCo does.
-  std::shared_ptr<const TextureImage> tinted(const std::shared_ptr<const TextureImage>& image, const glm::dvec3& color,
-                                             const SourceLocation& where) {
+  std::shared_ptr<const TextureImage> tinted(const std::shared_ptr<const TextureImage>& image,
+                                             const glm::dvec3& color, const SourceLocation& where) {
     if (color == glm::dvec3(1)) return image;
     std::shared_ptr<const TextureImage>& known = tinted_[{image.get(), color.r, color.g, color.b}];
     if (known) return known;
     tinted_bytes_ += image->bytes.size() + sizeof(float) * image->floats.size();
     if (tinted_bytes_ > kMostTinted)
-      throw InputError(where, "the textures in the colours of all materials take more than 2^30 bytes");
+      throw InputError(where,
+                       "the textures in the colours of all materials take more than 2^30 bytes");
     auto out = std::make_shared<TextureImage>(*image);
     out->file.clear();
-    const std::size_t channels = static_cast<std::size_t>(image->channels), pixels = image->values() / channels;
+    const std::size_t channels = static_cast<std::size_t>(image->channels),
+                      pixels = image->values() / channels;
     out->channels = 3;
     out->bytes.assign(image->bytes.empty() ? 0 : 3 * pixels, 0);
     out->floats.assign(image->floats.empty() ? 0 : 3 * pixels, 0);
@@ -207,8 +225,10 @@ class RobotDrawing {
       for (std::size_t k = 0; k < 3; ++k) {
         const std::size_t from = channels * i + (channels >= 3 ? k : 0);
         const double factor = std::clamp(color[static_cast<int>(k)], 0.0, 1.0);
-        if (!out->bytes.empty()) out->bytes[3 * i + k] = static_cast<std::uint8_t>(image->bytes[from] * factor);
-        if (!out->floats.empty()) out->floats[3 * i + k] = image->floats[from] * static_cast<float>(linear(factor));
+        if (!out->bytes.empty())
+          out->bytes[3 * i + k] = static_cast<std::uint8_t>(image->bytes[from] * factor);
+        if (!out->floats.empty())
+          out->floats[3 * i + k] = image->floats[from] * static_cast<float>(linear(factor));
       }
     return known = out;
   }
@@ -236,21 +256,25 @@ class RobotDrawing {
   void add_fitted(const RobotGeom& geom) {
     RobotGeom fitted = geom;
     if (!fit(fitted, geom.parts ? *geom.parts : *files_.read(geom.mesh, geom.where)))
-      return Diagnostics().warning(geom.where, "the geom is left out: the mesh that it is fitted to holds nothing");
+      return Diagnostics().warning(
+          geom.where, "the geom is left out: the mesh that it is fitted to holds nothing");
     add(fitted);
   }
 
   void add_mesh(const RobotGeom& geom) {
     std::shared_ptr<const MeshParts> parts = geom.parts;
     if (!parts && !geom.needs_mesh) {
-      const char* why = !is_mesh_file(geom.mesh) ? "STL, OBJ, DAE, PLY, OFF and MSH are read" : "no such file";
+      const char* why =
+          !is_mesh_file(geom.mesh) ? "STL, OBJ, DAE, PLY, OFF and MSH are read" : "no such file";
       if (!is_mesh_file(geom.mesh) || !is_there(geom.mesh, geom.where))
-        return Diagnostics().warning(geom.where, "the mesh '" + geom.mesh.string() + "' is left out: " + why);
+        return Diagnostics().warning(geom.where,
+                                     "the mesh '" + geom.mesh.string() + "' is left out: " + why);
     }
     if (!parts) parts = files_.read(geom.mesh, geom.where);
     for (const TriangleMeshShape& part : *parts) {
       triangles_ += part.triangles.size();
-      if (triangles_ > kMostTriangles) throw InputError(geom.where, "the meshes of all geoms have more than 2^26 triangles");
+      if (triangles_ > kMostTriangles)
+        throw InputError(geom.where, "the meshes of all geoms have more than 2^26 triangles");
       add(geom, part, geom.geom_from_mesh);
     }
   }
@@ -262,7 +286,9 @@ class RobotDrawing {
   MeshFiles files_;
   std::size_t triangles_ = 0;
   std::map<Key, std::uint32_t> materials_;
-  std::map<std::tuple<const TextureImage*, double, double, double>, std::shared_ptr<const TextureImage>> tinted_;
+  std::map<std::tuple<const TextureImage*, double, double, double>,
+           std::shared_ptr<const TextureImage>>
+      tinted_;
   std::size_t tinted_bytes_ = 0;
   std::optional<std::uint32_t> mirror_;
   std::vector<const RobotGeom*> planes_;
@@ -281,7 +307,9 @@ std::function<bool(const RobotGeom&)> shown_by(const ImportOptions& options) {
       const std::string_view word = rest.substr(0, rest.find(','));
       int group = 0;
       if (!parse_number(word, group) || group < 0 || group > 5)
-        throw InputError({"--groups"}, "'" + text + "' is none of: visual, collision, all, numbers of groups (0 to 5)");
+        throw InputError(
+            {"--groups"},
+            "'" + text + "' is none of: visual, collision, all, numbers of groups (0 to 5)");
       groups.insert(group);
       if (word.size() == rest.size()) break;
       rest.remove_prefix(word.size() + 1);
@@ -296,14 +324,16 @@ double mean_of(const EnvironmentImage& image) {
   const auto width = static_cast<std::size_t>(image.width);
   for (std::size_t i = 0; i < image.rgb.size(); ++i) {
     const std::size_t row = i / 3 / width;
-    const double across = std::sin(std::numbers::pi * (static_cast<double>(row) + 0.5) / image.height);
+    const double across =
+        std::sin(std::numbers::pi * (static_cast<double>(row) + 0.5) / image.height);
     sum += across * static_cast<double>(image.rgb[i]);
     weight += across;
   }
   return sum / weight;
 }
 
-/// MuJoCo's lights do not fade with distance; ours get the same strength at the centre of the visible scene.
+/// MuJoCo's lights do not fade with distance; ours get the same strength at the centre of the
+/// visible scene.
 void light_by_robot(const Robot& robot, const glm::dmat4& world, Scene& scene) {
   Bounds bounds;
   for (const Shape& shape : scene.shapes) {
@@ -324,7 +354,8 @@ void light_by_robot(const Robot& robot, const glm::dmat4& world, Scene& scene) {
   for (const RobotLight& light : robot.lights) {
     ambient += light.ambient;
     if (light.diffuse == glm::dvec3(0)) continue;
-    const glm::dvec3 position(world * glm::dvec4(light.position, 1)), direction = glm::dmat3(world) * light.direction;
+    const glm::dvec3 position(world * glm::dvec4(light.position, 1)),
+        direction = glm::dmat3(world) * light.direction;
     const glm::dvec3 irradiance = std::numbers::pi * light.diffuse;
     const double away = std::max(glm::dot(position - middle, position - middle), 1e-12);
     if (light.kind == RobotLight::Kind::distant)
@@ -347,12 +378,15 @@ void light_by_robot(const Robot& robot, const glm::dmat4& world, Scene& scene) {
     sky.world_from_light = glm::dmat3(world);
   }
   add(sky, whole);
-  // MuJoCo's sky emits no light. Here it replaces the ambient light, and is at most as bright as that usually is.
-  if (robot.sky) scene.lights.back().scale = std::min(1.0, kBrightestSky / std::max(mean_of(*robot.sky), 1e-6));
+  // MuJoCo's sky emits no light. Here it replaces the ambient light, and is at most as bright as
+  // that usually is.
+  if (robot.sky)
+    scene.lights.back().scale = std::min(1.0, kBrightestSky / std::max(mean_of(*robot.sky), 1e-6));
 }
 
 /// Sets the requested camera and the robot's lights.
-void present(const Robot& robot, const glm::dmat4& world, const ImportOptions& options, Imported& out) {
+void present(const Robot& robot, const glm::dmat4& world, const ImportOptions& options,
+             Imported& out) {
   Scene& scene = out.scene;
   out.is_lit = !robot.lights.empty();
   if (out.is_lit) frame_camera(scene);  // the headlight needs it
@@ -361,8 +395,8 @@ void present(const Robot& robot, const glm::dmat4& world, const ImportOptions& o
     if (camera == robot.cameras.end()) {
       std::string known;
       for (const RobotCamera& one : robot.cameras) known += (known.empty() ? "" : ", ") + one.name;
-      throw InputError({"--camera"},
-                       "the file has no camera '" + *name + "'" + (known.empty() ? "" : " (it has: " + known + ")"));
+      throw InputError({"--camera"}, "the file has no camera '" + *name + "'" +
+                                         (known.empty() ? "" : " (it has: " + known + ")"));
     }
     out.has_camera = true;
     scene.automatic_camera = false;
@@ -371,7 +405,8 @@ void present(const Robot& robot, const glm::dmat4& world, const ImportOptions& o
     scene.camera.world_from_camera = glm::dmat4(at[0], at[1], -at[2], at[3]);
     scene.camera.projection = PerspectiveProjection{glm::radians(camera->fovy)};
     if (camera->orthographic) {
-      const double aspect = static_cast<double>(scene.film.width) / scene.film.height, half = camera->fovy / 2;
+      const double aspect = static_cast<double>(scene.film.width) / scene.film.height,
+                   half = camera->fovy / 2;
       scene.camera.projection = OrthographicProjection{};
       scene.camera.screen_window = {-half * aspect, half * aspect, -half, half};
     }
@@ -379,19 +414,22 @@ void present(const Robot& robot, const glm::dmat4& world, const ImportOptions& o
   if (out.is_lit) light_by_robot(robot, world, scene);
 }
 
-void draw(const Robot& robot, const glm::dmat4& world, const std::function<bool(const RobotGeom&)>& shown, Scene& scene) {
+void draw(const Robot& robot, const glm::dmat4& world,
+          const std::function<bool(const RobotGeom&)>& shown, Scene& scene) {
   scene.world_from_file = glm::dmat3(world);
   scene.unit = "m";
   RobotDrawing drawing(robot, scene, world);
   for (const RobotGeom& geom : robot.geoms)
     if (shown(geom)) drawing.add(geom);
   drawing.finish();
-  if (scene.shapes.empty()) throw InputError({scene.source, 0, 0}, "holds no geometry of the groups that are asked for");
+  if (scene.shapes.empty())
+    throw InputError({scene.source, 0, 0}, "holds no geometry of the groups that are asked for");
 }
 
 }  // namespace
 
-Scene import_urdf(const std::filesystem::path& path, const ImageReader&, const ImportOptions& options) {
+Scene import_urdf(const std::filesystem::path& path, const ImageReader&,
+                  const ImportOptions& options) {
   Scene scene;
   scene.source = path.string();
   enum Groups : std::size_t { visual, collision, all };
@@ -399,16 +437,19 @@ Scene import_urdf(const std::filesystem::path& path, const ImageReader&, const I
   const glm::dmat4 world = world_from_file(options, "z");
   const Robot robot = read_urdf(path, Pose(options));
   bool collides = groups == collision;
-  if (!options.text("groups") && !robot.geoms.empty() && std::ranges::all_of(robot.geoms, &RobotGeom::collides)) {
+  if (!options.text("groups") && !robot.geoms.empty() &&
+      std::ranges::all_of(robot.geoms, &RobotGeom::collides)) {
     Diagnostics().warning({scene.source}, "has nothing that is to be seen: what collides is drawn");
     collides = true;
   }
   draw(
-      robot, world, [&](const RobotGeom& geom) { return groups == all || geom.collides == collides; }, scene);
+      robot, world,
+      [&](const RobotGeom& geom) { return groups == all || geom.collides == collides; }, scene);
   return scene;
 }
 
-Imported import_mjcf(const std::filesystem::path& path, const ImageReader& images, const ImportOptions& options) {
+Imported import_mjcf(const std::filesystem::path& path, const ImageReader& images,
+                     const ImportOptions& options) {
   Scene scene;
   scene.source = path.string();
   const auto shown = shown_by(options);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Fits MuJoCo's solids to meshes: by the box with the mesh's inertia, or by the extent along the inertia's axes (XMLreference,
-// geom/mesh, mesh/inertia, compiler/fitaabb).
+// Fits MuJoCo's solids to meshes: by the box with the mesh's inertia, or by the extent along the
+// inertia's axes (XMLreference, geom/mesh, mesh/inertia, compiler/fitaabb).
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -33,15 +33,16 @@ void each_triangle(const MeshParts& parts, const glm::dmat4& m, const Work& work
   for (const TriangleMeshShape& part : parts)
     for (const auto& t : part.triangles) {
       Corners corners;
-      for (std::size_t k = 0; k < 3; ++k) corners[k] = dvec3(m * glm::dvec4(dvec3(part.positions[t[k]]), 1));
+      for (std::size_t k = 0; k < 3; ++k)
+        corners[k] = dvec3(m * glm::dvec4(dvec3(part.positions[t[k]]), 1));
       work(corners);
     }
 }
 
 double area_of(const Corners& c) { return glm::length(glm::cross(c[1] - c[0], c[2] - c[0])) / 2; }
 
-/// Returns the mass of a tetrahedron with its apex at the origin, or of the triangle alone. `sign`: -1 where the mesh is
-/// mirrored.
+/// Returns the mass of a tetrahedron with its apex at the origin, or of the triangle alone. `sign`:
+/// -1 where the mesh is mirrored.
 double amount_of(const Corners& c, MeshFit::Mass mass, double sign) {
   if (mass == MeshFit::Mass::shell) return area_of(c);
   const double volume = sign * glm::dot(glm::cross(c[0], c[1]), c[2]) / 6;
@@ -70,9 +71,9 @@ Moments moments_of(const MeshParts& parts, const glm::dmat4& m, MeshFit::Mass ma
   });
   if (!(out.amount > 0)) return out;
   out.middle = origin + out.middle / out.amount;
-  // For a simplex of n corners (a tetrahedron has the origin as one) the mean of x y is (sum of x_i y_i + sum x_i sum y_i) /
-  // (n (n + 1)). The mass is recounted with the apex at the centre of mass, because it changes if all volumes count as
-  // positive.
+  // For a simplex of n corners (a tetrahedron has the origin as one) the mean of x y is (sum of x_i
+  // y_i + sum x_i sum y_i) / (n (n + 1)). The mass is recounted with the apex at the centre of
+  // mass, because it changes if all volumes count as positive.
   out.amount = 0;
   each_triangle(parts, m, [&](Corners c) {
     for (dvec3& p : c) p -= out.middle;
@@ -126,7 +127,9 @@ bool fit(RobotGeom& geom, const MeshParts& parts) {
   }
   switch (geom.kind) {
     case GeomKind::sphere:
-      geom.size = dvec3(how.by_extent ? std::max({half.x, half.y, half.z}) : (half.x + half.y + half.z) / 3, 0, 0);
+      geom.size =
+          dvec3(how.by_extent ? std::max({half.x, half.y, half.z}) : (half.x + half.y + half.z) / 3,
+                0, 0);
       break;
     case GeomKind::capsule:
     case GeomKind::cylinder: {

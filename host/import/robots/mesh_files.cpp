@@ -20,19 +20,23 @@ namespace caplet {
 
 namespace {
 
-/// Reads MuJoCo's .msh: four counts, then positions, normals, texture coordinates (from the top) and triangles.
+/// Reads MuJoCo's .msh: four counts, then positions, normals, texture coordinates (from the top)
+/// and triangles.
 TriangleMeshShape parse_msh(const std::string& bytes, const std::string& file) {
   std::array<std::int32_t, 4> counts{};
   const auto fail = [&](const std::string& message) { throw InputError({file, 0, 0}, message); };
   if (bytes.size() < sizeof counts) fail("is no MSH file: it is too short");
   std::memcpy(counts.data(), bytes.data(), sizeof counts);
   const auto [vertices, normals, uvs, faces] = counts;
-  if (vertices < 0 || normals < 0 || uvs < 0 || faces < 0) fail("is no MSH file: a count is negative");
+  if (vertices < 0 || normals < 0 || uvs < 0 || faces < 0)
+    fail("is no MSH file: a count is negative");
   if ((normals != 0 && normals != vertices) || (uvs != 0 && uvs != vertices))
     fail("other numbers of normals or texture coordinates than of vertices");
-  const std::uint64_t size = sizeof counts + 4 * (3 * std::uint64_t(vertices) + 3 * std::uint64_t(normals) +
-                                                  2 * std::uint64_t(uvs) + 3 * std::uint64_t(faces));
-  if (size != bytes.size()) fail(fmt::format("its counts need {} bytes; the file has {}", size, bytes.size()));
+  const std::uint64_t size =
+      sizeof counts + 4 * (3 * std::uint64_t(vertices) + 3 * std::uint64_t(normals) +
+                           2 * std::uint64_t(uvs) + 3 * std::uint64_t(faces));
+  if (size != bytes.size())
+    fail(fmt::format("its counts need {} bytes; the file has {}", size, bytes.size()));
   TriangleMeshShape mesh;
   const char* at = bytes.data() + sizeof counts;
   const auto take = [&at](auto& to, std::int32_t count) {
@@ -59,13 +63,16 @@ constexpr std::string_view kEndings[] = {".stl", ".obj", ".msh", ".dae", ".ply",
 
 }  // namespace
 
-std::string lower_case_ending(const std::filesystem::path& path) { return lower_case(path.extension().string()); }
+std::string lower_case_ending(const std::filesystem::path& path) {
+  return lower_case(path.extension().string());
+}
 
 bool is_mesh_file(const std::filesystem::path& path) {
   return std::ranges::find(kEndings, lower_case_ending(path)) != std::end(kEndings);
 }
 
-std::shared_ptr<const MeshParts> MeshFiles::read(const std::filesystem::path& path, const SourceLocation& where) {
+std::shared_ptr<const MeshParts> MeshFiles::read(const std::filesystem::path& path,
+                                                 const SourceLocation& where) {
   check_may_read(path, where);
   std::shared_ptr<const MeshParts>& known = meshes_[path.string()];
   if (known) return known;

@@ -19,7 +19,8 @@ Robot read_mjcf(const std::filesystem::path& path, const Pose& pose, const Image
       const mjcf::Element light(model, node, "headlight", nullptr);
       robot.headlight_ambient = light.vector("ambient", *robot.headlight_ambient);
       robot.headlight_diffuse = light.vector("diffuse", *robot.headlight_diffuse);
-      if (light.number("active", 1) == 0) robot.headlight_ambient = robot.headlight_diffuse = std::nullopt;
+      if (light.number("active", 1) == 0)
+        robot.headlight_ambient = robot.headlight_diffuse = std::nullopt;
     });
   robot.sky = assets.sky(model);
   return robot;

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Poses the bodies of an MJCF model: frames, replicas and attached models, joints, geoms, lights, cameras and tendons.
+// Poses the bodies of an MJCF model: frames, replicas and attached models, joints, geoms, lights,
+// cameras and tendons.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -16,7 +17,8 @@ namespace caplet::mjcf {
 
 namespace {
 
-/// The context of an element: its model, the default class of elements that name none, and the change of names.
+/// The context of an element: its model, the default class of elements that name none, and the
+/// change of names.
 struct Scope {
   const Model* model = nullptr;
   const Class* childclass = nullptr;
@@ -40,12 +42,16 @@ class ElementValues {
         given_ = true;
         where_ = model.place(key);
         constexpr std::size_t many = 1'000'000;
-        if (key.attribute("qpos")) qpos_ = numbers_of(key.attribute("qpos").value(), 0, many, where_, "qpos");
-        if (key.attribute("mpos")) mpos_ = numbers_of(key.attribute("mpos").value(), 0, many, where_, "mpos");
-        if (key.attribute("mquat")) mquat_ = numbers_of(key.attribute("mquat").value(), 0, many, where_, "mquat");
+        if (key.attribute("qpos"))
+          qpos_ = numbers_of(key.attribute("qpos").value(), 0, many, where_, "qpos");
+        if (key.attribute("mpos"))
+          mpos_ = numbers_of(key.attribute("mpos").value(), 0, many, where_, "mpos");
+        if (key.attribute("mquat"))
+          mquat_ = numbers_of(key.attribute("mquat").value(), 0, many, where_, "mquat");
       });
     if (!given_)
-      throw InputError({"--pose"}, fmt::format("the file has no keyframe {}{}", quoted(std::string_view(*pose.keyframe)),
+      throw InputError({"--pose"}, fmt::format("the file has no keyframe {}{}",
+                                               quoted(std::string_view(*pose.keyframe)),
                                                known.empty() ? "" : " (it has: " + known + ")"));
   }
 
@@ -54,25 +60,30 @@ class ElementValues {
     const std::size_t count = otherwise.size(), begin = at_;
     at_ += count;
     if (qpos_ && at_ <= qpos_->size())
-      otherwise.assign(qpos_->begin() + static_cast<std::ptrdiff_t>(begin), qpos_->begin() + static_cast<std::ptrdiff_t>(at_));
+      otherwise.assign(qpos_->begin() + static_cast<std::ptrdiff_t>(begin),
+                       qpos_->begin() + static_cast<std::ptrdiff_t>(at_));
     const auto own = pose_.joints.find(name);
     if (own == pose_.joints.end()) return otherwise;
     moved_.insert(name);
     if (own->second.size() != count)
-      throw InputError({"--pose"}, fmt::format("{}: {} numbers, not {}", name, count, own->second.size()));
+      throw InputError({"--pose"},
+                       fmt::format("{}: {} numbers, not {}", name, count, own->second.size()));
     return own->second;
   }
   void mocap(glm::dvec3& position, glm::dquat& rotation) {
     const std::size_t i = mocaps_++;
     if (mpos_.size() >= 3 * (i + 1)) position = {mpos_[3 * i], mpos_[3 * i + 1], mpos_[3 * i + 2]};
-    if (mquat_.size() >= 4 * (i + 1)) rotation = turn({mquat_[4 * i], mquat_[4 * i + 1], mquat_[4 * i + 2], mquat_[4 * i + 3]});
+    if (mquat_.size() >= 4 * (i + 1))
+      rotation = turn({mquat_[4 * i], mquat_[4 * i + 1], mquat_[4 * i + 2], mquat_[4 * i + 3]});
   }
   /// Throws InputError when the pose does not fit the model.
   void finish() const {
     if (qpos_ && qpos_->size() != at_)
-      throw InputError(where_, fmt::format("qpos: {} numbers, but the joints take {}", qpos_->size(), at_));
+      throw InputError(where_,
+                       fmt::format("qpos: {} numbers, but the joints take {}", qpos_->size(), at_));
     for (const auto& [name, values] : pose_.joints)
-      if (!moved_.contains(name)) throw InputError({"--pose"}, "the file has no joint '" + name + "'");
+      if (!moved_.contains(name))
+        throw InputError({"--pose"}, "the file has no joint '" + name + "'");
   }
   /// Normalises a quaternion; zero becomes the identity, as in MuJoCo.
   static glm::dquat turn(const std::array<double, 4>& q) {
@@ -102,8 +113,10 @@ class BodiesReader {
     bodies_["world"] = glm::dmat4(1);
     contents(worlds, scope, glm::dmat4(1));
     values_.finish();
-    if (robot_.geoms.empty()) throw InputError(model_.place(worlds.empty() ? model_.root() : worlds[0]), "holds no geoms");
-    for (const auto& [light, target] : aimed_) aim(robot_.lights[light].direction, robot_.lights[light].position, target);
+    if (robot_.geoms.empty())
+      throw InputError(model_.place(worlds.empty() ? model_.root() : worlds[0]), "holds no geoms");
+    for (const auto& [light, target] : aimed_)
+      aim(robot_.lights[light].direction, robot_.lights[light].position, target);
     for (const auto& [camera, target] : watching_) look(robot_.cameras[camera].world, target);
     tendons(scope);
     for (const Scope& other : attached_) tendons(other);
@@ -115,13 +128,17 @@ class BodiesReader {
   // --- The content of a body, with frames, replicas and attached models resolved ---
 
   void count(const Scope& scope, pugi::xml_node node) {
-    if (scope.depth > most_nested) scope.model->fail(node, fmt::format("elements are nested more than {} deep", most_nested));
+    if (scope.depth > most_nested)
+      scope.model->fail(node, fmt::format("elements are nested more than {} deep", most_nested));
     if (++elements_ > most_elements)
-      scope.model->fail(node, fmt::format("the model has more than {} elements, replicas among them", most_elements));
+      scope.model->fail(
+          node,
+          fmt::format("the model has more than {} elements, replicas among them", most_elements));
   }
 
   template <class Use>
-  void each(const Model& model, pugi::xml_node of, Scope scope, const glm::dmat4& frame, Use&& use) {
+  void each(const Model& model, pugi::xml_node of, Scope scope, const glm::dmat4& frame,
+            Use&& use) {
     ++scope.depth;
     model.each(of, [&](pugi::xml_node child) { one(child, scope, frame, use); });
   }
@@ -186,7 +203,8 @@ class BodiesReader {
     check_attributes(*scope.model, node);
     const Element element(*scope.model, node, "attach", nullptr);
     const Model& other = scope.model->attached(element.text("model"), element.where());
-    Scope inner{&other, other.root_class(), scope.prefix + element.text("prefix"), scope.suffix, scope.depth + 1};
+    Scope inner{&other, other.root_class(), scope.prefix + element.text("prefix"), scope.suffix,
+                scope.depth + 1};
     if (used_.insert({node.internal_object(), inner.suffix}).second) attached_.push_back(inner);
     const std::vector<pugi::xml_node> worlds = other.sections("worldbody");
     const std::string body = element.text("body"), named = element.text("frame");
@@ -195,16 +213,18 @@ class BodiesReader {
       return;
     }
     for (const pugi::xml_node world : worlds)
-      if (const pugi::xml_node found = find(other, world, body.empty() ? "frame" : "body", body.empty() ? named : body, inner, 0))
+      if (const pugi::xml_node found = find(other, world, body.empty() ? "frame" : "body",
+                                            body.empty() ? named : body, inner, 0))
         return one(found, inner, frame, use);
     element.fail(fmt::format("its model has no {} {}", body.empty() ? "frame" : "body",
                              quoted(std::string_view(body.empty() ? named : body))));
   }
 
   /// Returns the element of this name in `of`; `scope` receives its default class.
-  static pugi::xml_node find(const Model& model, pugi::xml_node of, std::string_view kind, const std::string& name, Scope& scope,
-                             int depth) {
-    if (depth > most_nested) model.fail(of, fmt::format("elements are nested more than {} deep", most_nested));
+  static pugi::xml_node find(const Model& model, pugi::xml_node of, std::string_view kind,
+                             const std::string& name, Scope& scope, int depth) {
+    if (depth > most_nested)
+      model.fail(of, fmt::format("elements are nested more than {} deep", most_nested));
     pugi::xml_node found;
     const Class* outer = model.class_of(of, "childclass", scope.childclass);
     model.each(of, [&](pugi::xml_node child) {
@@ -217,7 +237,8 @@ class BodiesReader {
       }
       Scope inner = scope;
       inner.childclass = outer;
-      if ((found = find(model, child, kind, name, inner, depth + 1))) scope.childclass = inner.childclass;
+      if ((found = find(model, child, kind, name, inner, depth + 1)))
+        scope.childclass = inner.childclass;
     });
     return found;
   }
@@ -225,8 +246,11 @@ class BodiesReader {
   // --- Bodies ---
 
   /// A body's own content comes first, then the bodies in it: this is MuJoCo's order.
-  void contents(const std::vector<pugi::xml_node>& nodes, const Scope& scope, const glm::dmat4& world) {
-    const auto things = [&](pugi::xml_node child, const Scope& at, const glm::dmat4& frame) { thing(child, at, world * frame); };
+  void contents(const std::vector<pugi::xml_node>& nodes, const Scope& scope,
+                const glm::dmat4& world) {
+    const auto things = [&](pugi::xml_node child, const Scope& at, const glm::dmat4& frame) {
+      thing(child, at, world * frame);
+    };
     const auto inner = [&](pugi::xml_node child, const Scope& at, const glm::dmat4& frame) {
       if (std::string_view(child.name()) == "body") body(child, at, world * frame);
     };
@@ -246,10 +270,11 @@ class BodiesReader {
       values_.mocap(position, rotation);
       world = placed(position, rotation);
     }
-    each(*scope.model, node, scope, glm::dmat4(1), [&](pugi::xml_node child, const Scope& at, const glm::dmat4& frame) {
-      const std::string_view kind = child.name();
-      if (kind == "freejoint" || kind == "joint") joint(child, at, frame, world);
-    });
+    each(*scope.model, node, scope, glm::dmat4(1),
+         [&](pugi::xml_node child, const Scope& at, const glm::dmat4& frame) {
+           const std::string_view kind = child.name();
+           if (kind == "freejoint" || kind == "joint") joint(child, at, frame, world);
+         });
     bodies_.try_emplace(scope.name(node.attribute("name").value()), world);
     contents({node}, scope, world);
   }
@@ -258,17 +283,20 @@ class BodiesReader {
     const std::string name = scope.name(node.attribute("name").value());
     const bool is_free = std::string_view(node.name()) == "freejoint";
     const Element element = scope.model->element(node, "joint", scope.childclass);
-    const std::size_t kind = is_free ? 0 : element.choice("type", {"free", "ball", "slide", "hinge"}, 3);
+    const std::size_t kind =
+        is_free ? 0 : element.choice("type", {"free", "ball", "slide", "hinge"}, 3);
     if (kind == 0) {
       const glm::dquat q = glm::quat_cast(glm::dmat3(world));
-      const std::vector<double> v = values_.joint(name, {world[3].x, world[3].y, world[3].z, q.w, q.x, q.y, q.z});
+      const std::vector<double> v =
+          values_.joint(name, {world[3].x, world[3].y, world[3].z, q.w, q.x, q.y, q.z});
       world = placed({v[0], v[1], v[2]}, ElementValues::turn({v[3], v[4], v[5], v[6]}));
       return;
     }
     const glm::dvec3 at(frame * glm::dvec4(element.vector("pos", {0, 0, 0}), 1));
     if (kind == 1) {
       const std::vector<double> v = values_.joint(name, {1, 0, 0, 0});
-      world = world * placed(at, ElementValues::turn({v[0], v[1], v[2], v[3]})) * glm::translate(glm::dmat4(1), -at);
+      world = world * placed(at, ElementValues::turn({v[0], v[1], v[2], v[3]})) *
+              glm::translate(glm::dmat4(1), -at);
       return;
     }
     glm::dvec3 axis = glm::dmat3(frame) * element.vector("axis", {0, 0, 1});
@@ -291,13 +319,17 @@ class BodiesReader {
     if (kind == "camera") return camera(node, scope, world);
     if (kind == "site") {
       const Element element = scope.model->element(node, "site", scope.childclass);
-      const glm::dvec3 at = element.has("fromto") ? middle(element) : element.vector("pos", {0, 0, 0});
-      if (node.attribute("name")) sites_[scope.name(node.attribute("name").value())] = glm::dvec3(world * glm::dvec4(at, 1));
+      const glm::dvec3 at =
+          element.has("fromto") ? middle(element) : element.vector("pos", {0, 0, 0});
+      if (node.attribute("name"))
+        sites_[scope.name(node.attribute("name").value())] = glm::dvec3(world * glm::dvec4(at, 1));
       return;
     }
     if (kind == "composite" || kind == "flexcomp")
-      return Diagnostics().warning(scope.model->place(node), fmt::format("<{}> is left out: it is not read", kind));
-    if (kind != "body" && kind != "joint" && kind != "freejoint" && kind != "inertial" && kind != "plugin")
+      return Diagnostics().warning(scope.model->place(node),
+                                   fmt::format("<{}> is left out: it is not read", kind));
+    if (kind != "body" && kind != "joint" && kind != "freejoint" && kind != "inertial" &&
+        kind != "plugin")
       scope.model->fail(node, "a body has no " + quoted(kind));
   }
 
@@ -307,14 +339,18 @@ class BodiesReader {
   }
 
   /// Fits a solid to a mesh; returns false if it is left out.
-  bool fit(const Element& element, const Model& model, const std::string& mesh, bool is_none, RobotGeom& geom) {
+  bool fit(const Element& element, const Model& model, const std::string& mesh, bool is_none,
+           RobotGeom& geom) {
     if (is_none) {
-      Diagnostics().warning(geom.where, "the geom is left out: of its type none is fitted to a mesh");
+      Diagnostics().warning(geom.where,
+                            "the geom is left out: of its type none is fitted to a mesh");
       return false;
     }
     geom.fit = Assets::fit(model, mesh, geom.where);
     if (!geom.fit) {
-      Diagnostics().warning(geom.where, "the geom is left out: solids that are fitted to the hull of a mesh are not read");
+      Diagnostics().warning(
+          geom.where,
+          "the geom is left out: solids that are fitted to the hull of a mesh are not read");
       return false;
     }
     geom.fit->scale = element.number("fitscale", 1);
@@ -326,10 +362,12 @@ class BodiesReader {
   void geom(pugi::xml_node node, const Scope& scope, const glm::dmat4& world) {
     check_attributes(*scope.model, node);
     const Element element = scope.model->element(node, "geom", scope.childclass);
-    if (robot_.geoms.size() >= most_geoms) element.fail(fmt::format("the model has more than {} geoms", most_geoms));
+    if (robot_.geoms.size() >= most_geoms)
+      element.fail(fmt::format("the model has more than {} geoms", most_geoms));
     RobotGeom geom;
     geom.where = element.where();
-    geom.name = node.attribute("name") ? scope.name(node.attribute("name").value()) : fmt::format("geom {}", geoms_);
+    geom.name = node.attribute("name") ? scope.name(node.attribute("name").value())
+                                       : fmt::format("geom {}", geoms_);
     ++geoms_;
     geom.group = static_cast<int>(std::clamp(element.number("group", 0), -1.0, 6.0));
     geom.collides = element.number("contype", 1) != 0 || element.number("conaffinity", 1) != 0;
@@ -338,9 +376,21 @@ class BodiesReader {
       if (c != std::vector<double>{0.5, 0.5, 0.5, 1}) geom.rgba = {c[0], c[1], c[2], c[3]};
     }
     std::string material = element.text("material");
-    enum Types : std::size_t { plane, hfield, sphere, capsule, ellipsoid, cylinder, box, mesh, sdf };
-    const std::size_t type =
-        element.choice("type", {"plane", "hfield", "sphere", "capsule", "ellipsoid", "cylinder", "box", "mesh", "sdf"}, sphere);
+    enum Types : std::size_t {
+      plane,
+      hfield,
+      sphere,
+      capsule,
+      ellipsoid,
+      cylinder,
+      box,
+      mesh,
+      sdf
+    };
+    const std::size_t type = element.choice(
+        "type",
+        {"plane", "hfield", "sphere", "capsule", "ellipsoid", "cylinder", "box", "mesh", "sdf"},
+        sphere);
     const std::string mesh_name = element.text("mesh");
     const std::vector<double> size = element.numbers("size", 0, {0, 0, 0});
     geom.size = {size[0], size[1], size[2]};
@@ -356,10 +406,13 @@ class BodiesReader {
       geom.world = world * placed(middle(element), from_z(along));
     }
     const bool is_fitted = !mesh_name.empty() && type != mesh;
-    if (is_fitted && !fit(element, *scope.model, mesh_name, type == plane || type == hfield || type == sdf, geom)) return;
+    if (is_fitted && !fit(element, *scope.model, mesh_name,
+                          type == plane || type == hfield || type == sdf, geom))
+      return;
     const auto positive = [&](int count) {
       for (int k = 0; k < count; ++k)
-        if (!is_fitted && !(geom.size[k] > 0)) element.fail(fmt::format("size: {} positive numbers are needed", count));
+        if (!is_fitted && !(geom.size[k] > 0))
+          element.fail(fmt::format("size: {} positive numbers are needed", count));
     };
     switch (type) {
       case plane:
@@ -390,7 +443,8 @@ class BodiesReader {
         assets_.height_field(*scope.model, element.text("hfield"), geom);
         break;
       default:
-        Diagnostics().warning(geom.where, "the geom is left out: signed distance fields are not read");
+        Diagnostics().warning(geom.where,
+                              "the geom is left out: signed distance fields are not read");
         return;
     }
     if (!material.empty()) geom.material = assets_.material(*scope.model, material, geom.where);
@@ -414,14 +468,18 @@ class BodiesReader {
     out.diffuse = element.vector("diffuse", {0.7, 0.7, 0.7});
     out.cutoff = element.number("cutoff", 45);
     out.exponent = element.number("exponent", 10);
-    const std::size_t type =
-        element.choice("type", {"spot", "directional", "point", "image"}, element.yes("directional", false) ? 1 : 0);
-    if (type == 3) return Diagnostics().warning(out.where, "the light is left out: lights of images are not read");
+    const std::size_t type = element.choice("type", {"spot", "directional", "point", "image"},
+                                            element.yes("directional", false) ? 1 : 0);
+    if (type == 3)
+      return Diagnostics().warning(out.where,
+                                   "the light is left out: lights of images are not read");
     out.kind = type == 1                       ? RobotLight::Kind::distant
                : type == 2 || out.cutoff >= 90 ? RobotLight::Kind::point
                                                : RobotLight::Kind::spot;
-    const std::size_t mode = element.choice("mode", {"fixed", "track", "trackcom", "targetbody", "targetbodycom"}, 0);
-    if (mode >= 3) aimed_.emplace_back(robot_.lights.size(), scope.name(element.text("target").c_str()));
+    const std::size_t mode =
+        element.choice("mode", {"fixed", "track", "trackcom", "targetbody", "targetbodycom"}, 0);
+    if (mode >= 3)
+      aimed_.emplace_back(robot_.lights.size(), scope.name(element.text("target").c_str()));
     robot_.lights.push_back(out);
   }
 
@@ -432,11 +490,14 @@ class BodiesReader {
     out.name = scope.name(node.attribute("name").value());
     out.world = world * element.pose();
     out.fovy = element.number("fovy", 45);
-    out.orthographic = element.text("projection") == "orthographic" || element.yes("orthographic", false);
+    out.orthographic =
+        element.text("projection") == "orthographic" || element.yes("orthographic", false);
     if (!(out.fovy > 0) || (!out.orthographic && !(out.fovy < 180)))
       element.fail("fovy: an angle from 0 to 180 degrees is needed");
-    const std::size_t mode = element.choice("mode", {"fixed", "track", "trackcom", "targetbody", "targetbodycom"}, 0);
-    if (mode >= 3) watching_.emplace_back(robot_.cameras.size(), scope.name(element.text("target").c_str()));
+    const std::size_t mode =
+        element.choice("mode", {"fixed", "track", "trackcom", "targetbody", "targetbodycom"}, 0);
+    if (mode >= 3)
+      watching_.emplace_back(robot_.cameras.size(), scope.name(element.text("target").c_str()));
     robot_.cameras.push_back(std::move(out));
   }
 
@@ -460,7 +521,8 @@ class BodiesReader {
   void skins(const Scope& scope) {
     const Model& model = *scope.model;
     const auto draw = [&](pugi::xml_node node) {
-      if (std::string_view(node.name()) == "flex") Diagnostics().warning(model.place(node), "<flex> is left out: it is not read");
+      if (std::string_view(node.name()) == "flex")
+        Diagnostics().warning(model.place(node), "<flex> is left out: it is not read");
       if (std::string_view(node.name()) != "skin") return;
       const auto body = [&](const std::string& name) -> const glm::dmat4* {
         const auto found = bodies_.find(scope.name(name.c_str()));
@@ -482,7 +544,8 @@ class BodiesReader {
         std::vector<glm::dvec3> points;
         bool wraps = false;
         const auto draw = [&] {
-          for (std::size_t i = 1; i < points.size(); ++i) segment(element, scope, points[i - 1], points[i]);
+          for (std::size_t i = 1; i < points.size(); ++i)
+            segment(element, scope, points[i - 1], points[i]);
           points.clear();
         };
         model.each(node, [&](pugi::xml_node part) {
@@ -494,19 +557,23 @@ class BodiesReader {
           const auto site = sites_.find(name);
           if (site == sites_.end()) {
             // If a model is attached in part, its other sites do not exist.
-            if (&model == &model_) model.fail(part, "there is no site " + quoted(std::string_view(name)));
+            if (&model == &model_)
+              model.fail(part, "there is no site " + quoted(std::string_view(name)));
             return;
           }
           points.push_back(site->second);
         });
         if (wraps)
-          Diagnostics().warning(element.where(), "the tendon is left out: tendons that wrap around geoms are not read");
+          Diagnostics().warning(
+              element.where(),
+              "the tendon is left out: tendons that wrap around geoms are not read");
         else
           draw();
       });
   }
 
-  void segment(const Element& element, const Scope& scope, const glm::dvec3& a, const glm::dvec3& b) {
+  void segment(const Element& element, const Scope& scope, const glm::dvec3& a,
+               const glm::dvec3& b) {
     if (!(glm::length(b - a) > 1e-14)) return;
     RobotGeom geom;
     geom.where = element.where();
@@ -518,7 +585,8 @@ class BodiesReader {
     geom.world = placed((a + b) / 2.0, from_z(b - a));
     const std::vector<double> c = element.numbers("rgba", 4, {0.5, 0.5, 0.5, 1});
     if (element.has("rgba")) geom.rgba = {c[0], c[1], c[2], c[3]};
-    if (element.has("material")) geom.material = assets_.material(*scope.model, element.text("material"), geom.where);
+    if (element.has("material"))
+      geom.material = assets_.material(*scope.model, element.text("material"), geom.where);
     robot_.geoms.push_back(std::move(geom));
   }
 

@@ -60,7 +60,8 @@ std::string Element::text(const char* name, const std::string& otherwise) const 
   return found ? found.value() : otherwise;
 }
 
-std::size_t Element::choice(const char* name, std::initializer_list<const char*> choices, std::size_t otherwise) const {
+std::size_t Element::choice(const char* name, std::initializer_list<const char*> choices,
+                            std::size_t otherwise) const {
   const pugi::xml_attribute found = attribute(name);
   if (!found) return otherwise;
   std::size_t i = 0;
@@ -73,9 +74,12 @@ std::size_t Element::choice(const char* name, std::initializer_list<const char*>
   fail(fmt::format("{}: {} is none of: {}", name, quoted(std::string_view(found.value())), known));
 }
 
-bool Element::yes(const char* name, bool otherwise) const { return choice(name, {"false", "true"}, otherwise ? 1 : 0) == 1; }
+bool Element::yes(const char* name, bool otherwise) const {
+  return choice(name, {"false", "true"}, otherwise ? 1 : 0) == 1;
+}
 
-std::vector<double> Element::numbers(const char* name, std::size_t least, std::vector<double> otherwise) const {
+std::vector<double> Element::numbers(const char* name, std::size_t least,
+                                     std::vector<double> otherwise) const {
   std::vector<std::vector<double>> said;
   const std::size_t most = otherwise.size();
   levels([&](pugi::xml_node node) {
@@ -83,7 +87,8 @@ std::vector<double> Element::numbers(const char* name, std::size_t least, std::v
       said.push_back(numbers_of(found.value(), least, most, model_->place(node), name));
     return !said.empty() && said.back().size() == most;
   });
-  for (auto values = said.rbegin(); values != said.rend(); ++values) std::ranges::copy(*values, otherwise.begin());
+  for (auto values = said.rbegin(); values != said.rend(); ++values)
+    std::ranges::copy(*values, otherwise.begin());
   return otherwise;
 }
 
@@ -93,7 +98,8 @@ glm::dvec3 Element::vector(const char* name, glm::dvec3 otherwise) const {
 }
 
 double Element::angle(const char* name, double otherwise) const {
-  return has(name) ? number(name, 0) * (model_->compiler().degrees ? glm::radians(1.0) : 1) : otherwise;
+  return has(name) ? number(name, 0) * (model_->compiler().degrees ? glm::radians(1.0) : 1)
+                   : otherwise;
 }
 
 glm::dquat Element::rotation() const {
@@ -111,7 +117,8 @@ glm::dquat Element::rotation() const {
   if (!how) return {1, 0, 0, 0};
   const std::string_view turn = how;
   const std::size_t count = turn == "xyaxes" ? 6 : turn == "quat" || turn == "axisangle" ? 4 : 3;
-  const std::vector<double> v = numbers_of(at.attribute(how).value(), count, count, model_->place(at), how);
+  const std::vector<double> v =
+      numbers_of(at.attribute(how).value(), count, count, model_->place(at), how);
   const double scale = model_->compiler().degrees ? glm::radians(1.0) : 1;
   if (turn == "quat") {
     const glm::dquat q(v[0], v[1], v[2], v[3]);
@@ -119,10 +126,12 @@ glm::dquat Element::rotation() const {
     if (!(length > 1e-14)) model_->fail(at, "quat has no length");
     return q / length;
   }
-  if (turn == "axisangle") return glm::angleAxis(v[3] * scale, unit({v[0], v[1], v[2]}, *model_, at, "the axis"));
+  if (turn == "axisangle")
+    return glm::angleAxis(v[3] * scale, unit({v[0], v[1], v[2]}, *model_, at, "the axis"));
   if (turn == "zaxis") return from_z(unit({v[0], v[1], v[2]}, *model_, at, "zaxis"));
   if (turn == "xyaxes") {
-    const glm::dvec3 x = unit({v[0], v[1], v[2]}, *model_, at, "the x axis"), given(v[3], v[4], v[5]);
+    const glm::dvec3 x = unit({v[0], v[1], v[2]}, *model_, at, "the x axis"),
+                     given(v[3], v[4], v[5]);
     const glm::dvec3 y = unit(given - glm::dot(x, given) * x, *model_, at, "the y axis across x");
     return glm::normalize(glm::quat_cast(glm::dmat3(x, y, glm::cross(x, y))));
   }

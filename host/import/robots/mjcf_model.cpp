@@ -16,7 +16,8 @@ namespace {
 
 /// Sections of a model that do not affect the picture.
 constexpr std::string_view kPhysics =
-    " option size statistic custom extension contact equality actuator sensor deformable lengthrange ";
+    " option size statistic custom extension contact equality actuator sensor deformable "
+    "lengthrange ";
 constexpr std::string_view kSections = " compiler default asset worldbody visual tendon keyframe ";
 
 bool is_among(std::string_view name, std::string_view words) {
@@ -29,38 +30,51 @@ struct Words {
 };
 constexpr Words kAttributes[] = {
     {"compiler",
-     " alignfree angle assetdir autolimits balanceinertia boundinertia boundmass conflict convexhull coordinate discardvisual "
+     " alignfree angle assetdir autolimits balanceinertia boundinertia boundmass conflict "
+     "convexhull coordinate discardvisual "
      "exactmeshinertia eulerseq fitaabb "
-     "fusestatic inertiafromgeom inertiagrouprange meshdir passthrough savecanonical savecompiled saveinertial settotalmass "
+     "fusestatic inertiafromgeom inertiagrouprange meshdir passthrough savecanonical savecompiled "
+     "saveinertial settotalmass "
      "strippath texturedir usethread "},
     {"geom",
-     " adhesion axisangle castshadow class conaffinity condim contype density euler fitscale fluidcoef fluidshape friction "
+     " adhesion axisangle castshadow class conaffinity condim contype density euler fitscale "
+     "fluidcoef fluidshape friction "
      "fromto gap group hfield margin "
-     "mass material mesh name pos priority quat rgba shellinertia size solimp solmix solref surfacevel type user xyaxes zaxis "},
-    {"body", " axisangle childclass euler fuse gravcomp mocap name pos quat simple sleep user xyaxes zaxis "},
+     "mass material mesh name pos priority quat rgba shellinertia size solimp solmix solref "
+     "surfacevel type user xyaxes zaxis "},
+    {"body",
+     " axisangle childclass euler fuse gravcomp mocap name pos quat simple sleep user xyaxes "
+     "zaxis "},
     {"frame", " axisangle childclass euler name pos quat xyaxes zaxis "},
     {"replicate", " childclass count euler offset prefix sep "},
     {"attach", " body frame model prefix "},
     {"camera",
-     " axisangle class euler focal focalpixel fovy ipd mode name orthographic output pos principal principalpixel projection "
+     " axisangle class euler focal focalpixel fovy ipd mode name orthographic output pos principal "
+     "principalpixel projection "
      "quat resolution sensorsize "
      "target user xyaxes zaxis "},
     {"light",
-     " active ambient attenuation bulbradius castshadow class cutoff diffuse dir directional exponent intensity mode name pos "
+     " active ambient attenuation bulbradius castshadow class cutoff diffuse dir directional "
+     "exponent intensity mode name pos "
      "range softness specular "
      "target texture type "},
     {"mesh",
-     " builtin class content_type face file inertia material maxhullvert name normal params refpos refquat scale smoothnormal "
+     " builtin class content_type face file inertia material maxhullvert name normal params refpos "
+     "refquat scale smoothnormal "
      "texcoord vertex octree_maxdepth "},
     {"hfield", " content_type elevation file name ncol nrow size "},
     {"texture",
-     " builtin class colorspace content_type embed file fileback filedown filefront fileleft fileright fileup gridlayout "
+     " builtin class colorspace content_type embed file fileback filedown filefront fileleft "
+     "fileright fileup gridlayout "
      "gridsize height hflip mark markrgb "
      "name nchannel random rgb1 rgb2 type vflip width "},
-    {"material", " class emission metallic name reflectance rgba roughness shininess specular texrepeat texture texuniform "},
+    {"material",
+     " class emission metallic name reflectance rgba roughness shininess specular texrepeat "
+     "texture texuniform "},
 };
 
-/// Returns one name for all spellings of a path; the path itself if it has no canonical form, such as a pipe.
+/// Returns one name for all spellings of a path; the path itself if it has no canonical form, such
+/// as a pipe.
 std::string known_as(const std::filesystem::path& path) {
   std::error_code error;
   const std::filesystem::path out = std::filesystem::weakly_canonical(path, error);
@@ -70,18 +84,23 @@ std::string known_as(const std::filesystem::path& path) {
 }  // namespace
 
 void check_attributes(const Model& model, pugi::xml_node node) {
-  const auto* known = std::ranges::find(kAttributes, std::string_view(node.name()), &Words::element);
+  const auto* known =
+      std::ranges::find(kAttributes, std::string_view(node.name()), &Words::element);
   if (known == std::end(kAttributes)) return;
   for (const pugi::xml_attribute attribute : node.attributes())
     if (!is_among(attribute.name(), known->attributes))
-      model.fail(node, fmt::format("<{}> has no attribute {}", node.name(), quoted(std::string_view(attribute.name()))));
+      model.fail(node, fmt::format("<{}> has no attribute {}", node.name(),
+                                   quoted(std::string_view(attribute.name()))));
 }
 
-Model::Model(const std::filesystem::path& path, const SourceLocation& named_at, std::set<std::string> above)
+Model::Model(const std::filesystem::path& path, const SourceLocation& named_at,
+             std::set<std::string> above)
     : folder_(path.parent_path()), above_(std::move(above)) {
   const std::string here = known_as(path);
-  if (!above_.insert(here).second) throw InputError(named_at, "the model '" + path.string() + "' is attached to itself");
-  if (above_.size() > 20) throw InputError(named_at, "models are attached to models more than 20 deep");
+  if (!above_.insert(here).second)
+    throw InputError(named_at, "the model '" + path.string() + "' is attached to itself");
+  if (above_.size() > 20)
+    throw InputError(named_at, "models are attached to models more than 20 deep");
   auto file = std::make_unique<XmlFile>(path, named_at);
   root_ = file->root();
   files_.emplace(root_.root().internal_object(), std::move(file));
@@ -93,7 +112,8 @@ Model::Model(const std::filesystem::path& path, const SourceLocation& named_at, 
   compiler_.meshes = compiler_.textures = folder_;
   each(root_, [&](pugi::xml_node section) {
     const std::string_view name = section.name();
-    if (!is_among(name, kSections) && !is_among(name, kPhysics)) fail(section, "<mujoco> has no section " + quoted(name));
+    if (!is_among(name, kSections) && !is_among(name, kPhysics))
+      fail(section, "<mujoco> has no section " + quoted(name));
     if (name == "compiler") read_compiler(section);
     if (name == "default") defaults.push_back(section);
     if (name == "asset") assets.push_back(section);
@@ -107,7 +127,9 @@ SourceLocation Model::place(pugi::xml_node node) const {
   return file == files_.end() ? SourceLocation{} : file->second->place(node);
 }
 
-void Model::fail(pugi::xml_node node, const std::string& message) const { throw InputError(place(node), message); }
+void Model::fail(pugi::xml_node node, const std::string& message) const {
+  throw InputError(place(node), message);
+}
 
 std::vector<pugi::xml_node> Model::sections(std::string_view name) const {
   std::vector<pugi::xml_node> out;
@@ -124,10 +146,12 @@ pugi::xml_node Model::included(pugi::xml_node node) const {
   if (name.empty()) fail(node, "<include> without a file");
   std::filesystem::path path = folder_ / name;
   if (!is_there(path, place(node))) {
-    const std::filesystem::path beside = std::filesystem::path(place(node).file).parent_path() / name;
+    const std::filesystem::path beside =
+        std::filesystem::path(place(node).file).parent_path() / name;
     if (is_there(beside, place(node))) path = beside;
   }
-  if (!seen_.insert(known_as(path)).second) fail(node, "the file '" + path.string() + "' is included already");
+  if (!seen_.insert(known_as(path)).second)
+    fail(node, "the file '" + path.string() + "' is included already");
   if (seen_.size() > most_nested) fail(node, "too many files are included");
   auto file = std::make_unique<XmlFile>(path, place(node));
   const pugi::xml_node root = file->root();
@@ -139,16 +163,21 @@ pugi::xml_node Model::included(pugi::xml_node node) const {
 void Model::read_compiler(pugi::xml_node node) {
   check_attributes(*this, node);
   const Element element(*this, node, "compiler", nullptr);
-  if (element.has("angle")) compiler_.degrees = element.choice("angle", {"radian", "degree"}, 1) == 1;
-  if (element.text("coordinate", "local") != "local") fail(node, "coordinate: only 'local' is read, as MuJoCo has it");
+  if (element.has("angle"))
+    compiler_.degrees = element.choice("angle", {"radian", "degree"}, 1) == 1;
+  if (element.text("coordinate", "local") != "local")
+    fail(node, "coordinate: only 'local' is read, as MuJoCo has it");
   if (element.has("strippath")) compiler_.strips_paths = element.yes("strippath", false);
   if (element.has("fitaabb")) compiler_.fits_extents = element.yes("fitaabb", false);
   if (element.has("eulerseq")) {
     compiler_.euler = element.text("eulerseq");
-    if (compiler_.euler.size() != 3 || compiler_.euler.find_first_not_of("xyzXYZ") != std::string::npos)
-      fail(node, "eulerseq: " + quoted(std::string_view(compiler_.euler)) + " is not three of x, y, z, X, Y, Z");
+    if (compiler_.euler.size() != 3 ||
+        compiler_.euler.find_first_not_of("xyzXYZ") != std::string::npos)
+      fail(node, "eulerseq: " + quoted(std::string_view(compiler_.euler)) +
+                     " is not three of x, y, z, X, Y, Z");
   }
-  if (element.has("assetdir")) compiler_.meshes = compiler_.textures = folder_ / element.text("assetdir");
+  if (element.has("assetdir"))
+    compiler_.meshes = compiler_.textures = folder_ / element.text("assetdir");
   if (element.has("meshdir")) compiler_.meshes = folder_ / element.text("meshdir");
   if (element.has("texturedir")) compiler_.textures = folder_ / element.text("texturedir");
 }
@@ -164,7 +193,8 @@ void Model::read_defaults(pugi::xml_node node, const Class* parent, int depth) {
   } else {
     if (name.empty()) fail(node, "a default class without a name");
     const auto [entry, fresh] = classes_.try_emplace(name);
-    if (!fresh) fail(node, "the default class " + quoted(std::string_view(name)) + " was there before");
+    if (!fresh)
+      fail(node, "the default class " + quoted(std::string_view(name)) + " was there before");
     to = &entry->second;
     to->parent = parent;
   }
@@ -178,11 +208,13 @@ void Model::read_defaults(pugi::xml_node node, const Class* parent, int depth) {
   });
 }
 
-const Class* Model::class_of(pugi::xml_node node, const char* attribute, const Class* otherwise) const {
+const Class* Model::class_of(pugi::xml_node node, const char* attribute,
+                             const Class* otherwise) const {
   const pugi::xml_attribute name = node.attribute(attribute);
   if (!name) return otherwise;
   const auto found = classes_.find(name.value());
-  if (found == classes_.end()) fail(node, "there is no default class " + quoted(std::string_view(name.value())));
+  if (found == classes_.end())
+    fail(node, "there is no default class " + quoted(std::string_view(name.value())));
   return &found->second;
 }
 
@@ -201,10 +233,12 @@ void Model::read_assets(pugi::xml_node node) {
       name = model->name();
       models_.emplace(name, std::move(model));
     }
-    if (kind == "texture" && std::string_view(asset.attribute("type").value()) == "skybox" && name.empty())
+    if (kind == "texture" && std::string_view(asset.attribute("type").value()) == "skybox" &&
+        name.empty())
       name = " sky" + std::to_string(assets_[kind].size());
     if (!assets_[kind].emplace(name, asset).second && !name.empty())
-      fail(asset, fmt::format("a {} of the name {} was there before", kind, quoted(std::string_view(name))));
+      fail(asset, fmt::format("a {} of the name {} was there before", kind,
+                              quoted(std::string_view(name))));
   });
 }
 
@@ -217,7 +251,8 @@ const std::map<std::string, pugi::xml_node>& Model::assets(const char* kind) con
 Element Model::asset(const char* kind, const std::string& name, const SourceLocation& user) const {
   const auto& all = assets(kind);
   const auto found = all.find(name);
-  if (found == all.end()) throw InputError(user, fmt::format("there is no {} {}", kind, quoted(std::string_view(name))));
+  if (found == all.end())
+    throw InputError(user, fmt::format("there is no {} {}", kind, quoted(std::string_view(name))));
   return element(found->second, kind, root_class());
 }
 
@@ -229,7 +264,8 @@ const Model& Model::attached(const std::string& name, const SourceLocation& user
   return *models_.emplace(name, std::move(model)).first->second;
 }
 
-std::filesystem::path Model::file(const Element& of, const std::string& name, const std::filesystem::path& folder) const {
+std::filesystem::path Model::file(const Element& of, const std::string& name,
+                                  const std::filesystem::path& folder) const {
   const std::filesystem::path path =
       compiler_.strips_paths ? std::filesystem::path(name).filename() : std::filesystem::path(name);
   if (name.empty()) of.fail("a file is needed");

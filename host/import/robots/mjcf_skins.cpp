@@ -37,13 +37,16 @@ void check_vertices(const Element& of, const Skin& skin) {
   const std::size_t count = skin.mesh.positions.size();
   for (const glm::vec3& p : skin.mesh.positions)
     for (int k = 0; k < 3; ++k)
-      if (!(std::abs(p[k]) <= largest_number)) of.fail("a vertex of the skin is not finite or out of range");
+      if (!(std::abs(p[k]) <= largest_number))
+        of.fail("a vertex of the skin is not finite or out of range");
   for (const auto& triangle : skin.mesh.triangles)
     for (const std::uint32_t vertex : triangle)
-      if (vertex >= count) of.fail(fmt::format("face: {} is no vertex of the skin, of {}", vertex, count));
+      if (vertex >= count)
+        of.fail(fmt::format("face: {} is no vertex of the skin, of {}", vertex, count));
   for (const Bone& bone : skin.bones)
     for (const std::uint32_t vertex : bone.vertices)
-      if (vertex >= count) of.fail(fmt::format("bone {}: {} is no vertex, of {}", bone.body, vertex, count));
+      if (vertex >= count)
+        of.fail(fmt::format("bone {}: {} is no vertex, of {}", bone.body, vertex, count));
 }
 
 glm::dquat turn(const Element& of, double w, double x, double y, double z) {
@@ -53,10 +56,12 @@ glm::dquat turn(const Element& of, double w, double x, double y, double z) {
   return out / length;
 }
 
-/// Reads a .skn file: four counts, vertices, texture coordinates, faces, and the bones, each with a body name of 40 letters.
+/// Reads a .skn file: four counts, vertices, texture coordinates, faces, and the bones, each with a
+/// body name of 40 letters.
 class SkinFile {
  public:
-  SkinFile(const Element& of, const std::filesystem::path& path) : of_(of), path_(path), bytes_(read_file(path, of.where())) {}
+  SkinFile(const Element& of, const std::filesystem::path& path)
+      : of_(of), path_(path), bytes_(read_file(path, of.where())) {}
 
   Skin read() {
     Skin out;
@@ -72,24 +77,28 @@ class SkinFile {
       bone.body.assign(name.begin(), std::ranges::find(name, '\0'));
       take(bind, 7);
       bone.position = {bind[0], bind[1], bind[2]};
-      bone.rotation = turn(of_, static_cast<double>(bind[3]), static_cast<double>(bind[4]), static_cast<double>(bind[5]),
-                           static_cast<double>(bind[6]));
+      bone.rotation = turn(of_, static_cast<double>(bind[3]), static_cast<double>(bind[4]),
+                           static_cast<double>(bind[5]), static_cast<double>(bind[6]));
       const std::uint64_t of_bone = count();
       take(bone.vertices, of_bone);
       take(weights, of_bone);
       bone.weights.assign(weights.begin(), weights.end());
       out.bones.push_back(std::move(bone));
     }
-    if (at_ != bytes_.size()) fail(fmt::format("{} bytes follow what it announces", bytes_.size() - at_));
+    if (at_ != bytes_.size())
+      fail(fmt::format("{} bytes follow what it announces", bytes_.size() - at_));
     return out;
   }
 
  private:
-  [[noreturn]] void fail(const std::string& message) const { throw InputError({path_.string()}, "the skin: " + message); }
+  [[noreturn]] void fail(const std::string& message) const {
+    throw InputError({path_.string()}, "the skin: " + message);
+  }
   template <class Value>
   void take(std::vector<Value>& to, std::uint64_t count) {
     if (count > (bytes_.size() - at_) / sizeof(Value))
-      fail(fmt::format("{} times {} bytes are announced, and {} are there", count, sizeof(Value), bytes_.size() - at_));
+      fail(fmt::format("{} times {} bytes are announced, and {} are there", count, sizeof(Value),
+                       bytes_.size() - at_));
     to.resize(count);
     if (count > 0) std::memcpy(to.data(), bytes_.data() + at_, count * sizeof(Value));
     at_ += count * sizeof(Value);
@@ -111,7 +120,8 @@ class SkinFile {
 Skin written_skin(const Model& model, const Element& of) {
   const auto numbers = [](const Element& from, const char* name, std::size_t of_each) {
     std::vector<double> v = numbers_of(from.text(name), 0, kMany, from.where(), name);
-    if (v.size() % of_each != 0) from.fail(fmt::format("{}: a multiple of {} numbers is needed", name, of_each));
+    if (v.size() % of_each != 0)
+      from.fail(fmt::format("{}: a multiple of {} numbers is needed", name, of_each));
     return v;
   };
   const auto whole = [](const Element& from, double v) {
@@ -125,9 +135,11 @@ Skin written_skin(const Model& model, const Element& of) {
     out.mesh.positions.emplace_back(positions[i], positions[i + 1], positions[i + 2]);
   for (std::size_t i = 0; i < uvs.size(); i += 2) out.mesh.uvs.emplace_back(uvs[i], uvs[i + 1]);
   for (std::size_t i = 0; i < faces.size(); i += 3)
-    out.mesh.triangles.push_back({whole(of, faces[i]), whole(of, faces[i + 1]), whole(of, faces[i + 2])});
+    out.mesh.triangles.push_back(
+        {whole(of, faces[i]), whole(of, faces[i + 1]), whole(of, faces[i + 2])});
   model.each(of.node(), [&](pugi::xml_node child) {
-    if (std::string_view(child.name()) != "bone") model.fail(child, "<skin> has no " + quoted(std::string_view(child.name())));
+    if (std::string_view(child.name()) != "bone")
+      model.fail(child, "<skin> has no " + quoted(std::string_view(child.name())));
     const Element element(model, child, "bone", nullptr);
     Bone bone;
     bone.body = element.text("body");
@@ -137,7 +149,8 @@ Skin written_skin(const Model& model, const Element& of) {
     for (const double v : numbers(element, "vertid", 1)) bone.vertices.push_back(whole(element, v));
     bone.weights = numbers(element, "vertweight", 1);
     if (bone.weights.size() != bone.vertices.size())
-      element.fail(fmt::format("{} weights of {} vertices", bone.weights.size(), bone.vertices.size()));
+      element.fail(
+          fmt::format("{} weights of {} vertices", bone.weights.size(), bone.vertices.size()));
     out.bones.push_back(std::move(bone));
   });
   return out;
@@ -145,8 +158,9 @@ Skin written_skin(const Model& model, const Element& of) {
 
 }  // namespace
 
-void read_skin(const Model& model, pugi::xml_node node, const std::function<const glm::dmat4*(const std::string&)>& body,
-               bool is_whole, Robot& robot, Assets& assets) {
+void read_skin(const Model& model, pugi::xml_node node,
+               const std::function<const glm::dmat4*(const std::string&)>& body, bool is_whole,
+               Robot& robot, Assets& assets) {
   const Element of(model, node, "skin", nullptr);
   Skin skin;
   if (const std::string file = of.text("file"); !file.empty()) {
@@ -160,12 +174,14 @@ void read_skin(const Model& model, pugi::xml_node node, const std::function<cons
   if (mesh.triangles.empty() || skin.bones.empty()) of.fail("a skin has faces and bones");
   if (mesh.uvs.size() != mesh.positions.size()) mesh.uvs.clear();
   for (glm::vec2& uv : mesh.uvs) uv.y = 1 - uv.y;
-  // Weights are normalised by their sum. Each bone moves a vertex from its bind pose to the body's pose.
+  // Weights are normalised by their sum. Each bone moves a vertex from its bind pose to the body's
+  // pose.
   std::vector<glm::dvec3> moved(mesh.positions.size(), glm::dvec3(0));
   std::vector<double> sum(mesh.positions.size(), 0);
   for (const Bone& bone : skin.bones)
     for (std::size_t i = 0; i < bone.vertices.size(); ++i) {
-      if (!(std::abs(bone.weights[i]) <= static_cast<double>(largest_number))) of.fail("a weight of the skin is not finite");
+      if (!(std::abs(bone.weights[i]) <= static_cast<double>(largest_number)))
+        of.fail("a weight of the skin is not finite");
       sum[bone.vertices[i]] += bone.weights[i];
     }
   for (std::size_t i = 0; i < sum.size(); ++i)
@@ -173,17 +189,21 @@ void read_skin(const Model& model, pugi::xml_node node, const std::function<cons
   for (const Bone& bone : skin.bones) {
     const glm::dmat4* at = body(bone.body);
     if (!at && !is_whole) return;
-    if (!at) of.fail("there is no body " + quoted(std::string_view(bone.body)) + ", which the skin goes with");
+    if (!at)
+      of.fail("there is no body " + quoted(std::string_view(bone.body)) +
+              ", which the skin goes with");
     const glm::dmat3 rotation = glm::dmat3(*at) * glm::mat3_cast(glm::conjugate(bone.rotation));
     for (std::size_t i = 0; i < bone.vertices.size(); ++i) {
       const std::uint32_t vertex = bone.vertices[i];
-      const glm::dvec3 p = rotation * (glm::dvec3(mesh.positions[vertex]) - bone.position) + glm::dvec3((*at)[3]);
+      const glm::dvec3 p =
+          rotation * (glm::dvec3(mesh.positions[vertex]) - bone.position) + glm::dvec3((*at)[3]);
       moved[vertex] += bone.weights[i] / sum[vertex] * p;
     }
   }
   for (std::size_t i = 0; i < moved.size(); ++i) mesh.positions[i] = moved[i];
   check_vertices(of, skin);
-  if (of.number("inflate", 0) != 0) Diagnostics().warning(of.where(), "the skin is drawn as it is: inflate is not read");
+  if (of.number("inflate", 0) != 0)
+    Diagnostics().warning(of.where(), "the skin is drawn as it is: inflate is not read");
   RobotGeom geom;
   geom.where = of.where();
   geom.name = of.text("name").empty() ? "skin" : of.text("name");

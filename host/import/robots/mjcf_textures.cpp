@@ -30,13 +30,16 @@ struct Recipe {
 
 Rgb bytes_of(const glm::dvec3& color) {
   Rgb out{};
-  for (int k = 0; k < 3; ++k) out[static_cast<std::size_t>(k)] = static_cast<std::uint8_t>(255 * std::clamp(color[k], 0.0, 1.0));
+  for (int k = 0; k < 3; ++k)
+    out[static_cast<std::size_t>(k)] =
+        static_cast<std::uint8_t>(255 * std::clamp(color[k], 0.0, 1.0));
   return out;
 }
 
 /// Returns rgb2 at -1, rgb1 at 1; the slope is greatest at 0.
 Rgb between(const Recipe& recipe, double at) {
-  const double share = std::clamp(0.5 * (1 + at / std::sqrt(1 + at * at) * std::numbers::sqrt2), 0.0, 1.0);
+  const double share =
+      std::clamp(0.5 * (1 + at / std::sqrt(1 + at * at) * std::numbers::sqrt2), 0.0, 1.0);
   return bytes_of(share * recipe.rgb1 + (1 - share) * recipe.rgb2);
 }
 
@@ -59,11 +62,15 @@ int size_of(const Element& of, const char* name, int otherwise) {
 }
 
 std::uint8_t* texel(Pixels& pixels, int row, int column) {
-  return &pixels.rgb[3 *
-                     (static_cast<std::size_t>(row) * static_cast<std::size_t>(pixels.width) + static_cast<std::size_t>(column))];
+  return &pixels.rgb[3 * (static_cast<std::size_t>(row) * static_cast<std::size_t>(pixels.width) +
+                          static_cast<std::size_t>(column))];
 }
-const std::uint8_t* texel(const Pixels& pixels, int row, int column) { return texel(const_cast<Pixels&>(pixels), row, column); }
-void set(Pixels& pixels, int row, int column, const Rgb& color) { std::ranges::copy(color, texel(pixels, row, column)); }
+const std::uint8_t* texel(const Pixels& pixels, int row, int column) {
+  return texel(const_cast<Pixels&>(pixels), row, column);
+}
+void set(Pixels& pixels, int row, int column, const Rgb& color) {
+  std::ranges::copy(color, texel(pixels, row, column));
+}
 
 Pixels blank(int width, int height) {
   Pixels out;
@@ -87,7 +94,8 @@ void put_marks(Pixels& pixels, const Recipe& recipe, std::mt19937& numbers) {
   if (recipe.mark == edge || recipe.mark == cross) {
     for (int row = 0; row < pixels.height; ++row)
       for (int column = 0; column < pixels.width; ++column) {
-        const bool outer = row == 0 || column == 0 || row == pixels.height - 1 || column == pixels.width - 1;
+        const bool outer =
+            row == 0 || column == 0 || row == pixels.height - 1 || column == pixels.width - 1;
         const bool middle = row == pixels.height / 2 || column == pixels.width / 2;
         if (recipe.mark == edge ? outer : middle) set(pixels, row, column, color);
       }
@@ -107,7 +115,8 @@ Pixels made(const Recipe& recipe, int width, int height) {
   return painted(width, height, [&](int, int) { return bytes_of(recipe.rgb1); });
 }
 
-/// MuJoCo's checkers continue across the edges of a cube, and its flat cubes have the second colour on the bottom face.
+/// MuJoCo's checkers continue across the edges of a cube, and its flat cubes have the second colour
+/// on the bottom face.
 Recipe of_face(Recipe recipe, std::size_t face) {
   constexpr std::size_t down = 3, front = 4;
   if ((recipe.builtin == checker && face >= front) || (recipe.builtin == flat && face == down))
@@ -128,14 +137,19 @@ Pixels read(const Element& of, const ImageReader& images, const std::string& nam
   for (std::size_t i = 0; i < out.rgb.size() / 3; ++i)
     for (std::size_t k = 0; k < 3; ++k) {
       const std::size_t from = i * channels + (channels >= 3 ? k : 0);
-      const double linear = image.floats.empty() ? 0 : std::clamp(static_cast<double>(image.floats[from]), 0.0, 1.0);
-      const double screen = linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1 / 2.4) - 0.055;
-      out.rgb[3 * i + k] = image.floats.empty() ? image.bytes[from] : static_cast<std::uint8_t>(std::lround(255 * screen));
+      const double linear =
+          image.floats.empty() ? 0 : std::clamp(static_cast<double>(image.floats[from]), 0.0, 1.0);
+      const double screen =
+          linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1 / 2.4) - 0.055;
+      out.rgb[3 * i + k] = image.floats.empty()
+                               ? image.bytes[from]
+                               : static_cast<std::uint8_t>(std::lround(255 * screen));
     }
   const bool across = of.yes("hflip", false), upside = of.yes("vflip", false);
   if (!across && !upside) return out;
   return painted(out.width, out.height, [&](int row, int column) {
-    const std::uint8_t* from = texel(out, upside ? out.height - 1 - row : row, across ? out.width - 1 - column : column);
+    const std::uint8_t* from =
+        texel(out, upside ? out.height - 1 - row : row, across ? out.width - 1 - column : column);
     return Rgb{from[0], from[1], from[2]};
   });
 }
@@ -167,7 +181,9 @@ Rgb seen(const Cube& cube, const glm::dvec3& d) {
     most = a.z;
   }
   const Pixels& from = cube.faces[face];
-  const auto at = [](double v, int size) { return std::clamp(static_cast<int>(0.5 * (v + 1) * size), 0, size - 1); };
+  const auto at = [](double v, int size) {
+    return std::clamp(static_cast<int>(0.5 * (v + 1) * size), 0, size - 1);
+  };
   const std::uint8_t* value = texel(from, at(t / most, from.height), at(s / most, from.width));
   return {value[0], value[1], value[2]};
 }
@@ -183,7 +199,8 @@ Pixels flat_texture(const Element& of, const ImageReader& images) {
   if (recipe.builtin == gradient)
     out = painted(width, height, [&](int row, int column) {
       // Coordinates run from the centre outwards, 1 to -1 and beyond.
-      const double x = 2.0 * column / std::max(1, width - 1) - 1, y = 1 - 2.0 * row / std::max(1, height - 1);
+      const double x = 2.0 * column / std::max(1, width - 1) - 1,
+                   y = 1 - 2.0 * row / std::max(1, height - 1);
       return between(recipe, 1 - 2 * std::hypot(x, y));
     });
   else
@@ -202,7 +219,8 @@ Cube cube_texture(const Element& of, const ImageReader& images) {
       Pixels& to = out.faces[face];
       if (recipe.builtin == gradient)
         to = painted(size, size, [&](int row, int column) {
-          const double x = 2.0 * column / std::max(1, size - 1) - 1, y = 1 - 2.0 * row / std::max(1, size - 1);
+          const double x = 2.0 * column / std::max(1, size - 1) - 1,
+                       y = 1 - 2.0 * row / std::max(1, size - 1);
           const double reach = std::sqrt(1 + x * x + y * y);
           if (face == 2 || face == 3) {
             const double up = 1 - std::acos(1 / reach) * 2 * std::numbers::inv_pi;
@@ -216,16 +234,18 @@ Cube cube_texture(const Element& of, const ImageReader& images) {
     }
     return out;
   }
-  constexpr const char* files[] = {"fileright", "fileleft", "fileup", "filedown", "filefront", "fileback"};
+  constexpr const char* files[] = {"fileright", "fileleft",  "fileup",
+                                   "filedown",  "filefront", "fileback"};
   if (of.text("file").empty()) {
     for (std::size_t face = 0; face < 6; ++face)
-      out.faces[face] = of.text(files[face]).empty() ? blank(1, 1) : read(of, images, of.text(files[face]));
+      out.faces[face] =
+          of.text(files[face]).empty() ? blank(1, 1) : read(of, images, of.text(files[face]));
   } else {
     const Pixels all = read(of, images, of.text("file"));
     const std::vector<double> grid = of.numbers("gridsize", 2, {1, 1});
     const std::string layout = of.text("gridlayout", "............");
-    if (!(grid[0] >= 1 && grid[1] >= 1) || grid[0] * grid[1] > 12 || grid[0] != std::floor(grid[0]) ||
-        grid[1] != std::floor(grid[1]))
+    if (!(grid[0] >= 1 && grid[1] >= 1) || grid[0] * grid[1] > 12 ||
+        grid[0] != std::floor(grid[0]) || grid[1] != std::floor(grid[1]))
       of.fail("gridsize: two whole numbers are needed, of a product of at most 12");
     const int rows = static_cast<int>(grid[0]), columns = static_cast<int>(grid[1]);
     const int width = all.width / columns, height = all.height / rows;
@@ -237,10 +257,12 @@ Cube cube_texture(const Element& of, const ImageReader& images) {
         of.fail("gridlayout: a letter for each part of the grid is needed");
       out.faces.fill(blank(1, 1));
       for (int part = 0; part < rows * columns; ++part) {
-        const std::size_t face = std::string_view("RLUDFB").find(layout[static_cast<std::size_t>(part)]);
+        const std::size_t face =
+            std::string_view("RLUDFB").find(layout[static_cast<std::size_t>(part)]);
         if (face == std::string_view::npos) continue;
         out.faces[face] = painted(width, height, [&](int row, int column) {
-          const std::uint8_t* from = texel(all, part / columns * height + row, part % columns * width + column);
+          const std::uint8_t* from =
+              texel(all, part / columns * height + row, part % columns * width + column);
           return Rgb{from[0], from[1], from[2]};
         });
       }
@@ -253,7 +275,8 @@ Cube cube_texture(const Element& of, const ImageReader& images) {
 Pixels around(const Cube& cube, int height) {
   const int width = 2 * height;
   return painted(width, height, [&](int row, int column) {
-    const glm::dvec3 d = direction(std::numbers::pi * (row + 0.5) / height, 2 * std::numbers::pi * (column + 0.5) / width);
+    const glm::dvec3 d = direction(std::numbers::pi * (row + 0.5) / height,
+                                   2 * std::numbers::pi * (column + 0.5) / width);
     return seen(cube, {d.x, d.z, -d.y});
   });
 }
@@ -261,7 +284,8 @@ Pixels around(const Cube& cube, int height) {
 Pixels by_angles(const Cube& cube, int width) {
   const int height = 2 * width;
   return painted(width, height, [&](int row, int column) {
-    return seen(cube, direction(std::numbers::pi * (column + 0.5) / width, 2 * std::numbers::pi * (1 - (row + 0.5) / height)));
+    return seen(cube, direction(std::numbers::pi * (column + 0.5) / width,
+                                2 * std::numbers::pi * (1 - (row + 0.5) / height)));
   });
 }
 
@@ -271,7 +295,8 @@ std::shared_ptr<const TextureImage> texture_image(const Pixels& pixels) {
   out->height = pixels.height;
   out->channels = 3;
   out->bytes = pixels.rgb;
-  for (std::size_t i = 0; i < 256; ++i) out->decoded[i] = static_cast<float>(decoded_value({}, static_cast<double>(i) / 255));
+  for (std::size_t i = 0; i < 256; ++i)
+    out->decoded[i] = static_cast<float>(decoded_value({}, static_cast<double>(i) / 255));
   return out;
 }
 

@@ -17,7 +17,8 @@ Pose::Pose(const ImportOptions& options) {
     else if (equals == std::string::npos || equals == 0)
       throw InputError({"--pose"}, quoted(std::string_view(part)) + " is not JOINT=VALUE");
     else
-      joints[part.substr(0, equals)] = numbers_of(part.substr(equals + 1), 1, 7, {"--pose"}, part.substr(0, equals));
+      joints[part.substr(0, equals)] =
+          numbers_of(part.substr(equals + 1), 1, 7, {"--pose"}, part.substr(0, equals));
     begin = end + 1;
   }
 }

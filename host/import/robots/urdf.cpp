@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// URDF: links, the tree of their joints, visual and collision geometry (wiki.ros.org/urdf/XML). rpy rotates about the fixed x,
-// then y, then z.
+// URDF: links, the tree of their joints, visual and collision geometry (wiki.ros.org/urdf/XML). rpy
+// rotates about the fixed x, then y, then z.
 #include <glm/gtc/matrix_transform.hpp>
 #include <set>
 
@@ -21,24 +21,29 @@ class UrdfReader {
     const pugi::xml_node root = file_.root();
     if (std::string_view(root.name()) != "robot") fail(root, "the root element is not <robot>");
     for (const pugi::xml_node material : root.children("material"))
-      if (material.child("color")) colors_[material.attribute("name").value()] = color(material.child("color"));
+      if (material.child("color"))
+        colors_[material.attribute("name").value()] = color(material.child("color"));
     std::map<std::string, pugi::xml_node> links;
     for (const pugi::xml_node link : root.children("link"))
-      if (!links.emplace(link.attribute("name").value(), link).second) fail(link, "a link of this name was there before");
+      if (!links.emplace(link.attribute("name").value(), link).second)
+        fail(link, "a link of this name was there before");
     if (links.empty()) fail(root, "holds no links");
     std::multimap<std::string, pugi::xml_node> joints;
     std::set<std::string> children;
     for (const pugi::xml_node joint : root.children("joint")) {
       const std::string parent = joint.child("parent").attribute("link").value();
       const std::string child = joint.child("child").attribute("link").value();
-      if (!links.contains(parent)) fail(joint, "its parent link '" + parent + "' is none of the file");
+      if (!links.contains(parent))
+        fail(joint, "its parent link '" + parent + "' is none of the file");
       if (!links.contains(child)) fail(joint, "its child link '" + child + "' is none of the file");
-      if (!children.insert(child).second) fail(joint, "the link '" + child + "' has another parent");
+      if (!children.insert(child).second)
+        fail(joint, "the link '" + child + "' has another parent");
       joints.emplace(parent, joint);
       joints_.emplace(joint.attribute("name").value(), joint);
     }
     if (pose_.keyframe)
-      throw InputError({"--pose"}, "'" + *pose_.keyframe + "' is not JOINT=VALUE, and the file has no keyframes");
+      throw InputError({"--pose"}, "'" + *pose_.keyframe +
+                                       "' is not JOINT=VALUE, and the file has no keyframes");
     for (const auto& [name, values] : pose_.joints)
       if (values.size() != 1)
         throw InputError({"--pose"}, name + ": one number is needed");
@@ -54,14 +59,17 @@ class UrdfReader {
       ++placed;
       add_link(links.at(name), world);
       for (auto [at, end] = joints.equal_range(name); at != end; ++at)
-        open.emplace_back(at->second.child("child").attribute("link").value(), world * joint_pose(at->second));
+        open.emplace_back(at->second.child("child").attribute("link").value(),
+                          world * joint_pose(at->second));
     }
     if (placed != links.size()) fail(root, "the joints make a cycle");
     return std::move(out_);
   }
 
  private:
-  [[noreturn]] void fail(pugi::xml_node node, const std::string& message) const { throw InputError(file_.place(node), message); }
+  [[noreturn]] void fail(pugi::xml_node node, const std::string& message) const {
+    throw InputError(file_.place(node), message);
+  }
   std::vector<double> numbers(pugi::xml_node node, const char* name, std::size_t count) const {
     return numbers_of(node.attribute(name).value(), count, count, file_.place(node), name);
   }
@@ -87,7 +95,8 @@ class UrdfReader {
     out = glm::rotate(out, rpy.y, {0.0, 1.0, 0.0});
     return glm::rotate(out, rpy.x, {1.0, 0.0, 0.0});
   }
-  /// Returns a joint's position in the pose, or that of the joint it mimics; 0 by default. `followers`: joints that mimic it.
+  /// Returns a joint's position in the pose, or that of the joint it mimics; 0 by default.
+  /// `followers`: joints that mimic it.
   double joint_value(pugi::xml_node joint, std::size_t followers = 0) const {
     const auto own = pose_.joints.find(joint.attribute("name").value());
     if (own != pose_.joints.end()) return own->second[0];
@@ -95,12 +104,14 @@ class UrdfReader {
     if (!mimic) return 0;
     const auto other = joints_.find(mimic.attribute("joint").value());
     if (other == joints_.end())
-      fail(mimic, "it follows '" + std::string(mimic.attribute("joint").value()) + "', no joint of the file");
+      fail(mimic, "it follows '" + std::string(mimic.attribute("joint").value()) +
+                      "', no joint of the file");
     if (followers == joints_.size()) fail(mimic, "joints follow each other in a circle");
     const auto number = [&](const char* name, double otherwise) {
       return mimic.attribute(name) ? numbers(mimic, name, 1)[0] : otherwise;
     };
-    return number("multiplier", 1) * joint_value(other->second, followers + 1) + number("offset", 0);
+    return number("multiplier", 1) * joint_value(other->second, followers + 1) +
+           number("offset", 0);
   }
   glm::dmat4 joint_pose(pugi::xml_node joint) const {
     const glm::dmat4 at = origin(joint);
@@ -109,9 +120,11 @@ class UrdfReader {
     const std::string_view type = joint.attribute("type").value();
     const glm::dvec3 axis = vector(joint.child("axis"), "xyz", {1, 0, 0});
     if (!(glm::length(axis) > 0)) fail(joint, "its axis has no length");
-    if (type == "revolute" || type == "continuous") return glm::rotate(at, value, glm::normalize(axis));
+    if (type == "revolute" || type == "continuous")
+      return glm::rotate(at, value, glm::normalize(axis));
     if (type == "prismatic") return glm::translate(at, value * glm::normalize(axis));
-    const std::string message = "a joint of type '" + std::string(type) + "' is not moved by one number";
+    const std::string message =
+        "a joint of type '" + std::string(type) + "' is not moved by one number";
     const std::string name = joint.attribute("name").value();
     if (pose_.joints.contains(name)) throw InputError({"--pose"}, name + ": " + message);
     fail(joint, message);
@@ -186,6 +199,8 @@ class UrdfReader {
 
 }  // namespace
 
-Robot read_urdf(const std::filesystem::path& path, const Pose& pose) { return UrdfReader(path, pose).read(); }
+Robot read_urdf(const std::filesystem::path& path, const Pose& pose) {
+  return UrdfReader(path, pose).read();
+}
 
 }  // namespace caplet

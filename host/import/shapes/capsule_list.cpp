@@ -17,7 +17,8 @@ std::vector<float> radii(Parameters& parameters, const char* name, std::size_t c
   const Parameter* given = parameters.values(name, {"float"});
   if (!given) return out;
   if (given->numbers.size() != count) {
-    parameters.error(name, "has " + std::to_string(given->numbers.size()) + " values for " + std::to_string(count) + " capsules");
+    parameters.error(name, "has " + std::to_string(given->numbers.size()) + " values for " +
+                               std::to_string(count) + " capsules");
     return out;
   }
   out.reserve(count);
@@ -31,23 +32,28 @@ std::vector<float> radii(Parameters& parameters, const char* name, std::size_t c
 }
 
 /// Reads the materials that "materialindices" selects from "capsulematerials".
-void read_materials(Parameters& parameters, const MaterialIndex& material_index, CapsulesShape& capsules) {
+void read_materials(Parameters& parameters, const MaterialIndex& material_index,
+                    CapsulesShape& capsules) {
   const Parameter* names = parameters.values("capsulematerials", {"string"});
   const Parameter* indices = parameters.values("materialindices", {"integer"});
   if (!names && !indices) return;
   if (!names || !indices)
-    return parameters.error(names ? "capsulematerials" : "materialindices",
-                            names ? "needs \"integer materialindices\"" : "needs \"string capsulematerials\"");
+    return parameters.error(
+        names ? "capsulematerials" : "materialindices",
+        names ? "needs \"integer materialindices\"" : "needs \"string capsulematerials\"");
   if (indices->numbers.size() != capsules.p0.size())
-    return parameters.error("materialindices", "has " + std::to_string(indices->numbers.size()) + " values for " +
-                                                   std::to_string(capsules.p0.size()) + " capsules");
+    return parameters.error("materialindices",
+                            "has " + std::to_string(indices->numbers.size()) + " values for " +
+                                std::to_string(capsules.p0.size()) + " capsules");
   std::vector<std::uint32_t> known;
-  for (const std::string& name : names->strings) known.push_back(material_index(name, names->where));
+  for (const std::string& name : names->strings)
+    known.push_back(material_index(name, names->where));
   capsules.materials.reserve(indices->numbers.size());
   for (const double index : indices->numbers) {
     if (!(index >= 0 && index < static_cast<double>(known.size()))) {
       capsules.materials.clear();
-      return parameters.error("materialindices", "must be below the number of \"capsulematerials\", from 0 up");
+      return parameters.error("materialindices",
+                              "must be below the number of \"capsulematerials\", from 0 up");
     }
     capsules.materials.push_back(known[static_cast<std::size_t>(index)]);
   }
@@ -60,8 +66,8 @@ std::vector<glm::vec2> chain_u(Parameters& parameters, std::size_t capsules) {
   if (!given) return {};
   const std::vector<double>& numbers = given->numbers;
   if (numbers.size() != 2 * capsules) {
-    parameters.error("u",
-                     "takes two values a capsule, " + std::to_string(2 * capsules) + ", not " + std::to_string(numbers.size()));
+    parameters.error("u", "takes two values a capsule, " + std::to_string(2 * capsules) + ", not " +
+                              std::to_string(numbers.size()));
     return {};
   }
   std::vector<glm::vec2> out;
@@ -85,7 +91,8 @@ CapsulesShape make_capsule_list(Parameters& parameters, const MaterialIndex& mat
   const std::size_t count = capsules.p0.size();
   if (count == 0 || capsules.p1.empty()) return {};
   if (capsules.p1.size() != count) {
-    parameters.error("p1", "has " + std::to_string(capsules.p1.size()) + " points for " + std::to_string(count) + " of \"p0\"");
+    parameters.error("p1", "has " + std::to_string(capsules.p1.size()) + " points for " +
+                               std::to_string(count) + " of \"p0\"");
     return {};
   }
   capsules.radius0 = radii(parameters, "radius", count);

@@ -15,7 +15,8 @@ CsgShape::Operation operation_of(Parameters& parameters) {
   if (name == "intersection") return CsgShape::Operation::set_intersection;
   if (name == "difference") return CsgShape::Operation::set_difference;
   if (name != "union")
-    parameters.error("operation", "must be \"union\", \"intersection\" or \"difference\", not " + in_quotes(name));
+    parameters.error("operation", "must be \"union\", \"intersection\" or \"difference\", not " +
+                                      in_quotes(name));
   return CsgShape::Operation::set_union;
 }
 
@@ -23,10 +24,12 @@ CsgShape::Operation operation_of(Parameters& parameters) {
 std::string objection(const Shape& shape) {
   const auto* capsules = std::get_if<CapsulesShape>(&shape.geometry);
   if (capsules && capsules->p0.size() > 1)
-    return "holds " + std::to_string(capsules->p0.size()) + " capsules in one shape; an operand is one closed shape";
+    return "holds " + std::to_string(capsules->p0.size()) +
+           " capsules in one shape; an operand is one closed shape";
   if (!is_closed(shape)) return "is an open surface; operands are closed solids";
   if (shape.emission) return "is an area light; only the csg itself may be one";
-  if (shape.reverse_orientation) return "is turned by ReverseOrientation; only the csg itself may be";
+  if (shape.reverse_orientation)
+    return "is turned by ReverseOrientation; only the csg itself may be";
   if (shape.one_sided) return "is \"onesided\"; only the csg itself may be";
   return {};
 }
@@ -34,7 +37,8 @@ std::string objection(const Shape& shape) {
 /// Returns the operand with a material for each of its surfaces.
 std::shared_ptr<const Shape> operand_of(const Shape& shape) {
   auto operand = std::make_shared<Shape>(shape);
-  if (auto* capsules = std::get_if<CapsulesShape>(&operand->geometry); capsules && !capsules->materials.empty()) {
+  if (auto* capsules = std::get_if<CapsulesShape>(&operand->geometry);
+      capsules && !capsules->materials.empty()) {
     operand->material = capsules->materials[0];
     capsules->materials.clear();
   }
@@ -88,7 +92,8 @@ CsgShape make_csg(Parameters& parameters, const ObjectLookup& objects) {
   }
   if (operands->strings.size() < 2) wrong("takes two names or more, not 1");
   if (solids > max_csg_operands)
-    wrong("come to " + std::to_string(solids) + " solids, nested ones counted; a csg shape holds at most " +
+    wrong("come to " + std::to_string(solids) +
+          " solids, nested ones counted; a csg shape holds at most " +
           std::to_string(max_csg_operands));
   if (!good) csg.operands.clear();
   return csg;

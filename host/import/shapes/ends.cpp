@@ -11,7 +11,8 @@ namespace caplet::pbrt {
 
 namespace {
 
-/// Reads "float radius" of one or two values, from 0 up and not all 0; empty when wrong or missing (reported).
+/// Reads "float radius" of one or two values, from 0 up and not all 0; empty when wrong or missing
+/// (reported).
 std::vector<double> end_radii(Parameters& parameters) {
   if (!parameters.has("radius")) parameters.error("\"float radius\" is missing");
   const Parameter* radius = parameters.values("radius", {"float"});
@@ -34,7 +35,8 @@ std::vector<double> end_radii(Parameters& parameters) {
 Cap cap_of(Parameters& parameters, const std::string& name) {
   if (name == "flat") return Cap::flat;
   if (name == "round") return Cap::round;
-  if (name != "open") parameters.error("caps", "must be \"flat\", \"round\" or \"open\", not " + in_quotes(name));
+  if (name != "open")
+    parameters.error("caps", "must be \"flat\", \"round\" or \"open\", not " + in_quotes(name));
   return Cap::open;
 }
 
@@ -42,7 +44,8 @@ std::array<Cap, 2> caps_of(Parameters& parameters) {
   const Parameter* caps = parameters.values("caps", {"string"});
   if (!caps) return {Cap::flat, Cap::flat};
   const auto& names = caps->strings;
-  if (names.size() > 2) parameters.error("caps", "takes 1 or 2 values, not " + std::to_string(names.size()));
+  if (names.size() > 2)
+    parameters.error("caps", "takes 1 or 2 values, not " + std::to_string(names.size()));
   const Cap first = cap_of(parameters, names[0]);
   return {first, names.size() > 1 && names[1] != names[0] ? cap_of(parameters, names[1]) : first};
 }
@@ -86,7 +89,8 @@ Geometry make_cylinder(Parameters& parameters) {
   cylinder.z_min = std::min(a, b);
   cylinder.z_max = std::max(a, b);
   if (static_cast<float>(a) == static_cast<float>(b))
-    parameters.error(parameters.has("zmin") ? "zmin" : "zmax", "leaves nothing of the cylinder: it ends where it begins");
+    parameters.error(parameters.has("zmin") ? "zmin" : "zmax",
+                     "leaves nothing of the cylinder: it ends where it begins");
   cylinder.phi_max = phi_max(parameters);
   return cylinder;
 }

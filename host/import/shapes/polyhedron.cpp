@@ -11,7 +11,8 @@ namespace caplet::pbrt {
 PolyhedronShape make_polyhedron(Parameters& parameters) {
   const auto vectors = [&](const char* name, const char* type) {
     std::vector<glm::dvec3> out;
-    if (!parameters.has(name)) parameters.error("\"" + std::string(type) + " " + name + "\" is missing");
+    if (!parameters.has(name))
+      parameters.error("\"" + std::string(type) + " " + name + "\" is missing");
     const Parameter* values = parameters.values(name, {type});
     if (!values) return out;
     const auto& n = values->numbers;
@@ -26,13 +27,13 @@ PolyhedronShape make_polyhedron(Parameters& parameters) {
   const std::size_t planes = polyhedron.points.size();
   if (planes == 0 || polyhedron.normals.empty()) return {};
   if (polyhedron.normals.size() != planes) {
-    parameters.error("N",
-                     "has " + std::to_string(polyhedron.normals.size()) + " entries for " + std::to_string(planes) + " points");
+    parameters.error("N", "has " + std::to_string(polyhedron.normals.size()) + " entries for " +
+                              std::to_string(planes) + " points");
     return {};
   }
   if (planes > max_polyhedron_planes) {
-    parameters.error(
-        "P", "gives " + std::to_string(planes) + " planes; a polyhedron has at most " + std::to_string(max_polyhedron_planes));
+    parameters.error("P", "gives " + std::to_string(planes) + " planes; a polyhedron has at most " +
+                              std::to_string(max_polyhedron_planes));
     return {};
   }
   for (std::size_t i = 0; i < planes; ++i)

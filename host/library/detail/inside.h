@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// The implementation behind the public classes. In these files caplet::Scene is the model and v0::Scene the public class, and
-// likewise for the others.
+// The implementation behind the public classes. In these files caplet::Scene is the model and
+// v0::Scene the public class, and likewise for the others.
 #pragma once
 
 #include <cstdint>
@@ -32,10 +32,12 @@ std::uint64_t next_serial();
 
 struct Scene::Data {
   caplet::Scene model;
-  // The edits since the scene was read. A copy has those of its original up to the copy, and then its own.
+  // The edits since the scene was read. A copy has those of its original up to the copy, and then
+  // its own.
   EditLog<SceneEdit> log = EditLog<SceneEdit>(next_serial());
-  // These belong to a scene that is built: whether it still lacks a camera or a light; whether present() has added its light; and
-  // the state (the origin of `log`) that present() has processed.
+  // These belong to a scene that is built: whether it still lacks a camera or a light; whether
+  // present() has added its light; and the state (the origin of `log`) that present() has
+  // processed.
   bool open_camera = false, open_light = false, studio_light = false;
   std::optional<std::uint64_t> presented = {};
 
@@ -67,20 +69,24 @@ struct Inside {
     data->model = std::move(model);
     return Scene(std::move(data));
   }
-  static std::shared_ptr<const caplet::Scene> model(const Scene& scene) { return {scene.data_, &scene.data_->model}; }
+  static std::shared_ptr<const caplet::Scene> model(const Scene& scene) {
+    return {scene.data_, &scene.data_->model};
+  }
   static const Scene::Data& data(const Scene& scene) { return *scene.data_; }
   static Device device(caplet::Device device, DeviceInfo info) {
-    return Device(std::make_shared<const Device::Data>(Device::Data{std::move(device), std::move(info)}));
+    return Device(
+        std::make_shared<const Device::Data>(Device::Data{std::move(device), std::move(info)}));
   }
-  /// Throws RunError in a forked process (check_process), before the slow lowering of a scene for it.
+  /// Throws RunError in a forked process (check_process), before the slow lowering of a scene for
+  /// it.
   static const caplet::Device& device(const Device& device) {
     begin_opencl();
     return device.data_->device;
   }
-  static Film film(caplet::Film film, std::shared_ptr<const post::Sight> sight, std::map<std::string, std::string> notes,
-                   double render_seconds) {
-    return Film(
-        std::shared_ptr<const Film::Data>(new Film::Data{std::move(film), std::move(sight), std::move(notes), render_seconds}));
+  static Film film(caplet::Film film, std::shared_ptr<const post::Sight> sight,
+                   std::map<std::string, std::string> notes, double render_seconds) {
+    return Film(std::shared_ptr<const Film::Data>(
+        new Film::Data{std::move(film), std::move(sight), std::move(notes), render_seconds}));
   }
   static const caplet::Film& film(const Film& film) { return film.data_->film; }
 };

@@ -16,7 +16,8 @@ namespace caplet::v0 {
 glm::dmat4 to_model(const Transform& rows);
 Transform to_public(const glm::dmat4& m);
 
-/// Shapes of the world are numbered first, then those of each object. Throws InputError for a number without a shape.
+/// Shapes of the world are numbered first, then those of each object. Throws InputError for a
+/// number without a shape.
 ShapeAt place_of(const caplet::Scene& scene, std::uint32_t shape);
 
 }  // namespace caplet::v0

@@ -21,7 +21,8 @@ struct SessionRuns {
   bool interrupted = false;
 
   /// Adds the next samples and returns how many were finished.
-  std::uint32_t render(caplet::Session& session, std::uint32_t samples, const RenderOptions& options);
+  std::uint32_t render(caplet::Session& session, std::uint32_t samples,
+                       const RenderOptions& options);
   /// Returns the present film of `scene`.
   Film film(caplet::Session& session, const caplet::Scene& scene);
 

@@ -12,11 +12,13 @@
 
 namespace caplet::v0 {
 
-/// Puts the values of `parameter` into `out`: of a list, `count` values from `first` on, or all where `count` is 0. Throws
-/// InputError for an image, and for numbers that are not finite; the message names `owner`.
-void put_values(const std::string& owner, const Parameter& parameter, StatementParameter& out, std::size_t first = 0,
-                std::size_t count = 0);
+/// Puts the values of `parameter` into `out`: of a list, `count` values from `first` on, or all
+/// where `count` is 0. Throws InputError for an image, and for numbers that are not finite; the
+/// message names `owner`.
+void put_values(const std::string& owner, const Parameter& parameter, StatementParameter& out,
+                std::size_t first = 0, std::size_t count = 0);
 
-ProgramStatement to_statement(const std::string& directive, const std::string& type, const Parameters& parameters);
+ProgramStatement to_statement(const std::string& directive, const std::string& type,
+                              const Parameters& parameters);
 
 }  // namespace caplet::v0

@@ -19,10 +19,11 @@ struct Emitter {
   double scale;      // multiplies the spectrum
   double luminance;  // of the radiance, scale included
   bool two_sided;
-  bool unseen;                   // by rays: CAPLET_LIGHT_UNSEEN
-  const AreaEmission* of_image;  // where it has an image, whose mean luminance is not in `luminance`; or null
-  bool by_ball;                  // sampled by the bounding ball (kernels/lights/shapes/ball.cl)
-  double ball[4];                // centre and radius, world
+  bool unseen;  // by rays: CAPLET_LIGHT_UNSEEN
+  const AreaEmission*
+      of_image;    // where it has an image, whose mean luminance is not in `luminance`; or null
+  bool by_ball;    // sampled by the bounding ball (kernels/lights/shapes/ball.cl)
+  double ball[4];  // centre and radius, world
   // The light tree uses these: the box in the world; the direction that it shines to, or 0 for all.
   double min[3], max[3], axis[3];
 };

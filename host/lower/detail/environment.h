@@ -36,10 +36,11 @@ void append_texels(const EnvironmentImage& image, FlatScene& out);
 /// between texels.
 glm::dvec3 sky_rgb(const EnvironmentImage& image, const glm::dvec3& direction);
 
-/// Appends an image to light_texels, and its distribution to light_cdf: its rows' running sum (height + 1), then each row's
-/// (width + 1). The distribution is constant over a texel's cell and proportional to the integral of the radiance's luminance
-/// over it, so it is positive wherever the radiance is. Negative and NaN values count as 0, infinite ones as the largest float.
-/// An image without light has a distribution of zeros.
+/// Appends an image to light_texels, and its distribution to light_cdf: its rows' running sum
+/// (height + 1), then each row's (width + 1). The distribution is constant over a texel's cell and
+/// proportional to the integral of the radiance's luminance over it, so it is positive wherever the
+/// radiance is. Negative and NaN values count as 0, infinite ones as the largest float. An image
+/// without light has a distribution of zeros.
 EnvironmentIntegrals lower_environment(const EnvironmentImage& image, FlatScene& out);
 
 }  // namespace caplet

@@ -22,8 +22,10 @@ class FamilyData {
   FamilyData(std::span<const FamilyField> fields, float* to) : fields_(fields), to_(to) {}
   void put(std::string_view name, double value);
   void put(std::string_view name, const glm::dvec3& v);
-  void put_index(std::string_view name, std::uint32_t index);          // a spectrum, a step of a texture
-  void put_rows(std::string_view name, const glm::dmat3& transposed);  // a turn, whose rows are the columns of `transposed`
+  void put_index(std::string_view name, std::uint32_t index);  // a spectrum, a step of a texture
+  void put_rows(
+      std::string_view name,
+      const glm::dmat3& transposed);  // a turn, whose rows are the columns of `transposed`
   void put_picture(std::string_view name, std::span<const std::uint32_t> numbers);
   void put_floats(std::string_view name, std::span<const float> values);  // a matrix, a mapping
   void finish() const;

@@ -15,9 +15,10 @@ namespace caplet {
 /// Netravali 1988 with b and c, stretched to the radius.
 double filter_value(const PixelFilter& filter, double x, double radius);
 
-/// Fills filter_table, view.filter_width and filter_height. Each axis is piecewise linear over its cells (box and triangle
-/// exactly; others within 1e-3 of the maximum); a cell never holds both signs. The x axis first, then y: cells + 1 positions
-/// (pixels), cells + 1 running integrals of |f| (0 to 1), cells + 1 values of f, and the integral of |f| over that of f.
+/// Fills filter_table, view.filter_width and filter_height. Each axis is piecewise linear over its
+/// cells (box and triangle exactly; others within 1e-3 of the maximum); a cell never holds both
+/// signs. The x axis first, then y: cells + 1 positions (pixels), cells + 1 running integrals of
+/// |f| (0 to 1), cells + 1 values of f, and the integral of |f| over that of f.
 void lower_filter(const PixelFilter& filter, FlatView& out);
 
 }  // namespace caplet

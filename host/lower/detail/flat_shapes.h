@@ -25,7 +25,8 @@ glm::dvec3 apply_point(const glm::dmat4& m, const glm::dvec3& p);
 
 /// Returns GeometryRecord.uv_space of a shape baked under `m`, appended to `leaves`; CAPLET_NONE
 /// where its uv does not need it.
-std::uint32_t append_uv_space(const Geometry& geometry, const glm::dmat4& m, std::vector<float>& leaves);
+std::uint32_t append_uv_space(const Geometry& geometry, const glm::dmat4& m,
+                              std::vector<float>& leaves);
 
 /// Writes v to p.data[at .. at + 2].
 void put(FlatPrimitive& p, int at, const glm::dvec3& v);

@@ -20,7 +20,8 @@ inline constexpr std::uint32_t no_child = 0x7fffffffu;
 /// Returns the smallest float above x, which is finite. Infinity comes after the largest number.
 inline float next_up(float x) {
   const auto bits = std::bit_cast<std::int32_t>(x);
-  return x == 0 ? std::numeric_limits<float>::denorm_min() : std::bit_cast<float>(bits < 0 ? bits - 1 : bits + 1);
+  return x == 0 ? std::numeric_limits<float>::denorm_min()
+                : std::bit_cast<float>(bits < 0 ? bits - 1 : bits + 1);
 }
 
 /// Returns the largest float below x, which is finite.

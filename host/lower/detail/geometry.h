@@ -16,6 +16,7 @@ namespace caplet {
 /// bounding sphere, and returns what edits need. A shape whose transform its kernel form cannot
 /// hold (an ellipsoid, a sheared capsule) becomes an instance of its own tree, shared by all shapes
 /// under the same transform.
-LoweredGeometry lower_geometry(const Scene& scene, const ImageNumbers& images, SpectrumTable& spectra, FlatScene& out);
+LoweredGeometry lower_geometry(const Scene& scene, const ImageNumbers& images,
+                               SpectrumTable& spectra, FlatScene& out);
 
 }  // namespace caplet

@@ -50,7 +50,8 @@ class LightImages {
     std::size_t texels_begin = 0, cdf_begin = 0;
   };
   template <class Make>
-  const LoweredPicture& find(Use use, const std::shared_ptr<const void>& of, const glm::dmat3& turn, FlatScene& out, Make&& make);
+  const LoweredPicture& find(Use use, const std::shared_ptr<const void>& of, const glm::dmat3& turn,
+                             FlatScene& out, Make&& make);
 
   std::vector<Entry> entries_;
   std::size_t asked_ = 0;  // of this round

@@ -20,7 +20,7 @@ namespace caplet {
 /// those that have a place by light_tree.h; constant infinite lights are never selected, since BSDF
 /// sampling finds them as well. `world` and `geometries` must be set. `images`: the pictures that
 /// `out` has already, and afterwards those that it then has.
-void lower_lights(const Scene& scene, const std::vector<Emitter>& emitters, SpectrumTable& spectra, LightImages& images,
-                  FlatScene& out);
+void lower_lights(const Scene& scene, const std::vector<Emitter>& emitters, SpectrumTable& spectra,
+                  LightImages& images, FlatScene& out);
 
 }  // namespace caplet

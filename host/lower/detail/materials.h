@@ -17,7 +17,7 @@ inline constexpr std::uint32_t material_stride = 16;
 
 /// Returns the record of material number `index`, and writes its data to out.material_data, which
 /// grows when it ends before. The steps of its textures are added.
-MaterialRecord lower_material(const Scene& scene, std::uint32_t index, const ImageNumbers& images, SpectrumTable& spectra,
-                              FlatScene& out);
+MaterialRecord lower_material(const Scene& scene, std::uint32_t index, const ImageNumbers& images,
+                              SpectrumTable& spectra, FlatScene& out);
 
 }  // namespace caplet

@@ -28,7 +28,8 @@ struct Piece {
   enum Kind {
     flat,  // of area and normal `axis` (not unit)
     side,  // of a cone or cylinder: area `amount`, normals low d + sqrt(1 - low^2) e(phi)
-    zone   // of a sphere of squared radius `amount`: normals h d + sqrt(1 - h^2) e(phi), low <= h <= high
+    zone  // of a sphere of squared radius `amount`: normals h d + sqrt(1 - h^2) e(phi), low <= h <=
+          // high
   } kind;
   std::uint32_t surface;
   glm::dvec3 axis;
@@ -42,19 +43,22 @@ class Pieces {
 
   /// Adds a flat piece. `area`: along the normal, as long as the area is large.
   void flat(std::uint32_t surface, const glm::dvec3& area);
-  void round(Piece::Kind kind, std::uint32_t surface, const glm::dvec3& axis, double amount, double low, double high = 0);
+  void round(Piece::Kind kind, std::uint32_t surface, const glm::dvec3& axis, double amount,
+             double low, double high = 0);
   /// Adds a part around z, from +x up to phi_max.
   void part(Piece::Kind kind, double amount, double low, double high, double phi_max);
   /// Adds the pieces of two_balls_area, for balls at p0 and p1. `surfaces`: of the cone between
   /// them, and of each.
-  void balls(const float* p0, const float* p1, double r0, double r1, const std::array<std::uint32_t, 3>& surfaces);
+  void balls(const float* p0, const float* p1, double r0, double r1,
+             const std::array<std::uint32_t, 3>& surfaces);
   /// Adds the pieces of hull_area, for ends at p0 and p1.
   void hull(const float* p0, const float* p1, const HullEnd& end0, const HullEnd& end1);
 
  private:
-  void two_balls(const glm::dvec3& axis, double length, double r0, double r1, const std::array<std::uint32_t, 3>& surfaces);
-  void disk_and_ball(const glm::dvec3& axis, double length, const HullEnd& disk, std::uint32_t disk_surface, double ball,
-                     std::uint32_t ball_surface);
+  void two_balls(const glm::dvec3& axis, double length, double r0, double r1,
+                 const std::array<std::uint32_t, 3>& surfaces);
+  void disk_and_ball(const glm::dvec3& axis, double length, const HullEnd& disk,
+                     std::uint32_t disk_surface, double ball, std::uint32_t ball_surface);
   std::vector<Piece> all_;
 };
 

@@ -27,7 +27,8 @@ struct ExactBox {
 // - its exact box; kinds with trait_kept_box have it in their data.
 // - its area, without open ends (0 for csg shapes), and the pieces of its surface, which give areas
 //   under affine maps. Bilinear patches have no pieces: bilinear_area.
-// - solids: itself with its surfaces moved out by `b`; data of no fixed size are appended to `leaves`.
+// - solids: itself with its surfaces moved out by `b`; data of no fixed size are appended to
+// `leaves`.
 #define SHAPE(name, traits)                                                                     \
   ExactBox name##_box(const FlatPrimitive& p);                                                  \
   double name##_area(const FlatPrimitive& p, const std::vector<float>& leaves);                 \
@@ -44,17 +45,20 @@ double bilinear_area(const float* data, const glm::dmat3& m);
 // - whether its kernels' form can hold the transform `m`; otherwise it becomes an instance.
 // - the rotation or reflection in `m` (which it can hold), where its uv has angles around an axis;
 //   otherwise 1.
-// - if it is one primitive (all but capsules and meshes): that primitive under `m`, which it can hold;
+// - if it is one primitive (all but capsules and meshes): that primitive under `m`, which it can
+// hold;
 //   the id is left 0. Data of no fixed size are appended to `leaves`.
-#define GEOMETRY(Type, name)                                        \
-  bool bakes_under(const Type& geometry, const glm::dmat4& m);      \
-  glm::dmat3 turn_under(const Type& geometry, const glm::dmat4& m); \
-  FlatPrimitive flat_primitive(const Type& geometry, const glm::dmat4& m, std::vector<float>& leaves);
+#define GEOMETRY(Type, name)                                              \
+  bool bakes_under(const Type& geometry, const glm::dmat4& m);            \
+  glm::dmat3 turn_under(const Type& geometry, const glm::dmat4& m);       \
+  FlatPrimitive flat_primitive(const Type& geometry, const glm::dmat4& m, \
+                               std::vector<float>& leaves);
 #include "scene/geometries.def"
 
 /// Returns capsule i of `capsules` under the similarity `m` (null: none) of this scale: a sphere,
 /// capsule or tapered capsule.
-FlatPrimitive flat_capsule(const CapsulesShape& capsules, std::size_t i, const glm::dmat4* m, double scale);
+FlatPrimitive flat_capsule(const CapsulesShape& capsules, std::size_t i, const glm::dmat4* m,
+                           double scale);
 FlatPrimitive flat_partial_disk(const DiskShape& disk);
 /// Returns the kinds of a csg primitive's operands, as shape_bit()s.
 std::uint64_t csg_operand_shapes(const FlatPrimitive& csg, const std::vector<float>& leaves);
@@ -62,7 +66,9 @@ std::uint64_t csg_operand_shapes(const FlatPrimitive& csg, const std::vector<flo
 bool csg_has_chain(const FlatPrimitive& csg, const std::vector<float>& leaves);
 
 /// Makes a primitive without data.
-inline FlatPrimitive make_primitive(int shape) { return FlatPrimitive{static_cast<std::uint32_t>(shape), 0, {}}; }
+inline FlatPrimitive make_primitive(int shape) {
+  return FlatPrimitive{static_cast<std::uint32_t>(shape), 0, {}};
+}
 
 inline glm::dvec3 point3(const float* d) { return {d[0], d[1], d[2]}; }
 inline double length3(const float* a, const float* b) { return glm::length(point3(b) - point3(a)); }
@@ -71,10 +77,14 @@ inline double length3(const float* a, const float* b) { return glm::length(point
 glm::dmat3 turn_of_similarity(const glm::dmat4& m);
 
 /// Adds sign * b to x in double.
-inline void move_by(float& x, double sign, double b) { x = static_cast<float>(double(x) + sign * b); }
+inline void move_by(float& x, double sign, double b) {
+  x = static_cast<float>(double(x) + sign * b);
+}
 
 inline float cap_number(Cap cap) {
-  return cap == Cap::flat ? CAPLET_CAP_FLAT : cap == Cap::round ? CAPLET_CAP_ROUND : CAPLET_CAP_OPEN;
+  return cap == Cap::flat    ? CAPLET_CAP_FLAT
+         : cap == Cap::round ? CAPLET_CAP_ROUND
+                             : CAPLET_CAP_OPEN;
 }
 
 // --- Hulls of two ends: cylinders, cones and capsules (hulls.cpp) ---
@@ -85,6 +95,7 @@ struct GrownHull {
   glm::dvec3 p0, p1;
   double r0, r1;
 };
-GrownHull grown_hull(const float* p0, const float* p1, const HullEnd& end0, const HullEnd& end1, double b);
+GrownHull grown_hull(const float* p0, const float* p1, const HullEnd& end0, const HullEnd& end1,
+                     double b);
 
 }  // namespace caplet

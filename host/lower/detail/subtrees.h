@@ -49,11 +49,12 @@ struct PlacedSubtree {
 
 /// Lengths holds the lengths of the arrays that shapes add to.
 struct Lengths {
-  std::size_t geometries = 0, primitives = 0, surfaces = 0, indices = 0, normals = 0, uvs = 0, leaves = 0;
+  std::size_t geometries = 0, primitives = 0, surfaces = 0, indices = 0, normals = 0, uvs = 0,
+              leaves = 0;
 };
 
-/// ShapeExtent is a shape's range of the flat arrays: from `begin` on up to `end`. `subtree` is null
-/// where it gave nothing.
+/// ShapeExtent is a shape's range of the flat arrays: from `begin` on up to `end`. `subtree` is
+/// null where it gave nothing.
 struct ShapeExtent {
   Subtree* subtree = nullptr;
   std::size_t first = 0;  // of its primitives in the subtree
@@ -66,7 +67,8 @@ struct LoweredShapes {
   LoweredShapes() = default;
   LoweredShapes(LoweredShapes&&) = default;
   LoweredShapes& operator=(LoweredShapes&&) = default;
-  std::deque<Subtree> subtrees;  // the first holds what is baked into the common space; then one for each transform that cannot be
+  std::deque<Subtree> subtrees;  // the first holds what is baked into the common space; then one
+                                 // for each transform that cannot be
   std::vector<ShapeExtent> extents;  // by shape
 };
 
@@ -77,25 +79,31 @@ struct LoweredGeometry {
   std::vector<Emitter> emitters;  // in the order of their lights
 };
 
-/// SubtreeKey decides the subtree that a shape belongs to, and the matrix under which it is stored there.
+/// SubtreeKey decides the subtree that a shape belongs to, and the matrix under which it is stored
+/// there.
 struct SubtreeKey {
   glm::dmat4 placed{1};
   uint flags = 0;
   glm::dmat4 baked{1};
   /// Returns whether the shape needs no subtree of its own.
   bool is_common() const { return placed == glm::dmat4(1) && flags == 0; }
-  bool same_subtree(const SubtreeKey& other) const { return placed == other.placed && flags == other.flags; }
+  bool same_subtree(const SubtreeKey& other) const {
+    return placed == other.placed && flags == other.flags;
+  }
 };
 SubtreeKey subtree_key(const Shape& shape, const glm::dmat4& world_from_object);
 
 /// Returns the record of a subtree as placed; `object`: InstanceRecord.object.
-InstanceRecord instance_record(const Subtree& subtree, const glm::dmat4& world_from_subtree, std::uint32_t object);
+InstanceRecord instance_record(const Subtree& subtree, const glm::dmat4& world_from_subtree,
+                               std::uint32_t object);
 /// Writes the box of an instance into its primitive of the top tree.
-void set_instance_box(const Subtree& subtree, const glm::dmat4& world_from_subtree, FlatPrimitive& instance);
+void set_instance_box(const Subtree& subtree, const glm::dmat4& world_from_subtree,
+                      FlatPrimitive& instance);
 
 /// Sets the lights of an emissive shape of a subtree as placed, one for each of its primitives.
-void set_emitters(const Subtree& subtree, const Subtree::Emissive& emissive, std::uint32_t instance, const glm::dmat4& world_from_subtree,
-                  std::uint32_t group, SpectrumTable& spectra, const FlatScene& flat, Emitter* out);
+void set_emitters(const Subtree& subtree, const Subtree::Emissive& emissive, std::uint32_t instance,
+                  const glm::dmat4& world_from_subtree, std::uint32_t group, SpectrumTable& spectra,
+                  const FlatScene& flat, Emitter* out);
 
 /// Sets the bounding sphere of the world; it is the unit sphere where the tree is empty, so that
 /// lights have a power.
@@ -103,7 +111,8 @@ void set_world_bounds(const EncodedTree& tree, WorldRecord& world);
 
 /// Lowers one shape by itself into empty arrays `out` under `baked`: its primitives, with ids from
 /// 0 on.
-Subtree lower_shape_alone(const Scene& scene, const Shape& shape, const glm::dmat4& baked, std::uint32_t object,
-                       const ImageNumbers& images, SpectrumTable& spectra, FlatScene& out);
+Subtree lower_shape_alone(const Scene& scene, const Shape& shape, const glm::dmat4& baked,
+                          std::uint32_t object, const ImageNumbers& images, SpectrumTable& spectra,
+                          FlatScene& out);
 
 }  // namespace caplet

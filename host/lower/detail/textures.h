@@ -17,13 +17,14 @@ namespace caplet {
 /// numbers.
 enum class TextureUse { albedo, unbounded, number };
 
-/// Adds the steps of Scene::textures[texture] to out.textures, and one of kind `last` of it where there is one. Returns the
-/// number of the first.
-std::uint32_t lower_texture(const Scene& scene, std::uint32_t texture, TextureUse use, std::optional<uint> last,
-                            const ImageNumbers& images, SpectrumTable& spectra, FlatScene& out);
+/// Adds the steps of Scene::textures[texture] to out.textures, and one of kind `last` of it where
+/// there is one. Returns the number of the first.
+std::uint32_t lower_texture(const Scene& scene, std::uint32_t texture, TextureUse use,
+                            std::optional<uint> last, const ImageNumbers& images,
+                            SpectrumTable& spectra, FlatScene& out);
 
 /// Does the same for a shape's alpha.
-std::uint32_t lower_alpha(const Scene& scene, const TextureOperand& alpha, const ImageNumbers& images, SpectrumTable& spectra,
-                          FlatScene& out);
+std::uint32_t lower_alpha(const Scene& scene, const TextureOperand& alpha,
+                          const ImageNumbers& images, SpectrumTable& spectra, FlatScene& out);
 
 }  // namespace caplet

@@ -25,17 +25,19 @@ class TreeEdit {
   /// Records that rows were appended to the leaves.
   void leaves_have_grown();
 
-  /// Returns the subtree's expected cost of a ray now over that when it was built: for lines through
-  /// its bounds, now or then, whichever is worse.
+  /// Returns the subtree's expected cost of a ray now over that when it was built: for lines
+  /// through its bounds, now or then, whichever is worse.
   double cost_growth(const Subtree& subtree) const;
 
  private:
   struct Cost {
-    double built = 0, areas = 0, clipped = 0;  // areas of all boxes, whole and within the bounds that it was built with
-    ReferenceBox bounds{};                     // then
+    double built = 0, areas = 0,
+           clipped = 0;  // areas of all boxes, whole and within the bounds that it was built with
+    ReferenceBox bounds{};  // then
   };
   ReferenceBox leaf_box(const Subtree& subtree, std::uint32_t row) const;
-  const FlatPrimitive& primitive(const Subtree& subtree, std::uint32_t kind, std::uint32_t id) const;
+  const FlatPrimitive& primitive(const Subtree& subtree, std::uint32_t kind,
+                                 std::uint32_t id) const;
   void write_lanes(const Subtree& subtree, std::size_t at, SceneChanges& changes);
   /// Sets the box of child `i` of a node.
   void set_box(std::uint32_t node, std::uint32_t i, const ReferenceBox& box, Cost& cost);

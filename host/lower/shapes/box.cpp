@@ -18,7 +18,8 @@ FlatPrimitive flat_primitive(const BoxShape& box, const Matrix& m, std::vector<f
   return p;
 }
 
-/// Boxes along the axes stay so under scales and moves; their surfaces keep their numbers under positive ones.
+/// Boxes along the axes stay so under scales and moves; their surfaces keep their numbers under
+/// positive ones.
 bool bakes_under(const BoxShape&, const Matrix& m) {
   for (int c = 0; c < 3; ++c)
     for (int r = 0; r < 3; ++r)

@@ -12,7 +12,8 @@ namespace caplet {
 using glm::dvec3;
 using Matrix = glm::dmat4;
 
-FlatPrimitive flat_capsule(const CapsulesShape& capsules, std::size_t i, const Matrix* m, double scale) {
+FlatPrimitive flat_capsule(const CapsulesShape& capsules, std::size_t i, const Matrix* m,
+                           double scale) {
   const auto placed = [m](const glm::vec3& v) { return m ? apply_point(*m, dvec3(v)) : dvec3(v); };
   const dvec3 p0 = placed(capsules.p0[i]), p1 = placed(capsules.p1[i]);
   const float r0 = capsules.radius0[i], r1 = capsules.radius1.empty() ? r0 : capsules.radius1[i];
@@ -47,11 +48,13 @@ ExactBox capsule_box(const FlatPrimitive& p) {
 
 double capsule_area(const FlatPrimitive& p, const std::vector<float>&) {
   const float r = capsule_r(p.data);
-  return 2 * std::numbers::pi * r * length3(capsule_p0(p.data), capsule_p1(p.data)) + 4 * std::numbers::pi * r * r;
+  return 2 * std::numbers::pi * r * length3(capsule_p0(p.data), capsule_p1(p.data)) +
+         4 * std::numbers::pi * r * r;
 }
 
 void capsule_pieces(const FlatPrimitive& p, const std::vector<float>&, Pieces& pieces) {
-  pieces.balls(capsule_p0(p.data), capsule_p1(p.data), capsule_r(p.data), capsule_r(p.data), {0, 0, 0});
+  pieces.balls(capsule_p0(p.data), capsule_p1(p.data), capsule_r(p.data), capsule_r(p.data),
+               {0, 0, 0});
 }
 
 FlatPrimitive capsule_grown(FlatPrimitive p, double b, std::vector<float>&) {

@@ -32,7 +32,9 @@ FlatPrimitive flat_primitive(const ConeShape& cone, const Matrix& m, std::vector
 bool bakes_under(const ConeShape&, const Matrix& m) { return similarity_scale(m) > 0; }
 glm::dmat3 turn_under(const ConeShape&, const Matrix& m) { return turn_of_similarity(m); }
 
-ExactBox cone_box(const FlatPrimitive& p) { return hull_box(cone_p0(p.data), cone_p1(p.data), cone_end0(p), cone_end1(p)); }
+ExactBox cone_box(const FlatPrimitive& p) {
+  return hull_box(cone_p0(p.data), cone_p1(p.data), cone_end0(p), cone_end1(p));
+}
 
 double cone_area(const FlatPrimitive& p, const std::vector<float>&) {
   return hull_area(length3(cone_p0(p.data), cone_p1(p.data)), cone_end0(p), cone_end1(p));
@@ -43,7 +45,8 @@ void cone_pieces(const FlatPrimitive& p, const std::vector<float>&, Pieces& piec
 }
 
 FlatPrimitive cone_grown(FlatPrimitive p, double b, std::vector<float>&) {
-  const GrownHull grown = grown_hull(cone_p0(p.data), cone_p1(p.data), cone_end0(p), cone_end1(p), b);
+  const GrownHull grown =
+      grown_hull(cone_p0(p.data), cone_p1(p.data), cone_end0(p), cone_end1(p), b);
   put(p, cone_at_p0, grown.p0);
   put(p, cone_at_p1, grown.p1);
   p.data[cone_at_r0] = static_cast<float>(grown.r0);

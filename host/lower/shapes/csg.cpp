@@ -69,14 +69,17 @@ class Flattening {
       if (const auto* nested = std::get_if<CsgShape>(&operand.geometry)) {
         add(*nested, placed, turned);
       } else {
-        if (!is_closed(operand)) throw InputError(operand.where, "a csg operand must be a closed solid");
+        if (!is_closed(operand))
+          throw InputError(operand.where, "a csg operand must be a closed solid");
         if (solids.size() == CAPLET_CSG_MAX_OPERANDS)
-          throw InputError(operand.where, fmt::format("a csg shape of more than {} solids", CAPLET_CSG_MAX_OPERANDS));
+          throw InputError(operand.where, fmt::format("a csg shape of more than {} solids",
+                                                      CAPLET_CSG_MAX_OPERANDS));
         program.push_back(narrow<std::uint32_t>(solids.size()));
         solids.push_back({&operand, placed, surfaces_, turned});
         surfaces_ += narrow<std::uint32_t>(surface_count(operand));
         if (surfaces_ > CAPLET_SURFACE_MASK)
-          throw InputError(operand.where, fmt::format("a csg shape of more than {} surfaces", CAPLET_SURFACE_MASK));
+          throw InputError(operand.where, fmt::format("a csg shape of more than {} surfaces",
+                                                      CAPLET_SURFACE_MASK));
       }
       if (i > 0)
         program.push_back(csg.operation == Operation::set_union          ? CAPLET_CSG_UNION
@@ -96,7 +99,8 @@ struct FlatOf {
   const SourceLocation& where;
 
   FlatPrimitive operator()(const CapsulesShape& capsules) const {
-    if (capsules.p0.size() != 1) throw InputError(where, "a csg operand of capsules must hold exactly one");
+    if (capsules.p0.size() != 1)
+      throw InputError(where, "a csg operand of capsules must hold exactly one");
     return flat_capsule(capsules, 0, &m, similarity_scale(m));
   }
   FlatPrimitive operator()(const TriangleMeshShape&) const { return open(); }
@@ -106,7 +110,9 @@ struct FlatOf {
     const FlatPrimitive p = flat_primitive(one, m, leaves);
     return shape_has(p.shape, trait_solid) ? p : open();
   }
-  [[noreturn]] FlatPrimitive open() const { throw InputError(where, "a csg operand must be a closed solid"); }
+  [[noreturn]] FlatPrimitive open() const {
+    throw InputError(where, "a csg operand must be a closed solid");
+  }
 };
 
 double length3(const double (&v)[3]) { return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]); }
@@ -129,7 +135,8 @@ FlatPrimitive grown_by(const FlatPrimitive& p, double b, std::vector<float>& lea
 
 /// Returns `solid`, moved so that `center` is the origin of csg space. Rays come from the ball of
 /// `radius` around it.
-Operand make_operand(const Solid& solid, const dvec3& center, double radius, std::vector<float>& leaves) {
+Operand make_operand(const Solid& solid, const dvec3& center, double radius,
+                     std::vector<float>& leaves) {
   Operand out{};
   Shape moved = *solid.shape;
   moved.world_from_object = glm::translate(Matrix(1), -center) * solid.space_from_solid;
@@ -157,9 +164,11 @@ Operand make_operand(const Solid& solid, const dvec3& center, double radius, std
   // and 2 extent. The transform to the operand's space adds 5 eps of its terms (matrix, products,
   // sums), 8 here.
   const double error = eps * (16 * (from + 3 * extent) + (out.placed ? 8 * from : 0));
-  out.flat = std::visit(FlatOf{moved.world_from_object, leaves, solid.shape->where}, moved.geometry);
+  out.flat =
+      std::visit(FlatOf{moved.world_from_object, leaves, solid.shape->where}, moved.geometry);
   out.uv_space = append_uv_space(moved.geometry, moved.world_from_object, leaves);
-  if (const auto* capsules = std::get_if<CapsulesShape>(&moved.geometry); capsules && !capsules->u.empty())
+  if (const auto* capsules = std::get_if<CapsulesShape>(&moved.geometry);
+      capsules && !capsules->u.empty())
     out.u = capsules->u[0];
   out.grown = grown_by(out.flat, error, leaves);
   out.error = error * scale;
@@ -177,8 +186,9 @@ std::vector<Group> grouped(const std::vector<Operand>& operands) {
   for (std::size_t i = 0; i < operands.size(); ++i) {
     const auto fits = [&](const Group& group) {
       const Operand& first = operands[group.operands[0]];
-      return group.operands.size() < lanes_per_group && first.flat.shape == operands[i].flat.shape &&
-             first.placed == operands[i].placed && first.csg_from_object == operands[i].csg_from_object &&
+      return group.operands.size() < lanes_per_group &&
+             first.flat.shape == operands[i].flat.shape && first.placed == operands[i].placed &&
+             first.csg_from_object == operands[i].csg_from_object &&
              first.u.has_value() == operands[i].u.has_value();
     };
     const auto found = std::find_if(groups.begin(), groups.end(), fits);
@@ -201,8 +211,8 @@ std::size_t append_rows(std::vector<float>& leaves, std::size_t count) {
   return begin;
 }
 
-void write_group(const Group& group, const std::vector<Operand>& operands, std::size_t first, std::size_t row,
-                 std::vector<float>& leaves) {
+void write_group(const Group& group, const std::vector<Operand>& operands, std::size_t first,
+                 std::size_t row, std::vector<float>& leaves) {
   const Operand& one = operands[group.operands[0]];
   const std::uint32_t rows = rows_of(one.flat.shape);
   const std::size_t block = append_rows(leaves, rows * 8);
@@ -229,21 +239,27 @@ void write_group(const Group& group, const std::vector<Operand>& operands, std::
       leaves[chain + 2 * lane + 1] = operands[group.operands[lane]].u->y;
     }
   }
-  const std::size_t values[] = {one.flat.shape, block, group.operands.size(), first, transform, chain};
+  const std::size_t values[] = {one.flat.shape, block,     group.operands.size(),
+                                first,          transform, chain};
   for (std::size_t k = 0; k < std::size(values); ++k) leaves[row + k] = as_row(values[k]);
 }
 
 }  // namespace
 
 std::uint64_t csg_operand_shapes(const FlatPrimitive& csg, const std::vector<float>& leaves) {
-  const auto number = [&](std::size_t at) { return std::bit_cast<std::uint32_t>(leaves[csg_begin(csg.data) + at]); };
+  const auto number = [&](std::size_t at) {
+    return std::bit_cast<std::uint32_t>(leaves[csg_begin(csg.data) + at]);
+  };
   std::uint64_t shapes = 0;
-  for (std::size_t group = 0; group < number(4); ++group) shapes |= shape_bit(number(8 * (1 + group)));
+  for (std::size_t group = 0; group < number(4); ++group)
+    shapes |= shape_bit(number(8 * (1 + group)));
   return shapes;
 }
 
 bool csg_has_chain(const FlatPrimitive& csg, const std::vector<float>& leaves) {
-  const auto number = [&](std::size_t at) { return std::bit_cast<std::uint32_t>(leaves[csg_begin(csg.data) + at]); };
+  const auto number = [&](std::size_t at) {
+    return std::bit_cast<std::uint32_t>(leaves[csg_begin(csg.data) + at]);
+  };
   for (std::size_t group = 0; group < number(4); ++group)
     if (number(8 * (1 + group) + 5) != CAPLET_NONE) return true;
   return false;
@@ -261,11 +277,13 @@ FlatPrimitive flat_primitive(const CsgShape& csg, const Matrix& m, std::vector<f
   whole.geometry = csg;
   whole.world_from_object = m;
   Bounds box = bounds_of(whole);
-  for (int k = 0; k < 3; ++k)  // no bounds (boxes of an intersection that do not meet): an empty box at any place will do
+  for (int k = 0; k < 3; ++k)  // no bounds (boxes of an intersection that do not meet): an empty
+                               // box at any place will do
     if (!(box.min[k] <= box.max[k])) box.min[k] = box.max[k] = 0.5 * (box.min[k] + box.max[k]);
   dvec3 center;
   for (int k = 0; k < 3; ++k) center[k] = static_cast<float>(0.5 * (box.min[k] + box.max[k]));
-  // Rays that begin on the shape's surface must begin within this ball: 2^-16 is more than their rounding.
+  // Rays that begin on the shape's surface must begin within this ball: 2^-16 is more than their
+  // rounding.
   const double radius = glm::length(glm::max(box.max - center, center - box.min)) * (1 + 0x1p-16);
 
   std::vector<Operand> operands;
@@ -284,8 +302,10 @@ FlatPrimitive flat_primitive(const CsgShape& csg, const Matrix& m, std::vector<f
     }
 
   const std::size_t begin =
-      append_rows(leaves, 8 * (1 + groups.size()) + round_up(surfaces.size()) + round_up(flattening.program.size()));
-  for (int k = 0; k < 3; ++k) leaves[begin + static_cast<std::size_t>(k)] = static_cast<float>(center[k]);
+      append_rows(leaves, 8 * (1 + groups.size()) + round_up(surfaces.size()) +
+                              round_up(flattening.program.size()));
+  for (int k = 0; k < 3; ++k)
+    leaves[begin + static_cast<std::size_t>(k)] = static_cast<float>(center[k]);
   leaves[begin + 3] = std::nextafter(static_cast<float>(radius), INFINITY);
   leaves[begin + 4] = as_row(groups.size());
   leaves[begin + 5] = as_row(flattening.program.size());

@@ -12,8 +12,12 @@ using Matrix = glm::dmat4;
 
 namespace {
 
-HullEnd cylinder_end0(const FlatPrimitive& p) { return {cylinder_r(p.data), cylinder_cap0(p.data)}; }
-HullEnd cylinder_end1(const FlatPrimitive& p) { return {cylinder_r(p.data), cylinder_cap1(p.data)}; }
+HullEnd cylinder_end0(const FlatPrimitive& p) {
+  return {cylinder_r(p.data), cylinder_cap0(p.data)};
+}
+HullEnd cylinder_end1(const FlatPrimitive& p) {
+  return {cylinder_r(p.data), cylinder_cap1(p.data)};
+}
 
 }  // namespace
 
@@ -35,7 +39,8 @@ ExactBox cylinder_box(const FlatPrimitive& p) {
 }
 
 double cylinder_area(const FlatPrimitive& p, const std::vector<float>&) {
-  return hull_area(length3(cylinder_p0(p.data), cylinder_p1(p.data)), cylinder_end0(p), cylinder_end1(p));
+  return hull_area(length3(cylinder_p0(p.data), cylinder_p1(p.data)), cylinder_end0(p),
+                   cylinder_end1(p));
 }
 
 void cylinder_pieces(const FlatPrimitive& p, const std::vector<float>&, Pieces& pieces) {
@@ -43,7 +48,8 @@ void cylinder_pieces(const FlatPrimitive& p, const std::vector<float>&, Pieces& 
 }
 
 FlatPrimitive cylinder_grown(FlatPrimitive p, double b, std::vector<float>&) {
-  const GrownHull grown = grown_hull(cylinder_p0(p.data), cylinder_p1(p.data), cylinder_end0(p), cylinder_end1(p), b);
+  const GrownHull grown =
+      grown_hull(cylinder_p0(p.data), cylinder_p1(p.data), cylinder_end0(p), cylinder_end1(p), b);
   put(p, cylinder_at_p0, grown.p0);
   put(p, cylinder_at_p1, grown.p1);
   move_by(p.data[cylinder_at_r], 1, b);

@@ -24,7 +24,9 @@ double disk_scale(const Matrix& m) {
   return std::abs(x - y) <= 2e-6 * s && std::abs(glm::dot(a[0], a[1])) <= 2e-6 * s * s ? s : 0;
 }
 
-dvec3 disk_normal(const Matrix& m) { return glm::normalize(glm::transpose(glm::inverse(glm::dmat3(m))) * dvec3(0, 0, 1)); }
+dvec3 disk_normal(const Matrix& m) {
+  return glm::normalize(glm::transpose(glm::inverse(glm::dmat3(m))) * dvec3(0, 0, 1));
+}
 
 }  // namespace
 
@@ -37,9 +39,13 @@ FlatPrimitive flat_primitive(const DiskShape& disk, const Matrix& m, std::vector
   return p;
 }
 
-bool bakes_under(const DiskShape& disk, const Matrix& m) { return disk.is_whole() ? disk_scale(m) > 0 : m == Matrix(1); }
+bool bakes_under(const DiskShape& disk, const Matrix& m) {
+  return disk.is_whole() ? disk_scale(m) > 0 : m == Matrix(1);
+}
 glm::dmat3 turn_under(const DiskShape& disk, const Matrix& m) {
-  return disk.is_whole() ? glm::dmat3(dvec3(m[0]) / disk_scale(m), dvec3(m[1]) / disk_scale(m), disk_normal(m)) : glm::dmat3(1);
+  return disk.is_whole()
+             ? glm::dmat3(dvec3(m[0]) / disk_scale(m), dvec3(m[1]) / disk_scale(m), disk_normal(m))
+             : glm::dmat3(1);
 }
 
 ExactBox disk_box(const FlatPrimitive& p) {

@@ -18,7 +18,9 @@ using glm::dvec3;
 using std::numbers::pi;
 
 /// Returns the area that a flat end adds. Round ends have no disk, open ones none that is seen.
-double disk_area_of(const HullEnd& end) { return end.cap == CAPLET_CAP_FLAT ? pi * end.radius * end.radius : 0; }
+double disk_area_of(const HullEnd& end) {
+  return end.cap == CAPLET_CAP_FLAT ? pi * end.radius * end.radius : 0;
+}
 
 /// Returns the area of the hull of a disk (or the rim of an open end) of radius `rim` and a ball at
 /// a distance `length` along its axis: tangents from the rim touch the ball at `angle` to either
@@ -26,7 +28,8 @@ double disk_area_of(const HullEnd& end) { return end.cap == CAPLET_CAP_FLAT ? pi
 double disk_and_ball_area(const HullEnd& disk, double length, double ball) {
   const double rim = disk.radius, apart = std::hypot(rim, length);
   if (apart <= ball) return 4 * pi * ball * ball;  // the ball holds the disk
-  const double tangent = std::sqrt(apart * apart - ball * ball), c = ball / apart, s = tangent / apart;
+  const double tangent = std::sqrt(apart * apart - ball * ball), c = ball / apart,
+               s = tangent / apart;
   // These are height and distance from the axis of the unit normals where the tangents touch.
   const double front = (-length * c + rim * s) / apart, front_off = (rim * c + length * s) / apart;
   double area = pi * (rim + ball * front_off) * tangent + 2 * pi * ball * ball * (1 - front);
@@ -65,17 +68,19 @@ double hull_area(double length, const HullEnd& end0, const HullEnd& end1) {
   if (round0 && round1) return two_balls_area(length, end0.radius, end1.radius);
   if (round0) return disk_and_ball_area(end1, length, end0.radius);
   if (round1) return disk_and_ball_area(end0, length, end1.radius);
-  return pi * (end0.radius + end1.radius) * std::hypot(length, end0.radius - end1.radius) + disk_area_of(end0) +
-         disk_area_of(end1);
+  return pi * (end0.radius + end1.radius) * std::hypot(length, end0.radius - end1.radius) +
+         disk_area_of(end0) + disk_area_of(end1);
 }
 
 // A flat end is a disk across the axis.
 ExactBox hull_box(const float* p0, const float* p1, const HullEnd& end0, const HullEnd& end1) {
-  const double axis[3] = {double(p1[0]) - double(p0[0]), double(p1[1]) - double(p0[1]), double(p1[2]) - double(p0[2])};
+  const double axis[3] = {double(p1[0]) - double(p0[0]), double(p1[1]) - double(p0[1]),
+                          double(p1[2]) - double(p0[2])};
   const double squared = axis[0] * axis[0] + axis[1] * axis[1] + axis[2] * axis[2];
   ExactBox box;
   for (std::size_t k = 0; k < 3; ++k) {
-    const double across = squared > 0 ? std::sqrt(std::max(0.0, 1 - axis[k] * axis[k] / squared)) : 1;
+    const double across =
+        squared > 0 ? std::sqrt(std::max(0.0, 1 - axis[k] * axis[k] / squared)) : 1;
     const double half0 = end0.radius * (end0.cap == CAPLET_CAP_ROUND ? 1 : across);
     const double half1 = end1.radius * (end1.cap == CAPLET_CAP_ROUND ? 1 : across);
     box.min[k] = std::min(double(p0[k]) - half0, double(p1[k]) - half1);
@@ -84,7 +89,8 @@ ExactBox hull_box(const float* p0, const float* p1, const HullEnd& end0, const H
   return box;
 }
 
-GrownHull grown_hull(const float* end_p0, const float* end_p1, const HullEnd& end0, const HullEnd& end1, double b) {
+GrownHull grown_hull(const float* end_p0, const float* end_p1, const HullEnd& end0,
+                     const HullEnd& end1, double b) {
   const double r0 = end0.radius, r1 = end1.radius;
   const bool round0 = end0.cap == CAPLET_CAP_ROUND, round1 = end1.cap == CAPLET_CAP_ROUND;
   const dvec3 p0 = point3(end_p0), p1 = point3(end_p1);
@@ -94,13 +100,16 @@ GrownHull grown_hull(const float* end_p0, const float* end_p1, const HullEnd& en
                    : round0 == round1 ? (r0 - r1) / length
                    : round1           ? slope_to_ball(r0, r1, length)
                                       : -slope_to_ball(r1, r0, length);
-  return {round0 ? p0 : p0 - b * axis, round1 ? p1 : p1 + b * axis, r0 + (round0 ? b : rim_growth(k, b)),
-          r1 + (round1 ? b : rim_growth(-k, b))};
+  return {round0 ? p0 : p0 - b * axis, round1 ? p1 : p1 + b * axis,
+          r0 + (round0 ? b : rim_growth(k, b)), r1 + (round1 ? b : rim_growth(-k, b))};
 }
 
-void Pieces::flat(std::uint32_t surface, const dvec3& area) { all_.push_back({Piece::flat, surface, area}); }
+void Pieces::flat(std::uint32_t surface, const dvec3& area) {
+  all_.push_back({Piece::flat, surface, area});
+}
 
-void Pieces::round(Piece::Kind kind, std::uint32_t surface, const dvec3& axis, double amount, double low, double high) {
+void Pieces::round(Piece::Kind kind, std::uint32_t surface, const dvec3& axis, double amount,
+                   double low, double high) {
   if (!(amount > 0)) return;
   all_.push_back({kind, surface, axis, amount, low, high, 2 * pi, dvec3(0)});
 }
@@ -109,17 +118,20 @@ void Pieces::part(Piece::Kind kind, double amount, double low, double high, doub
   all_.push_back({kind, 0, dvec3(0, 0, 1), amount, low, high, phi_max, dvec3(1, 0, 0)});
 }
 
-void Pieces::balls(const float* p0, const float* p1, double r0, double r1, const std::array<std::uint32_t, 3>& surfaces) {
+void Pieces::balls(const float* p0, const float* p1, double r0, double r1,
+                   const std::array<std::uint32_t, 3>& surfaces) {
   const dvec3 along = point3(p1) - point3(p0);
   const double length = glm::length(along);
   two_balls(length > 0 ? along / length : dvec3(0, 0, 1), length, r0, r1, surfaces);
 }
 
 /// Adds the pieces of two_balls_area, between centres `length` apart along `axis`.
-void Pieces::two_balls(const dvec3& axis, double length, double r0, double r1, const std::array<std::uint32_t, 3>& surfaces) {
+void Pieces::two_balls(const dvec3& axis, double length, double r0, double r1,
+                       const std::array<std::uint32_t, 3>& surfaces) {
   const double taper = r0 - r1;
   if (length <= std::abs(taper))
-    return round(Piece::zone, surfaces[r0 >= r1 ? 1 : 2], axis, std::max(r0, r1) * std::max(r0, r1), -1, 1);
+    return round(Piece::zone, surfaces[r0 >= r1 ? 1 : 2], axis, std::max(r0, r1) * std::max(r0, r1),
+                 -1, 1);
   const double s = taper / length, c = std::sqrt(1 - s * s);
   round(Piece::zone, surfaces[1], axis, r0 * r0, -1, s);
   round(Piece::zone, surfaces[2], axis, r1 * r1, s, 1);
@@ -127,11 +139,12 @@ void Pieces::two_balls(const dvec3& axis, double length, double r0, double r1, c
 }
 
 /// Adds the pieces of disk_and_ball_area; `axis` from the disk to the ball.
-void Pieces::disk_and_ball(const dvec3& axis, double length, const HullEnd& disk, std::uint32_t disk_surface, double ball,
-                           std::uint32_t ball_surface) {
+void Pieces::disk_and_ball(const dvec3& axis, double length, const HullEnd& disk,
+                           std::uint32_t disk_surface, double ball, std::uint32_t ball_surface) {
   const double rim = disk.radius, apart = std::hypot(rim, length);
   if (apart <= ball) return round(Piece::zone, ball_surface, axis, ball * ball, -1, 1);
-  const double tangent = std::sqrt(apart * apart - ball * ball), c = ball / apart, s = tangent / apart;
+  const double tangent = std::sqrt(apart * apart - ball * ball), c = ball / apart,
+               s = tangent / apart;
   const double front = (-length * c + rim * s) / apart, front_off = (rim * c + length * s) / apart;
   round(Piece::side, 0, axis, pi * (rim + ball * front_off) * tangent, front);
   round(Piece::zone, ball_surface, axis, ball * ball, front, 1);
@@ -150,7 +163,8 @@ void Pieces::hull(const float* p0, const float* p1, const HullEnd& end0, const H
   if (round0) return disk_and_ball(-axis, length, end1, 2, end0.radius, 1);
   if (round1) return disk_and_ball(axis, length, end0, 1, end1.radius, 2);
   const double taper = end0.radius - end1.radius, slant = std::hypot(length, taper);
-  round(Piece::side, 0, axis, pi * (end0.radius + end1.radius) * slant, slant > 0 ? taper / slant : 0);
+  round(Piece::side, 0, axis, pi * (end0.radius + end1.radius) * slant,
+        slant > 0 ? taper / slant : 0);
   flat(1, -disk_area_of(end0) * axis);
   flat(2, disk_area_of(end1) * axis);
 }

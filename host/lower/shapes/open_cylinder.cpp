@@ -24,14 +24,17 @@ glm::dmat3 turn_under(const OpenCylinderShape&, const Matrix&) { return glm::dma
 
 ExactBox open_cylinder_box(const FlatPrimitive& p) {
   const double r = double(open_cylinder_r(p.data));
-  return {{-r, -r, double(open_cylinder_z_min(p.data))}, {r, r, double(open_cylinder_z_max(p.data))}};
+  return {{-r, -r, double(open_cylinder_z_min(p.data))},
+          {r, r, double(open_cylinder_z_max(p.data))}};
 }
 
 double open_cylinder_area(const FlatPrimitive& p, const std::vector<float>&) {
-  return open_cylinder_phi_max(p.data) * open_cylinder_r(p.data) * (open_cylinder_z_max(p.data) - open_cylinder_z_min(p.data));
+  return open_cylinder_phi_max(p.data) * open_cylinder_r(p.data) *
+         (open_cylinder_z_max(p.data) - open_cylinder_z_min(p.data));
 }
 
-void open_cylinder_pieces(const FlatPrimitive& p, const std::vector<float>& leaves, Pieces& pieces) {
+void open_cylinder_pieces(const FlatPrimitive& p, const std::vector<float>& leaves,
+                          Pieces& pieces) {
   pieces.part(Piece::side, open_cylinder_area(p, leaves), 0, 0, open_cylinder_phi_max(p.data));
 }
 

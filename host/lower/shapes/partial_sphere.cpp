@@ -25,7 +25,8 @@ glm::dmat3 turn_under(const PartialSphereShape&, const Matrix&) { return glm::dm
 
 ExactBox partial_sphere_box(const FlatPrimitive& p) {
   const double r = double(partial_sphere_r(p.data));
-  return {{-r, -r, double(partial_sphere_z_min(p.data))}, {r, r, double(partial_sphere_z_max(p.data))}};
+  return {{-r, -r, double(partial_sphere_z_min(p.data))},
+          {r, r, double(partial_sphere_z_max(p.data))}};
 }
 
 double partial_sphere_area(const FlatPrimitive& p, const std::vector<float>&) {
@@ -37,7 +38,8 @@ double partial_sphere_area(const FlatPrimitive& p, const std::vector<float>&) {
 void partial_sphere_pieces(const FlatPrimitive& p, const std::vector<float>&, Pieces& pieces) {
   const double r = partial_sphere_r(p.data);
   pieces.part(Piece::zone, r * r, std::max<double>(partial_sphere_z_min(p.data), -r) / r,
-              std::min<double>(partial_sphere_z_max(p.data), r) / r, partial_sphere_phi_max(p.data));
+              std::min<double>(partial_sphere_z_max(p.data), r) / r,
+              partial_sphere_phi_max(p.data));
 }
 
 }  // namespace caplet

@@ -29,8 +29,8 @@ double rounded_to_float(double x) {
 /// 1/2 at the foot of the perpendicular from the centre of the bounds, over a bounding radius to
 /// either side. Its directions are those of +x and +y (-y) after the shortest rotation of +z (-z
 /// for normals below -0.9) to the normal.
-void put_plane_uvs(const PolyhedronShape& polyhedron, const std::vector<dvec3>& corners, const Matrix& m, const dvec3& center,
-                   float* out) {
+void put_plane_uvs(const PolyhedronShape& polyhedron, const std::vector<dvec3>& corners,
+                   const Matrix& m, const dvec3& center, float* out) {
   Bounds box;
   for (const dvec3& corner : corners) box.extend(corner);
   const dvec3 own_center = 0.5 * (box.min + box.max);
@@ -40,7 +40,8 @@ void put_plane_uvs(const PolyhedronShape& polyhedron, const std::vector<dvec3>& 
   const glm::dmat3 gradients = glm::transpose(glm::inverse(glm::dmat3(m)));
   for (std::size_t i = 0; i < polyhedron.normals.size(); ++i) {
     const dvec3 n = glm::normalize(polyhedron.normals[i]);
-    const double sign = n.z >= -0.9 ? 1 : -1, a = -1 / (sign + n.z);  // Duff et al. 2017, as kernels/math/vector.cl
+    const double sign = n.z >= -0.9 ? 1 : -1,
+                 a = -1 / (sign + n.z);  // Duff et al. 2017, as kernels/math/vector.cl
     const dvec3 directions[2] = {{1 + sign * n.x * n.x * a, sign * n.x * n.y * a, -sign * n.x},
                                  {n.x * n.y * a, sign + n.y * n.y * a, -n.y}};
     for (const dvec3& direction : directions) {
@@ -54,7 +55,8 @@ void put_plane_uvs(const PolyhedronShape& polyhedron, const std::vector<dvec3>& 
 /// Returns a vector along the normal, as long as the area is large.
 dvec3 polygon_area(const std::vector<dvec3>& corners) {
   dvec3 sum(0);
-  for (std::size_t i = 2; i < corners.size(); ++i) sum += glm::cross(corners[i - 1] - corners[0], corners[i] - corners[0]);
+  for (std::size_t i = 2; i < corners.size(); ++i)
+    sum += glm::cross(corners[i - 1] - corners[0], corners[i] - corners[0]);
   return 0.5 * sum;
 }
 
@@ -75,11 +77,14 @@ double polyhedron_area(const float* head) {
   return area;
 }
 
-const float* head_of(const FlatPrimitive& p, const std::vector<float>& leaves) { return &leaves[polyhedron_begin(p.data)]; }
+const float* head_of(const FlatPrimitive& p, const std::vector<float>& leaves) {
+  return &leaves[polyhedron_begin(p.data)];
+}
 
 }  // namespace
 
-FlatPrimitive flat_primitive(const PolyhedronShape& polyhedron, const Matrix& m, std::vector<float>& leaves) {
+FlatPrimitive flat_primitive(const PolyhedronShape& polyhedron, const Matrix& m,
+                             std::vector<float>& leaves) {
   // Planes are kept relative to the centre of the bounds, so that their rounding is relative to the
   // solid's size.
   const std::vector<dvec3> corners = polyhedron_corners(polyhedron);
@@ -96,12 +101,15 @@ FlatPrimitive flat_primitive(const PolyhedronShape& polyhedron, const Matrix& m,
   for (int k = 0; k < 3; ++k) out[k] = static_cast<float>(center[k]);
   out[3] = std::bit_cast<float>(narrow<std::uint32_t>(count));
   double radius = 0;
-  for (const dvec3& corner : corners) radius = std::max(radius, glm::length(apply_point(m, corner) - center));
+  for (const dvec3& corner : corners)
+    radius = std::max(radius, glm::length(apply_point(m, corner) - center));
   out[4] = std::nextafter(static_cast<float>(radius), std::numeric_limits<float>::infinity());
   for (std::size_t i = 0; i < count; ++i) {
     const dvec3 n = glm::normalize(normal_matrix * polyhedron.normals[i]);
-    for (int k = 0; k < 3; ++k) out[8 + 4 * i + static_cast<std::size_t>(k)] = static_cast<float>(n[k]);
-    out[8 + 4 * i + 3] = static_cast<float>(glm::dot(n, apply_point(m, polyhedron.points[i]) - center));
+    for (int k = 0; k < 3; ++k)
+      out[8 + 4 * i + static_cast<std::size_t>(k)] = static_cast<float>(n[k]);
+    out[8 + 4 * i + 3] =
+        static_cast<float>(glm::dot(n, apply_point(m, polyhedron.points[i]) - center));
   }
   put_plane_uvs(polyhedron, corners, m, center, &leaves[uv_begin]);
   FlatPrimitive p = make_primitive(shape_polyhedron);
@@ -114,11 +122,14 @@ FlatPrimitive flat_primitive(const PolyhedronShape& polyhedron, const Matrix& m,
 bool bakes_under(const PolyhedronShape&, const Matrix&) { return true; }
 glm::dmat3 turn_under(const PolyhedronShape&, const Matrix&) { return glm::dmat3(1); }
 
-double polyhedron_area(const FlatPrimitive& p, const std::vector<float>& leaves) { return polyhedron_area(head_of(p, leaves)); }
+double polyhedron_area(const FlatPrimitive& p, const std::vector<float>& leaves) {
+  return polyhedron_area(head_of(p, leaves));
+}
 
 void polyhedron_pieces(const FlatPrimitive& p, const std::vector<float>& leaves, Pieces& pieces) {
   const auto faces = faces_of_polyhedron(head_of(p, leaves));
-  for (std::size_t i = 0; i < faces.size(); ++i) pieces.flat(static_cast<std::uint32_t>(i), polygon_area(faces[i]));
+  for (std::size_t i = 0; i < faces.size(); ++i)
+    pieces.flat(static_cast<std::uint32_t>(i), polygon_area(faces[i]));
 }
 
 FlatPrimitive polyhedron_grown(FlatPrimitive p, double b, std::vector<float>& leaves) {

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Draws smooth-edged lines, boxes and text on a displayed picture. Pixel (0, 0) is the square from (0, 0) to (1, 1), y down.
+// Draws smooth-edged lines, boxes and text on a displayed picture. Pixel (0, 0) is the square from
+// (0, 0) to (1, 1), y down.
 #pragma once
 
 #include <array>
@@ -18,12 +19,15 @@ namespace caplet::post {
 class Mask {
  public:
   Mask(int width, int height)
-      : width_(width), height_(height), share_(static_cast<std::size_t>(width) * static_cast<std::size_t>(height)) {}
+      : width_(width),
+        height_(height),
+        share_(static_cast<std::size_t>(width) * static_cast<std::size_t>(height)) {}
 
   int width() const { return width_; }
   int height() const { return height_; }
   float& at(int x, int y) {
-    return share_[static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x)];
+    return share_[static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) +
+                  static_cast<std::size_t>(x)];
   }
   const std::vector<float>& shares() const { return share_; }
 
@@ -40,7 +44,8 @@ class Mask {
 /// Paints the mask in a colour, sRGB from 0 to 1, blended in sRGB.
 void paint(Shown& picture, const Mask& mask, const std::array<float, 3>& srgb);
 
-/// Letters are strokes. `size`: the height of capitals; `at` is the start of the baseline. Unknown characters become boxes.
+/// Letters are strokes. `size`: the height of capitals; `at` is the start of the baseline. Unknown
+/// characters become boxes.
 double text_width(std::string_view utf8, double size);
 void text(Mask& mask, const glm::dvec2& at, std::string_view utf8, double size);
 

@@ -15,7 +15,9 @@ namespace caplet::reference {
 
 inline constexpr double pi = full_turn / 2;
 
-inline double share(double x, double whole) { return whole != 0 ? std::clamp(x / whole, 0.0, 1.0) : 0.0; }
+inline double share(double x, double whole) {
+  return whole != 0 ? std::clamp(x / whole, 0.0, 1.0) : 0.0;
+}
 
 /// Returns v turned by the shortest rotation that takes the unit vector `from` to the unit vector
 /// `to`, not opposite to it (Rodrigues's formula).
@@ -25,11 +27,14 @@ inline glm::dvec3 turned(const glm::dvec3& v, const glm::dvec3& from, const glm:
   if (!(sine > 0)) return v;
   const glm::dvec3 axis = moment / sine;
   const double angle = std::atan2(sine, glm::dot(from, to));
-  return std::cos(angle) * v + std::sin(angle) * glm::cross(axis, v) + (1 - std::cos(angle)) * glm::dot(axis, v) * axis;
+  return std::cos(angle) * v + std::sin(angle) * glm::cross(axis, v) +
+         (1 - std::cos(angle)) * glm::dot(axis, v) * axis;
 }
 
 /// Returns where angles around a unit vector begin.
-inline glm::dvec3 beginning(const glm::dvec3& axis) { return turned({1, 0, 0}, {0, 0, axis.z >= -0.9 ? 1.0 : -1.0}, axis); }
+inline glm::dvec3 beginning(const glm::dvec3& axis) {
+  return turned({1, 0, 0}, {0, 0, axis.z >= -0.9 ? 1.0 : -1.0}, axis);
+}
 
 /// Returns the angle in [0, 2 pi) around `axis` (unit), of w from somewhere on it.
 inline double angle_around(const glm::dvec3& axis, const glm::dvec3& w) {

@@ -46,7 +46,8 @@ double distance_from(const Csg& csg, const glm::dvec3& x, int surface);
 glm::dvec3 normal_of(const Frustum& frustum, const glm::dvec3& x, int surface);
 glm::dvec3 normal_of(const Polyhedron& polyhedron, const glm::dvec3& x, int surface);
 
-// --- Sheets: the normal, the solid that they bound a part of, whether that part, and where they end ---
+// --- Sheets: the normal, the solid that they bound a part of, whether that part, and where they
+// end ---
 
 glm::dvec3 sheet_normal(const Triangle& triangle, const glm::dvec3& x);
 glm::dvec3 sheet_normal(const Disk& disk, const glm::dvec3& x);
@@ -129,10 +130,13 @@ glm::dvec3 normal_of(const Solid<Model>& solid, const glm::dvec3& x, int surface
 
 double distance_to_segment(const glm::dvec3& x, const glm::dvec3& a, const glm::dvec3& b);
 glm::dvec3 any_perpendicular(const glm::dvec3& unit);
-inline Curve segment(const glm::dvec3& a, const glm::dvec3& b) { return {Curve::Kind::segment, a, b, glm::dvec3(0), 0, 0, 0}; }
+inline Curve segment(const glm::dvec3& a, const glm::dvec3& b) {
+  return {Curve::Kind::segment, a, b, glm::dvec3(0), 0, 0, 0};
+}
 
 // frustum.cpp
-double hull_value(const Frustum& frustum, const glm::dvec3& x);  // signed, as if all ends were closed
+double hull_value(const Frustum& frustum,
+                  const glm::dvec3& x);  // signed, as if all ends were closed
 // Returns where the side of normal n (one of side_normals) touches an end: along and across the
 // axis.
 glm::dvec2 side_contact(const Frustum& frustum, std::size_t end, const glm::dvec2& n);

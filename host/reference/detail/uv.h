@@ -15,6 +15,7 @@ namespace caplet::reference {
 /// are in [0, 1]; where u is undefined (poles, centres) it is anything in that range. For csg
 /// shapes they are the operand's. Surfaces that are not there have (0, 0). direction: of the ray
 /// that sees it, which only v of chains depends on.
-glm::dvec2 uv_at(const Primitive& primitive, const glm::dvec3& x, int surface, const glm::dvec3& direction = glm::dvec3(0));
+glm::dvec2 uv_at(const Primitive& primitive, const glm::dvec3& x, int surface,
+                 const glm::dvec3& direction = glm::dvec3(0));
 
 }  // namespace caplet::reference

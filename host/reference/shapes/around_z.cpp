@@ -38,7 +38,8 @@ double distance_to(const Curve& c, const dvec3& x) {
   const dvec2 plane{glm::dot(w, c.q), glm::dot(w, c.r)};
   double angle = std::atan2(plane.y, plane.x);
   if (angle < c.from) angle += full_turn;
-  if (angle >= c.from && angle <= c.to) return std::hypot(glm::length(plane) - c.radius, glm::dot(w, glm::cross(c.q, c.r)));
+  if (angle >= c.from && angle <= c.to)
+    return std::hypot(glm::length(plane) - c.radius, glm::dot(w, glm::cross(c.q, c.r)));
   return std::min(glm::length(x - c.at(0)), glm::length(x - c.at(1)));
 }
 
@@ -67,19 +68,23 @@ bool keeps_of(const PartialDisk& d, const dvec3& x, int) {
 std::vector<Curve> boundary_of(const PartialSphere& s) {
   std::vector<Curve> out;
   for (const double z : {s.z_min, s.z_max})
-    if (std::abs(z) < s.radius) out.push_back(circle(std::sqrt((s.radius - z) * (s.radius + z)), z, s.phi_max));
+    if (std::abs(z) < s.radius)
+      out.push_back(circle(std::sqrt((s.radius - z) * (s.radius + z)), z, s.phi_max));
   if (!whole(s.phi_max)) {
     const double low = std::asin(std::clamp(s.z_min / s.radius, -1.0, 1.0));
     const double high = std::asin(std::clamp(s.z_max / s.radius, -1.0, 1.0));
-    for (const double phi : {0.0, s.phi_max}) out.push_back({Curve::Kind::arc, dvec3(0), at_angle(phi), up, s.radius, low, high});
+    for (const double phi : {0.0, s.phi_max})
+      out.push_back({Curve::Kind::arc, dvec3(0), at_angle(phi), up, s.radius, low, high});
   }
   return out;
 }
 std::vector<Curve> boundary_of(const OpenCylinder& c) {
-  std::vector<Curve> out = {circle(c.radius, c.z_min, c.phi_max), circle(c.radius, c.z_max, c.phi_max)};
+  std::vector<Curve> out = {circle(c.radius, c.z_min, c.phi_max),
+                            circle(c.radius, c.z_max, c.phi_max)};
   if (!whole(c.phi_max))
     for (const double phi : {0.0, c.phi_max})
-      out.push_back(segment(c.radius * at_angle(phi) + c.z_min * up, c.radius * at_angle(phi) + c.z_max * up));
+      out.push_back(segment(c.radius * at_angle(phi) + c.z_min * up,
+                            c.radius * at_angle(phi) + c.z_max * up));
   return out;
 }
 std::vector<Curve> boundary_of(const PartialDisk& d) {
@@ -87,7 +92,8 @@ std::vector<Curve> boundary_of(const PartialDisk& d) {
   if (d.inner_radius > 0) out.push_back(circle(d.inner_radius, d.height, d.phi_max));
   if (!whole(d.phi_max))
     for (const double phi : {0.0, d.phi_max})
-      out.push_back(segment(d.inner_radius * at_angle(phi) + d.height * up, d.radius * at_angle(phi) + d.height * up));
+      out.push_back(segment(d.inner_radius * at_angle(phi) + d.height * up,
+                            d.radius * at_angle(phi) + d.height * up));
   return out;
 }
 
@@ -121,25 +127,30 @@ Primitive carrier_from(const PartialSphere& s) { return Sphere{dvec3(0), s.radiu
 Primitive carrier_from(const OpenCylinder& c) {
   // The tube is longer, so that its caps never matter.
   const double more = c.radius + 0.5 * (c.z_max - c.z_min);
-  return make_frustum({0, 0, c.z_min - more}, {0, 0, c.z_max + more}, {c.radius, false, false}, {c.radius, false, false});
+  return make_frustum({0, 0, c.z_min - more}, {0, 0, c.z_max + more}, {c.radius, false, false},
+                      {c.radius, false, false});
 }
 
 dvec2 uv_of(const PartialSphere& s, const dvec3& x, int) {
   const auto latitude = [](double z, double across) { return std::atan2(z, across); };
   const auto at_height = [&](double z) { return std::asin(std::clamp(z / s.radius, -1.0, 1.0)); };
   const double low = at_height(s.z_min), high = at_height(s.z_max);
-  return {share(angle_within(x, s.phi_max), s.phi_max), share(latitude(x.z, std::hypot(x.x, x.y)) - low, high - low)};
+  return {share(angle_within(x, s.phi_max), s.phi_max),
+          share(latitude(x.z, std::hypot(x.x, x.y)) - low, high - low)};
 }
 dvec2 uv_of(const OpenCylinder& c, const dvec3& x, int) {
   return {share(angle_within(x, c.phi_max), c.phi_max), share(x.z - c.z_min, c.z_max - c.z_min)};
 }
 dvec2 uv_of(const PartialDisk& d, const dvec3& x, int) {
-  return {share(angle_within(x, d.phi_max), d.phi_max), share(d.radius - std::hypot(x.x, x.y), d.radius - d.inner_radius)};
+  return {share(angle_within(x, d.phi_max), d.phi_max),
+          share(d.radius - std::hypot(x.x, x.y), d.radius - d.inner_radius)};
 }
 
 std::vector<Primitive> references_of(const PartialSphereShape& s) {
   return {PartialSphere{s.radius, s.z_min, s.z_max, s.phi_max}};
 }
-std::vector<Primitive> references_of(const OpenCylinderShape& c) { return {OpenCylinder{c.radius, c.z_min, c.z_max, c.phi_max}}; }
+std::vector<Primitive> references_of(const OpenCylinderShape& c) {
+  return {OpenCylinder{c.radius, c.z_min, c.z_max, c.phi_max}};
+}
 
 }  // namespace caplet::reference

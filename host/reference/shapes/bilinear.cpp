@@ -48,7 +48,8 @@ template <int N>
 void add_roots(const Polynomial<N>& p, std::vector<double>& out) {
   if constexpr (N > 1) {
     Polynomial<N - 1> derivative;
-    for (int i = 0; i < N; ++i) derivative[static_cast<std::size_t>(i)] = (i + 1) * p[static_cast<std::size_t>(i) + 1];
+    for (int i = 0; i < N; ++i)
+      derivative[static_cast<std::size_t>(i)] = (i + 1) * p[static_cast<std::size_t>(i) + 1];
     add_roots<N - 1>(derivative, out);
   }
   std::ranges::sort(out);
@@ -72,14 +73,17 @@ void add_roots(const Polynomial<N>& p, std::vector<double>& out) {
 /// a quintic.
 Nearest nearest_by_u(const Bilinear& b, const dvec3& x) {
   const dvec3 a0 = b.p00 - x, a1 = b.p10 - b.p00, r0 = b.p01 - b.p00, r1 = (b.p11 - b.p10) - r0;
-  const dvec3 c0 = glm::cross(a0, r0), c1 = glm::cross(a0, r1) + glm::cross(a1, r0), c2 = glm::cross(a1, r1);
-  const Polynomial<4> n = {glm::dot(c0, c0), 2 * glm::dot(c0, c1), glm::dot(c1, c1) + 2 * glm::dot(c0, c2), 2 * glm::dot(c1, c2),
+  const dvec3 c0 = glm::cross(a0, r0), c1 = glm::cross(a0, r1) + glm::cross(a1, r0),
+              c2 = glm::cross(a1, r1);
+  const Polynomial<4> n = {glm::dot(c0, c0), 2 * glm::dot(c0, c1),
+                           glm::dot(c1, c1) + 2 * glm::dot(c0, c2), 2 * glm::dot(c1, c2),
                            glm::dot(c2, c2)};
   const Polynomial<2> d = {glm::dot(r0, r0), 2 * glm::dot(r0, r1), glm::dot(r1, r1)};
   Polynomial<5> slope{};  // n' d - n d'
   for (std::size_t i = 0; i <= 4; ++i)
     for (std::size_t k = 0; k <= 2; ++k)
-      if (i + k > 0) slope[i + k - 1] += (static_cast<double>(i) - static_cast<double>(k)) * n[i] * d[k];
+      if (i + k > 0)
+        slope[i + k - 1] += (static_cast<double>(i) - static_cast<double>(k)) * n[i] * d[k];
   // Where rounding merges two roots, a root of the derivative is as near.
   std::vector<double> candidates;
   add_roots<5>(slope, candidates);
@@ -87,7 +91,8 @@ Nearest nearest_by_u(const Bilinear& b, const dvec3& x) {
   candidates.push_back(1);
   Nearest best;
   for (const double u : candidates)
-    if (const Nearest found = nearest_on_ruling(b, u, x); found.distance < best.distance) best = found;
+    if (const Nearest found = nearest_on_ruling(b, u, x); found.distance < best.distance)
+      best = found;
   return best;
 }
 
@@ -132,12 +137,14 @@ bool has_inside(const Bilinear&) { return false; }
 Ball ball_of(const Bilinear& b) {
   const dvec3 center = 0.25 * (b.p00 + b.p10 + b.p01 + b.p11);
   double radius = 0;
-  for (const dvec3* corner : {&b.p00, &b.p10, &b.p01, &b.p11}) radius = std::max(radius, glm::length(*corner - center));
+  for (const dvec3* corner : {&b.p00, &b.p10, &b.p01, &b.p11})
+    radius = std::max(radius, glm::length(*corner - center));
   return {center, radius};
 }
 
 std::vector<Curve> boundary_of(const Bilinear& b) {
-  return {segment(b.p00, b.p10), segment(b.p10, b.p11), segment(b.p11, b.p01), segment(b.p01, b.p00)};
+  return {segment(b.p00, b.p10), segment(b.p10, b.p11), segment(b.p11, b.p01),
+          segment(b.p01, b.p00)};
 }
 
 dvec2 uv_of(const Bilinear& b, const dvec3& x, int) { return parameters_of(b, x); }
@@ -145,8 +152,8 @@ dvec2 uv_of(const Bilinear& b, const dvec3& x, int) { return parameters_of(b, x)
 std::vector<Primitive> references_of(const BilinearMeshShape& mesh) {
   std::vector<Primitive> out;
   for (const auto& p : mesh.patches)
-    out.push_back(Bilinear{dvec3(mesh.positions[p[0]]), dvec3(mesh.positions[p[1]]), dvec3(mesh.positions[p[2]]),
-                           dvec3(mesh.positions[p[3]])});
+    out.push_back(Bilinear{dvec3(mesh.positions[p[0]]), dvec3(mesh.positions[p[1]]),
+                           dvec3(mesh.positions[p[2]]), dvec3(mesh.positions[p[3]])});
   return out;
 }
 

@@ -45,7 +45,9 @@ double operand_value(const CsgOperand& operand, const dvec3& x) {
 }
 
 bool takes_least(const Csg& csg) { return csg.operation == Csg::Operation::set_union; }
-double sign_of(const Csg& csg, std::size_t i) { return csg.operation == Csg::Operation::set_difference && i > 0 ? -1 : 1; }
+double sign_of(const Csg& csg, std::size_t i) {
+  return csg.operation == Csg::Operation::set_difference && i > 0 ? -1 : 1;
+}
 
 Ball ball_around(Csg::Operation operation, const std::vector<CsgOperand>& operands) {
   std::vector<Ball> balls;
@@ -56,14 +58,16 @@ Ball ball_around(Csg::Operation operation, const std::vector<CsgOperand>& operan
   }
   if (operation == Csg::Operation::set_difference) return balls[0];
   if (operation == Csg::Operation::set_intersection)
-    return *std::min_element(balls.begin(), balls.end(), [](const Ball& a, const Ball& b) { return a.radius < b.radius; });
+    return *std::min_element(balls.begin(), balls.end(),
+                             [](const Ball& a, const Ball& b) { return a.radius < b.radius; });
   dvec3 low(HUGE_VAL), high(-HUGE_VAL);
   for (const Ball& ball : balls) {
     low = glm::min(low, ball.center - ball.radius);
     high = glm::max(high, ball.center + ball.radius);
   }
   Ball out{0.5 * (low + high), 0};
-  for (const Ball& ball : balls) out.radius = std::max(out.radius, glm::length(ball.center - out.center) + ball.radius);
+  for (const Ball& ball : balls)
+    out.radius = std::max(out.radius, glm::length(ball.center - out.center) + ball.radius);
   return out;
 }
 
@@ -109,14 +113,16 @@ SurfaceAt surface_of(const Csg& csg, const dvec3& x) {
   }
   const CsgOperand& operand = operands[active];
   const SurfaceAt inner = surface_at(operand.primitive, apply(operand.operand_from_csg, x));
-  return {operand.surface_begin + inner.surface, std::min(0.5 * (second - best), inner.margin / operand.stretch)};
+  return {operand.surface_begin + inner.surface,
+          std::min(0.5 * (second - best), inner.margin / operand.stretch)};
 }
 
 double distance_from(const Csg& csg, const dvec3& x, int surface) {
   for (const CsgOperand& operand : csg.body->operands) {
     const int own = surface - operand.surface_begin;
     if (own >= 0 && own < surface_count(operand.primitive))
-      return distance_from_surface(operand.primitive, apply(operand.operand_from_csg, x), own) / operand.stretch;
+      return distance_from_surface(operand.primitive, apply(operand.operand_from_csg, x), own) /
+             operand.stretch;
   }
   return HUGE_VAL;
 }
@@ -129,7 +135,9 @@ int surfaces_of(const Csg& csg) {
   return last.surface_begin + surface_count(last.primitive);
 }
 
-dvec2 uv_of(const Csg& csg, const dvec3& x, int surface) { return csg_uv_of(csg, x, surface, dvec3(0)); }
+dvec2 uv_of(const Csg& csg, const dvec3& x, int surface) {
+  return csg_uv_of(csg, x, surface, dvec3(0));
+}
 
 dvec2 csg_uv_of(const Csg& csg, const dvec3& x, int surface, const dvec3& direction) {
   for (const CsgOperand& operand : csg.body->operands) {
@@ -143,10 +151,12 @@ dvec2 csg_uv_of(const Csg& csg, const dvec3& x, int surface, const dvec3& direct
 
 std::vector<Primitive> references_of(const CsgShape& csg) {
   std::vector<CsgPart> parts;
-  for (const auto& operand : csg.operands) parts.push_back({primitives_of(*operand).at(0), operand->world_from_object});
-  const auto operation = csg.operation == CsgShape::Operation::set_union          ? Csg::Operation::set_union
-                         : csg.operation == CsgShape::Operation::set_intersection ? Csg::Operation::set_intersection
-                                                                                  : Csg::Operation::set_difference;
+  for (const auto& operand : csg.operands)
+    parts.push_back({primitives_of(*operand).at(0), operand->world_from_object});
+  const auto operation = csg.operation == CsgShape::Operation::set_union ? Csg::Operation::set_union
+                         : csg.operation == CsgShape::Operation::set_intersection
+                             ? Csg::Operation::set_intersection
+                             : Csg::Operation::set_difference;
   return {make_csg(operation, parts)};
 }
 

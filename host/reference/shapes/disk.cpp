@@ -32,7 +32,8 @@ std::vector<Curve> boundary_of(const Disk& d) {
 
 dvec2 uv_of(const Disk& d, const dvec3& x, int) {
   const dvec3 n = glm::normalize(d.normal), w = x - d.center;
-  return {share(angle_around(n, w), full_turn), 1 - share(glm::length(w - glm::dot(w, n) * n), d.radius)};
+  return {share(angle_around(n, w), full_turn),
+          1 - share(glm::length(w - glm::dot(w, n) * n), d.radius)};
 }
 
 std::vector<Primitive> references_of(const DiskShape& d) {

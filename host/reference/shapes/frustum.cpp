@@ -21,7 +21,9 @@ using glm::dvec3;
 namespace {
 
 // Returns the support of an end whose centre lies `along` the axis.
-double support(const Frustum::End& end, double along, const dvec2& n) { return n.x * along + end.radius * (end.round ? 1.0 : n.y); }
+double support(const Frustum::End& end, double along, const dvec2& n) {
+  return n.x * along + end.radius * (end.round ? 1.0 : n.y);
+}
 
 struct Profile {
   double along, across;
@@ -46,7 +48,8 @@ Values values_at(const Frustum& s, const Profile& x) {
     return n.x * x.along + n.y * x.across - std::max(h0, h1);
   };
   for (int i = 0; i < s.side_count; ++i)
-    out.side = std::max(out.side, value_along(s.side_normals[static_cast<std::size_t>(i)], nullptr));
+    out.side =
+        std::max(out.side, value_along(s.side_normals[static_cast<std::size_t>(i)], nullptr));
   const auto try_end = [&](const dvec2& n, std::size_t which) {
     const double value = value_along(n, &which);
     out.end[which] = std::max(out.end[which], value);
@@ -54,7 +57,8 @@ Values values_at(const Frustum& s, const Profile& x) {
   try_end({-1, 0}, 0);
   try_end({1, 0}, 1);
   for (std::size_t i = 0; i < 2; ++i) {
-    const dvec2 peak{x.along - (i == 0 ? 0 : s.length), x.across - (s.ends[i].round ? 0 : s.ends[i].radius)};
+    const dvec2 peak{x.along - (i == 0 ? 0 : s.length),
+                     x.across - (s.ends[i].round ? 0 : s.ends[i].radius)};
     const double size = glm::length(peak);
     if (size > 0 && peak.y >= 0) try_end(peak / size, i);
     if (size == 0) try_end({0, 1}, i);
@@ -70,20 +74,26 @@ double distance2(const dvec2& x, const dvec2& a, const dvec2& b) {
 
 dvec2 side_contact(const Frustum& s, std::size_t end, const dvec2& n) {
   const dvec2 center{end == 0 ? 0 : s.length, 0};
-  return s.ends[end].round ? center + s.ends[end].radius * n : center + dvec2(0, s.ends[end].radius);
+  return s.ends[end].round ? center + s.ends[end].radius * n
+                           : center + dvec2(0, s.ends[end].radius);
 }
 
-Frustum make_frustum(const dvec3& p0, const dvec3& p1, const Frustum::End& end0, const Frustum::End& end1) {
+Frustum make_frustum(const dvec3& p0, const dvec3& p1, const Frustum::End& end0,
+                     const Frustum::End& end1) {
   Frustum s;
   s.p0 = p0;
   s.p1 = p1;
   s.ends = {end0, end1};
   s.length = glm::length(p1 - p0);
   s.axis = s.length > 0 ? (p1 - p0) / s.length : dvec3(0, 0, 1);
-  // Both ends are touched where their supports are equal. The difference is a sinusoid of the normal's angle plus a constant:
-  // monotone between its extremes.
-  const auto normal = [](double angle) { return dvec2(std::cos(angle), std::max(0.0, std::sin(angle))); };
-  const auto difference = [&](double angle) { return support(end0, 0, normal(angle)) - support(end1, s.length, normal(angle)); };
+  // Both ends are touched where their supports are equal. The difference is a sinusoid of the
+  // normal's angle plus a constant: monotone between its extremes.
+  const auto normal = [](double angle) {
+    return dvec2(std::cos(angle), std::max(0.0, std::sin(angle)));
+  };
+  const auto difference = [&](double angle) {
+    return support(end0, 0, normal(angle)) - support(end1, s.length, normal(angle));
+  };
   const double d0 = end0.round ? 0 : end0.radius, d1 = end1.round ? 0 : end1.radius;
   double extreme = std::atan2(d1 - d0, s.length);
   if (extreme < 0) extreme += pi;
@@ -102,7 +112,9 @@ Frustum make_frustum(const dvec3& p0, const dvec3& p1, const Frustum::End& end0,
   return s;
 }
 
-double hull_value(const Frustum& s, const dvec3& x) { return values_at(s, profile_of(s, x)).greatest(); }
+double hull_value(const Frustum& s, const dvec3& x) {
+  return values_at(s, profile_of(s, x)).greatest();
+}
 
 double value_of(const Frustum& s, const dvec3& x) {
   const Profile profile = profile_of(s, x);
@@ -142,8 +154,10 @@ SurfaceAt surface_of(const Frustum& s, const dvec3& x) {
   // Surfaces change at the circles where the side touches the ends.
   for (int i = 0; i < s.side_count; ++i)
     for (std::size_t end = 0; end < 2; ++end)
-      out.margin = std::min(out.margin, glm::length(dvec2(profile.along, profile.across) -
-                                                    side_contact(s, end, s.side_normals[static_cast<std::size_t>(i)])));
+      out.margin =
+          std::min(out.margin,
+                   glm::length(dvec2(profile.along, profile.across) -
+                               side_contact(s, end, s.side_normals[static_cast<std::size_t>(i)])));
   return out;
 }
 
@@ -179,7 +193,8 @@ dvec3 normal_of(const Frustum& s, const dvec3& x, int surface) {
   double least = HUGE_VAL;
   for (int i = 0; i < s.side_count; ++i) {
     const dvec2 n = s.side_normals[static_cast<std::size_t>(i)];
-    const double away = std::abs(glm::dot(n, dvec2(profile.along, profile.across) - side_contact(s, 0, n)));
+    const double away =
+        std::abs(glm::dot(n, dvec2(profile.along, profile.across) - side_contact(s, 0, n)));
     if (away < least) {
       least = away;
       nearest = n;
@@ -203,7 +218,9 @@ bool has_inside(const Frustum& s) { return !s.ends[0].open && !s.ends[1].open; }
 std::size_t which_kind(const Frustum& s) { return s.ends[0].radius == s.ends[1].radius ? 0 : 1; }
 int surfaces_of(const Frustum&) { return 3; }
 
-Ball ball_of(const Frustum& s) { return {0.5 * (s.p0 + s.p1), 0.5 * s.length + std::max(s.ends[0].radius, s.ends[1].radius)}; }
+Ball ball_of(const Frustum& s) {
+  return {0.5 * (s.p0 + s.p1), 0.5 * s.length + std::max(s.ends[0].radius, s.ends[1].radius)};
+}
 
 Primitive carrier_from(const Frustum& s) {
   Frustum closed = s;
@@ -235,12 +252,15 @@ dvec2 uv_of(const Frustum& s, const dvec3& x, int surface) {
   // spheres run from pole to pole.
   if (s.side_count != 1) return {at.u, share(angle_from_pole(w), pi)};
   const double rim = angle_from_pole(s.side_normals[0]);
-  return {at.u, end == 0 ? share(angle_from_pole(w), rim) : share(angle_from_pole(w) - rim, pi - rim)};
+  return {at.u,
+          end == 0 ? share(angle_from_pole(w), rim) : share(angle_from_pole(w) - rim, pi - rim)};
 }
 
 namespace {
 
-Frustum::End end_of(double radius, Cap cap) { return {radius, cap == Cap::round, cap == Cap::open}; }
+Frustum::End end_of(double radius, Cap cap) {
+  return {radius, cap == Cap::round, cap == Cap::open};
+}
 
 }  // namespace
 

@@ -30,12 +30,17 @@ double value_of(const Triangle& t, const dvec3& x) {
 
 Ball ball_of(const Triangle& t) {
   const dvec3 center = (t.v0 + t.v1 + t.v2) / 3.0;
-  return {center, std::max({glm::length(t.v0 - center), glm::length(t.v1 - center), glm::length(t.v2 - center)})};
+  return {center, std::max({glm::length(t.v0 - center), glm::length(t.v1 - center),
+                            glm::length(t.v2 - center)})};
 }
 
-dvec3 sheet_normal(const Triangle& t, const dvec3&) { return glm::normalize(glm::cross(t.v1 - t.v0, t.v2 - t.v0)); }
+dvec3 sheet_normal(const Triangle& t, const dvec3&) {
+  return glm::normalize(glm::cross(t.v1 - t.v0, t.v2 - t.v0));
+}
 
-std::vector<Curve> boundary_of(const Triangle& t) { return {segment(t.v0, t.v1), segment(t.v1, t.v2), segment(t.v2, t.v0)}; }
+std::vector<Curve> boundary_of(const Triangle& t) {
+  return {segment(t.v0, t.v1), segment(t.v1, t.v2), segment(t.v2, t.v0)};
+}
 
 dvec2 uv_of(const Triangle& t, const dvec3& x, int) {
   const dvec3 n = glm::cross(t.v1 - t.v0, t.v2 - t.v0);
@@ -44,14 +49,16 @@ dvec2 uv_of(const Triangle& t, const dvec3& x, int) {
   const auto part = [&](const dvec3& a, const dvec3& b) {  // the triangle a b x, of the whole
     return std::max(0.0, glm::dot(glm::cross(b - a, x - a), n) / twice_area);
   };
-  const double b0 = part(t.v1, t.v2), b1 = part(t.v2, t.v0), b2 = part(t.v0, t.v1), sum = b0 + b1 + b2;
+  const double b0 = part(t.v1, t.v2), b1 = part(t.v2, t.v0), b2 = part(t.v0, t.v1),
+               sum = b0 + b1 + b2;
   return {(b1 + b2) / sum, b2 / sum};  // (0 0) (1 0) (1 1)
 }
 
 std::vector<Primitive> references_of(const TriangleMeshShape& mesh) {
   std::vector<Primitive> out;
   for (const auto& t : mesh.triangles)
-    out.push_back(Triangle{dvec3(mesh.positions[t[0]]), dvec3(mesh.positions[t[1]]), dvec3(mesh.positions[t[2]])});
+    out.push_back(Triangle{dvec3(mesh.positions[t[0]]), dvec3(mesh.positions[t[1]]),
+                           dvec3(mesh.positions[t[2]])});
   return out;
 }
 

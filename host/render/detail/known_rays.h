@@ -17,8 +17,12 @@
 namespace caplet {
 
 struct KnownCrossing {
-  enum class Side { entering, leaving, either };  // either: of sheets it depends on what their normal is
-  double t = 0;                                   // in lengths of the ray's direction
+  enum class Side {
+    entering,
+    leaving,
+    either
+  };             // either: of sheets it depends on what their normal is
+  double t = 0;  // in lengths of the ray's direction
   Side side = Side::either;
 };
 

@@ -17,8 +17,10 @@ namespace caplet {
 struct LaunchPolicy {
   std::size_t batch_paths;  // under way at a time
   std::size_t local_size;   // of kernels that take one item a work-item
-  bool counts_on_device;    // rounds are launched for as many paths as there may be, and several of them before the host asks
-  bool by_sample;           // path = sample * pixels + pixel, so that neighbours in a launch are neighbours in memory
+  bool counts_on_device;    // rounds are launched for as many paths as there may be, and several of
+                            // them before the host asks
+  bool by_sample;  // path = sample * pixels + pixel, so that neighbours in a launch are neighbours
+                   // in memory
   bool layers_apart;        // a work-item a layer of a pixel, not a pixel, adds samples to the film
   std::uint32_t sort_fan;   // sort bins that a work-item adds up
   std::size_t first_chunk;  // work-items of a launch in the beginning; 0: any number
@@ -34,8 +36,8 @@ inline constexpr std::size_t least_batch_paths = std::size_t{1} << 12;
 /// Returns `wanted` paths, or half of them as many times as needed for their state to fit: `bytes`
 /// a path in all and `largest_bytes` in one buffer, with `left` bytes left in all and `most` in one
 /// buffer. It is not below least_batch_paths (or `wanted`).
-std::size_t fitting_batch(std::size_t wanted, std::uint64_t bytes, std::uint64_t largest_bytes, std::uint64_t left,
-                          std::uint64_t most);
+std::size_t fitting_batch(std::size_t wanted, std::uint64_t bytes, std::uint64_t largest_bytes,
+                          std::uint64_t left, std::uint64_t most);
 
 /// Display drivers end kernels that run for seconds. The work-items of one launch are doubled after
 /// rounds which show that these would take at most least_chunk_seconds, and halved after rounds

@@ -39,7 +39,8 @@ double part_paths(double open, double speed, double all_speed);
 /// Cuts some `paths` paths off the front of `from`, in samples of the whole window or in rows of
 /// its first sample, and returns them; `rest`: what is left. `most_samples`: of a pixel, in the
 /// returned part.
-FilmPart cut_part(const FilmPart& from, double paths, std::uint32_t most_samples, std::vector<FilmPart>& rest);
+FilmPart cut_part(const FilmPart& from, double paths, std::uint32_t most_samples,
+                  std::vector<FilmPart>& rest);
 
 class WorkQueue {
  public:
@@ -53,8 +54,8 @@ class WorkQueue {
 
   /// Distributes samples [begin, begin + count) of every pixel of `window`, after the parts that
   /// must be done `again`.
-  WorkQueue(const Window& window, std::uint32_t begin, std::uint32_t count, std::vector<FilmPart> again,
-         std::vector<Worker> workers);
+  WorkQueue(const Window& window, std::uint32_t begin, std::uint32_t count,
+            std::vector<FilmPart> again, std::vector<Worker> workers);
 
   /// Returns the next part for a worker, which has none under way. Returns nothing if there is none
   /// for it now; there may be one when others are lost.

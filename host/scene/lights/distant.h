@@ -19,7 +19,8 @@ struct DistantLight {
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {
     visit.emission({"L", "irradiance at right angles", 0}, self.irradiance);
-    visit.direction({"from", "a point"}, {"to", "a point towards which light goes from there"}, self.direction);
+    visit.direction({"from", "a point"}, {"to", "a point towards which light goes from there"},
+                    self.direction);
   }
   double per_unit() const { return 1; }
   double power(double radius) const { return std::numbers::pi * radius * radius; }

@@ -15,7 +15,7 @@
 namespace caplet {
 
 struct GoniometricLight {
-  Spectrum intensity = ConstantSpectrum{1};       // multiplied by the image's value in each direction
+  Spectrum intensity = ConstantSpectrum{1};  // multiplied by the image's value in each direction
   std::shared_ptr<const EnvironmentImage> image;  // the mean of the channels is used
   glm::dvec3 position{0};                         // world
   glm::dmat3 world_from_light{1};                 // rotation, possibly mirroring

@@ -17,8 +17,8 @@
 
 namespace caplet {
 
-/// The intensity distribution of a luminaire (ANSI/IES LM-63, type C). Angles are in radians and ascend; intensity is linear
-/// between them and zero beyond the polar angles.
+/// The intensity distribution of a luminaire (ANSI/IES LM-63, type C). Angles are in radians and
+/// ascend; intensity is linear between them and zero beyond the polar angles.
 struct IesProfile {
   std::vector<double> polar;     // measured from the light's -z; at least 2
   std::vector<double> azimuths;  // from +x towards +y: 0 to 2 pi, or a single one for all
@@ -38,7 +38,8 @@ struct IesProfile {
                      high = candela[j * polar.size() + i + 1];
         // Integrates (low + slope (t - a)) sin t by parts.
         const double slope = (high - low) / (b - a);
-        sum += around * (low * std::cos(a) - high * std::cos(b) + slope * (std::sin(b) - std::sin(a)));
+        sum +=
+            around * (low * std::cos(a) - high * std::cos(b) + slope * (std::sin(b) - std::sin(a)));
       }
     }
     return sum;
@@ -59,7 +60,9 @@ struct IesLight {
     visit.profile({"filename", "the luminaire's IES profile"}, self.profile);
   }
   double per_unit() const { return profile->flux(); }
-  LightReach reach() const { return {position, {0, 0, 1}, std::numbers::pi, 0, 4 * std::numbers::pi}; }
+  LightReach reach() const {
+    return {position, {0, 0, 1}, std::numbers::pi, 0, 4 * std::numbers::pi};
+  }
   template <class Put>
   void data(Put&& put) const {
     put("position", position);

@@ -15,8 +15,8 @@
 
 namespace caplet {
 
-/// The corners of a rectangle in the world, in order around it. It is seen along the direction (p3 - p0) x (p1 - p0), and light
-/// passes through it the opposite way.
+/// The corners of a rectangle in the world, in order around it. It is seen along the direction (p3
+/// - p0) x (p1 - p0), and light passes through it the opposite way.
 using LightPortal = std::array<glm::dvec3, 4>;
 
 /// A light at infinity.
@@ -27,9 +27,11 @@ struct InfiniteLight {
   std::optional<LightPortal> portal{};  // the light is seen only through it
 
   static constexpr Field radiance_field = {"L", "radiance, the same in all directions", 0};
-  static constexpr Field image_field = {"filename", "image over all directions: square equal-area, or 2:1 latitude-longitude"};
+  static constexpr Field image_field = {
+      "filename", "image over all directions: square equal-area, or 2:1 latitude-longitude"};
   static constexpr Field preset_field = {"preset", "a sky of Caplet's own by its name"};
-  static constexpr Field portal_field = {"portal", "corners of a rectangle through which alone it is seen"};
+  static constexpr Field portal_field = {"portal",
+                                         "corners of a rectangle through which alone it is seen"};
 
   static constexpr LightUnit unit = LightUnit::illuminance;
   template <class Self, class Visit>

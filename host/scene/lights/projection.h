@@ -26,9 +26,11 @@ struct ProjectionLight {
   static void fields(Self& self, Visit&& visit) {
     visit.place(self.position, self.world_from_light);
     visit.image({"filename", "the picture that is projected"}, self.image);
-    visit.number({"fov", "field of view of the picture's shorter side", 0.001, 179.999, "degrees"}, self.fov);
+    visit.number({"fov", "field of view of the picture's shorter side", 0.001, 179.999, "degrees"},
+                 self.fov);
   }
-  /// Returns the cubed cosine of the point at distance 1 (Pharr, Jakob and Humphreys 2023, section 12.2.2).
+  /// Returns the cubed cosine of the point at distance 1 (Pharr, Jakob and Humphreys 2023,
+  /// section 12.2.2).
   double solid_angle(double u, double v) const {
     const double x = (2 * u - 1) * half_width(), y = (2 * v - 1) * half_height();
     return 4 * half_width() * half_height() / std::pow(1 + x * x + y * y, 1.5);
@@ -41,7 +43,8 @@ struct ProjectionLight {
   template <class Put>
   void data(Put&& put) const {
     put("position", position);
-    put("light_from_world", glm::dmat3(world_from_light[0], -world_from_light[1], world_from_light[2]));
+    put("light_from_world",
+        glm::dmat3(world_from_light[0], -world_from_light[1], world_from_light[2]));
     put("across", 0.5 / half_width());
     put("down", 0.5 / half_height());
     put("picture", LightPicture{image, false});

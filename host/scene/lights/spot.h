@@ -16,12 +16,14 @@ namespace caplet {
 struct SpotLight {
   Spectrum intensity = ConstantSpectrum{1};
   glm::dvec3 position{0};
-  glm::dvec3 direction{0, 0, 1};                    // unit, world, along the axis
-  double total_angle = 0.5235987755982988;          // half angle of the cone
-  double falloff_start_angle = 0.4363323129985824;  // where the smooth falloff starts (smoothstep in cos, as pbrt-v4)
+  glm::dvec3 direction{0, 0, 1};            // unit, world, along the axis
+  double total_angle = 0.5235987755982988;  // half angle of the cone
+  double falloff_start_angle =
+      0.4363323129985824;  // where the smooth falloff starts (smoothstep in cos, as pbrt-v4)
 
   static constexpr Field cone_field = {"coneangle", "half angle of the cone", 0, 180, "degrees"};
-  static constexpr Field delta_field = {"conedeltaangle", "width of the smooth edge within the cone", 0, 180, "degrees"};
+  static constexpr Field delta_field = {
+      "conedeltaangle", "width of the smooth edge within the cone", 0, 180, "degrees"};
 
   static constexpr LightUnit unit = LightUnit::power;
   template <class Self, class Visit>

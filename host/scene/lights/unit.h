@@ -9,8 +9,8 @@ namespace caplet {
 /// The photometric quantity that a file may give in place of the spectrum's magnitude.
 enum class LightUnit { power, illuminance };
 
-/// Bounds the directions of a light at one point: all light leaves within `reach` (radians) of a direction that is within `cone`
-/// of the axis. The choice among many lights uses it.
+/// Bounds the directions of a light at one point: all light leaves within `reach` (radians) of a
+/// direction that is within `cone` of the axis. The choice among many lights uses it.
 struct LightReach {
   glm::dvec3 position{0};    // world
   glm::dvec3 axis{0, 0, 1};  // unit

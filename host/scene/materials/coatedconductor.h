@@ -10,8 +10,8 @@
 
 namespace caplet {
 
-/// A metal under a dielectric interface. Roughness and reflectance have the meaning that they have in ConductorMaterial; the
-/// metal's index is relative to the interface's.
+/// A metal under a dielectric interface. Roughness and reflectance have the meaning that they have
+/// in ConductorMaterial; the metal's index is relative to the interface's.
 struct CoatedConductorMaterial {
   Spectrum interface_eta = ConstantSpectrum{1.5};
   double interface_alpha_u = 0, interface_alpha_v = 0;

@@ -8,7 +8,8 @@
 
 namespace caplet {
 
-/// A diffuse base under a dielectric interface. Roughness has the meaning that it has in ConductorMaterial.
+/// A diffuse base under a dielectric interface. Roughness has the meaning that it has in
+/// ConductorMaterial.
 struct CoatedDiffuseMaterial {
   Spectrum reflectance = ConstantSpectrum{0.5};
   Spectrum eta = ConstantSpectrum{1.5};

@@ -9,8 +9,9 @@
 
 namespace caplet {
 
-/// alpha_u, alpha_v: GGX roughness along dp/du and dp/dv after any remapping; both 0: perfectly smooth. multiscatter: compensates
-/// for the energy that single scattering loses at rough facets (Kulla and Conty 2017).
+/// alpha_u, alpha_v: GGX roughness along dp/du and dp/dv after any remapping; both 0: perfectly
+/// smooth. multiscatter: compensates for the energy that single scattering loses at rough facets
+/// (Kulla and Conty 2017).
 struct ConductorMaterial {
   Spectrum eta = copper_eta(), k = copper_k();
   std::optional<Spectrum> reflectance;  // at normal incidence, 0..1; replaces eta and k

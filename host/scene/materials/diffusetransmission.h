@@ -9,7 +9,8 @@
 
 namespace caplet {
 
-/// Lambertian on both sides of a sheet. Reflectance and transmittance are multiplied by scale and at most 1 each.
+/// Lambertian on both sides of a sheet. Reflectance and transmittance are multiplied by scale and
+/// at most 1 each.
 struct DiffuseTransmissionMaterial {
   Spectrum reflectance = ConstantSpectrum{0.25}, transmittance = ConstantSpectrum{0.25};
   double scale = 1;
@@ -17,7 +18,8 @@ struct DiffuseTransmissionMaterial {
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {
     visit.albedo({"reflectance", "share of the light that is reflected", 0, 1}, self.reflectance);
-    visit.albedo({"transmittance", "share of the light that is transmitted", 0, 1}, self.transmittance);
+    visit.albedo({"transmittance", "share of the light that is transmitted", 0, 1},
+                 self.transmittance);
     visit.number({"scale", "factor of both", 0}, self.scale);
   }
 };

@@ -9,8 +9,8 @@
 
 namespace caplet {
 
-/// Chooses one of two materials at random: the second with the probability `amount`. Both are indices into Scene::materials. A
-/// mix may contain other mixes but not itself.
+/// Chooses one of two materials at random: the second with the probability `amount`. Both are
+/// indices into Scene::materials. A mix may contain other mixes but not itself.
 struct MixMaterial {
   std::array<std::uint32_t, 2> materials = {};
   double amount = 0.5;

@@ -25,7 +25,8 @@ using GridCounts = std::array<int, 3>;
 inline constexpr std::array grid_count_names = {"nx", "ny", "nz"};
 
 inline std::size_t cells_of(const GridCounts& counts) {
-  return static_cast<std::size_t>(counts[0]) * static_cast<std::size_t>(counts[1]) * static_cast<std::size_t>(counts[2]);
+  return static_cast<std::size_t>(counts[0]) * static_cast<std::size_t>(counts[1]) *
+         static_cast<std::size_t>(counts[2]);
 }
 /// The most cells of a grid: 32-bit indices reach four floats of each.
 inline constexpr std::size_t most_grid_cells = std::size_t{1} << 28;

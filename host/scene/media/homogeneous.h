@@ -19,7 +19,8 @@ struct HomogeneousMedium {
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {
     visit.scattering(self.scattering, milk);
-    visit.emission({"Le", "radiance that it emits per absorption", 0}, self.radiance, self.radiance_scale);
+    visit.emission({"Le", "radiance that it emits per absorption", 0}, self.radiance,
+                   self.radiance_scale);
   }
   /// The default, as in pbrt-v4, is whole milk in millimetres.
   static ScatteringProperties milk() { return *named_scattering("Wholemilk"); }

@@ -10,7 +10,8 @@
 
 namespace caplet {
 
-/// A medium with a sparse density grid. Where a temperature grid exists, it emits as UniformGridMedium does.
+/// A medium with a sparse density grid. Where a temperature grid exists, it emits as
+/// UniformGridMedium does.
 struct NanovdbMedium {
   ScatteringProperties scattering;
   SparseGridPointer density, temperature;
@@ -23,7 +24,8 @@ struct NanovdbMedium {
     visit.volume(self.density, self.temperature, self.world_from_medium);
     visit.number(radiance_scale_field, self.radiance_scale);
     visit.number({"temperaturescale", "factor of the temperatures"}, self.temperature_scale);
-    visit.number({"temperatureoffset", "kelvin that temperatures are lowered by"}, self.temperature_offset);
+    visit.number({"temperatureoffset", "kelvin that temperatures are lowered by"},
+                 self.temperature_offset);
   }
 };
 

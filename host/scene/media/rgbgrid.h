@@ -10,8 +10,8 @@
 
 namespace caplet {
 
-/// A medium with coloured coefficients in each cell; coefficients that are not given are 1. `scale` multiplies both coefficients,
-/// `radiance_scale` the emission per absorption.
+/// A medium with coloured coefficients in each cell; coefficients that are not given are 1. `scale`
+/// multiplies both coefficients, `radiance_scale` the emission per absorption.
 struct RgbGridMedium {
   double scale = 1, g = 0;
   MediumBounds bounds;
@@ -27,7 +27,8 @@ struct RgbGridMedium {
     visit.counts(self.counts);
     visit.grid({"sigma_a", "absorption of the cells, x fastest", 0}, self.sigma_a, self.counts);
     visit.grid({"sigma_s", "scattering of the cells, x fastest", 0}, self.sigma_s, self.counts);
-    visit.grid({"Le", "radiance that the cells emit per absorption", 0}, self.radiance, self.counts);
+    visit.grid({"Le", "radiance that the cells emit per absorption", 0}, self.radiance,
+               self.counts);
     visit.number(radiance_scale_field, self.radiance_scale);
     visit.any_of(self.sigma_a, self.sigma_s, self.radiance);
   }

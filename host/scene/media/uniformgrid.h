@@ -12,8 +12,9 @@
 
 namespace caplet {
 
-/// A medium with a density per cell; the coefficients apply at density 1. It emits `radiance` per absorption, or a black body's
-/// at temperaturescale (temperature - temperatureoffset) kelvin, times `radiance_scale`.
+/// A medium with a density per cell; the coefficients apply at density 1. It emits `radiance` per
+/// absorption, or a black body's at temperaturescale (temperature - temperatureoffset) kelvin,
+/// times `radiance_scale`.
 struct UniformGridMedium {
   ScatteringProperties scattering;
   MediumBounds bounds;
@@ -27,12 +28,16 @@ struct UniformGridMedium {
     visit.scattering(self.scattering, unit_scattering);
     visit.bounds(self.bounds);
     visit.counts(self.counts);
-    visit.grid({"density", "densities of the cells, x fastest", 0}, self.density, self.counts, true);
+    visit.grid({"density", "densities of the cells, x fastest", 0}, self.density, self.counts,
+               true);
     visit.emission({"Le", "radiance that it emits per absorption", 0}, self.radiance);
-    visit.grid({"Lescale", "factor of what each cell emits", 0}, self.radiance_scale, self.counts, false);
-    visit.grid({"temperature", "temperatures of the cells", 0, no_limit, "kelvin"}, self.temperature, self.counts, false);
+    visit.grid({"Lescale", "factor of what each cell emits", 0}, self.radiance_scale, self.counts,
+               false);
+    visit.grid({"temperature", "temperatures of the cells", 0, no_limit, "kelvin"},
+               self.temperature, self.counts, false);
     visit.number({"temperaturescale", "factor of the temperatures"}, self.temperature_scale);
-    visit.number({"temperatureoffset", "kelvin that temperatures are lowered by"}, self.temperature_offset);
+    visit.number({"temperatureoffset", "kelvin that temperatures are lowered by"},
+                 self.temperature_offset);
     visit.heat(self.radiance, self.temperature);
   }
 };

@@ -6,7 +6,8 @@
 
 namespace caplet {
 
-/// An axis-aligned box between two corners. Surfaces: 0 and 1 at the least and greatest x, 2 and 3 y, 4 and 5 z.
+/// An axis-aligned box between two corners. Surfaces: 0 and 1 at the least and greatest x, 2 and 3
+/// y, 4 and 5 z.
 struct BoxShape {
   glm::dvec3 p0{0}, p1{1};
 };
@@ -18,22 +19,26 @@ inline bool closed(const BoxShape&) { return true; }
 inline void fields(BoxShape& box, Fields& each) { each.corners("p0", "p1", box.p0, box.p1); }
 
 inline void check(const BoxShape& box, ShapeCheck& report) {
-  if (!is_finite(box.p0) || !is_finite(box.p1)) return report.error("the box's corners are not finite");
+  if (!is_finite(box.p0) || !is_finite(box.p1))
+    return report.error("the box's corners are not finite");
   for (int k = 0; k < 3; ++k)
     if (static_cast<float>(box.p0[k]) == static_cast<float>(box.p1[k]))
-      return report.error("p1", std::string("has the same ") + "xyz"[k] + " as \"p0\" (as 32-bit floats): the box is flat");
+      return report.error("p1", std::string("has the same ") + "xyz"[k] +
+                                    " as \"p0\" (as 32-bit floats): the box is flat");
 }
 
 inline Bounds bounds_under(const BoxShape& box, const glm::dmat4& m) {
   Bounds bounds;
   for (int i = 0; i < 8; ++i)
-    bounds.extend(transformed(m, {i & 1 ? box.p1.x : box.p0.x, i & 2 ? box.p1.y : box.p0.y, i & 4 ? box.p1.z : box.p0.z}));
+    bounds.extend(transformed(m, {i & 1 ? box.p1.x : box.p0.x, i & 2 ? box.p1.y : box.p0.y,
+                                  i & 4 ? box.p1.z : box.p0.z}));
   return bounds;
 }
 
 inline double outside(const BoxShape& box, int surface, const glm::dvec3& p) {
   const int k = surface / 2;
-  return surface % 2 == 0 ? std::min(box.p0[k], box.p1[k]) - p[k] : p[k] - std::max(box.p0[k], box.p1[k]);
+  return surface % 2 == 0 ? std::min(box.p0[k], box.p1[k]) - p[k]
+                          : p[k] - std::max(box.p0[k], box.p1[k]);
 }
 
 inline glm::dvec3 normal_on(const BoxShape&, int surface, const glm::dvec3&) {
@@ -42,10 +47,14 @@ inline glm::dvec3 normal_on(const BoxShape&, int surface, const glm::dvec3&) {
   return out;
 }
 
-/// v runs along z (on the z faces along y), u to the right of it as seen from outside; each runs from 0 to 1.
+/// v runs along z (on the z faces along y), u to the right of it as seen from outside; each runs
+/// from 0 to 1.
 inline glm::dvec2 uv_on(const BoxShape& box, int surface, const glm::dvec3& p) {
-  const glm::dvec3 low = glm::min(box.p0, box.p1), size = glm::max(box.p0, box.p1) - low, w = p - low;
-  const auto share = [](double x, double whole) { return whole != 0 ? std::clamp(x / whole, 0.0, 1.0) : 0.0; };
+  const glm::dvec3 low = glm::min(box.p0, box.p1), size = glm::max(box.p0, box.p1) - low,
+                   w = p - low;
+  const auto share = [](double x, double whole) {
+    return whole != 0 ? std::clamp(x / whole, 0.0, 1.0) : 0.0;
+  };
   const int across = surface / 2, up = across == 2 ? 1 : 2, along = 3 - across - up;
   glm::dvec3 outward{0}, upward{0};
   outward[across] = surface % 2 == 1 ? 1 : -1;

@@ -9,11 +9,17 @@
 
 namespace caplet {
 
-/// A boolean combination of closed solids. Difference subtracts all others from the first. The surfaces of the operands are
-/// numbered one after the other; of a subtracted solid the inside is visible.
+/// A boolean combination of closed solids. Difference subtracts all others from the first. The
+/// surfaces of the operands are numbered one after the other; of a subtracted solid the inside is
+/// visible.
 struct CsgShape {
-  enum class Operation { set_union, set_intersection, set_difference } operation = Operation::set_union;
-  std::vector<std::shared_ptr<const Shape>> operands;  // two or more; their world_from_object is object_from_operand
+  enum class Operation {
+    set_union,
+    set_intersection,
+    set_difference
+  } operation = Operation::set_union;
+  std::vector<std::shared_ptr<const Shape>>
+      operands;  // two or more; their world_from_object is object_from_operand
 };
 inline constexpr std::size_t max_csg_operands = 32;  // solids in one csg shape, nested ones counted
 
@@ -23,7 +29,8 @@ std::size_t solids_of(const CsgShape& csg);
 inline std::size_t count_of(const CsgShape&) { return 1; }
 std::size_t surfaces_of(const CsgShape& csg);
 inline bool closed(const CsgShape&) { return true; }
-/// Returns bounds tight to about 1/64 of the size, at moderate cost (csg_bounds.cpp); empty when the solid is found to be empty.
+/// Returns bounds tight to about 1/64 of the size, at moderate cost (csg_bounds.cpp); empty when
+/// the solid is found to be empty.
 Bounds bounds_under(const CsgShape& csg, const glm::dmat4& m);
 void check(const CsgShape& csg, ShapeCheck& report);
 /// This is never called: nested csg is resolved into its solids.

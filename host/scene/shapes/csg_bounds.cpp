@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Branch and bound: functions of each solid that grow no faster than distance classify boxes as outside, inside or unknown.
+// Branch and bound: functions of each solid that grow no faster than distance classify boxes as
+// outside, inside or unknown.
 
 #include <algorithm>
 #include <cmath>
@@ -35,10 +36,12 @@ struct Box {
 
 class Search {
  public:
-  Search(const CsgShape& csg, const glm::dmat4& world_from_csg) : csg_(csg) { add(csg, world_from_csg, false); }
+  Search(const CsgShape& csg, const glm::dmat4& world_from_csg) : csg_(csg) {
+    add(csg, world_from_csg, false);
+  }
 
-  /// Returns an upper bound of the solid's extent along `axis` in the direction of `sign`, searched in parts of `share` of the
-  /// box; -infinity when the solid is empty.
+  /// Returns an upper bound of the solid's extent along `axis` in the direction of `sign`, searched
+  /// in parts of `share` of the box; -infinity when the solid is empty.
   double reach(const Box& whole, int axis, double sign, double share) const {
     const auto extreme = [&](const Box& box) { return sign > 0 ? box.max[axis] : -box.min[axis]; };
     const auto nearer = [&](const Box& a, const Box& b) { return extreme(a) < extreme(b); };
@@ -49,7 +52,8 @@ class Search {
       Box box = boxes.top();
       const Side side = side_of(box);
       const dvec3 size = box.max - box.min;
-      if (side == Side::inside || (side == Side::unknown && size.x <= enough.x && size.y <= enough.y && size.z <= enough.z))
+      if (side == Side::inside ||
+          (side == Side::unknown && size.x <= enough.x && size.y <= enough.y && size.z <= enough.z))
         return extreme(box);
       boxes.pop();
       if (side == Side::outside) continue;
@@ -71,7 +75,8 @@ class Search {
     for (std::size_t i = 0; i < csg.operands.size(); ++i) {
       const Shape& operand = *csg.operands[i];
       const glm::dmat4 world_from_operand = world_from_csg * operand.world_from_object;
-      const bool turned = subtracted != (csg.operation == CsgShape::Operation::set_difference && i > 0);
+      const bool turned =
+          subtracted != (csg.operation == CsgShape::Operation::set_difference && i > 0);
       if (const auto* nested = std::get_if<CsgShape>(&operand.geometry))
         add(*nested, world_from_operand, turned);
       else
@@ -91,12 +96,15 @@ class Search {
     return side_of(csg_, box, bit);
   }
 
-  /// Classifies the box against the solid. `bit` stands for its first operand, and afterwards for the one after its last.
+  /// Classifies the box against the solid. `bit` stands for its first operand, and afterwards for
+  /// the one after its last.
   static Side side_of(const CsgShape& csg, const Box& box, std::uint32_t& bit) {
     using enum CsgShape::Operation;
     Side result = Side::unknown;
     for (std::size_t i = 0; i < csg.operands.size(); ++i) {
-      Side side = (box.inside & bit) ? Side::inside : (box.outside & bit) ? Side::outside : Side::unknown;
+      Side side = (box.inside & bit)    ? Side::inside
+                  : (box.outside & bit) ? Side::outside
+                                        : Side::unknown;
       if (const auto* nested = std::get_if<CsgShape>(&csg.operands[i]->geometry))
         side = side_of(*nested, box, bit);
       else
@@ -105,7 +113,8 @@ class Search {
         result = side;
         continue;
       }
-      if (csg.operation == set_difference && side != Side::unknown) side = side == Side::inside ? Side::outside : Side::inside;
+      if (csg.operation == set_difference && side != Side::unknown)
+        side = side == Side::inside ? Side::outside : Side::inside;
       const Side decides = csg.operation == set_union ? Side::inside : Side::outside;
       if (result == decides || side == decides)
         result = decides;
@@ -117,7 +126,8 @@ class Search {
 
   static Side side_of(const Solid& solid, const Box& box) {
     const auto beyond = [&](const dvec3& p) {
-      return std::visit([&](const auto& own) { return caplet::beyond(own, p); }, solid.shape->geometry);
+      return std::visit([&](const auto& own) { return caplet::beyond(own, p); },
+                        solid.shape->geometry);
     };
     const glm::dmat3 a(solid.object_from_world);
     const dvec3 half = 0.5 * (box.max - box.min);
@@ -129,11 +139,12 @@ class Search {
     const Beyond at_center = beyond(center);
     if (at_center.least > reach) return Side::outside;
     if (at_center.most > 0) return Side::unknown;
-    // A convex solid that contains the corners contains the box. Only subtracted solids need to be known to contain
-    // it.
+    // A convex solid that contains the corners contains the box. Only subtracted solids need to be
+    // known to contain it.
     if (!solid.subtracted) return Side::unknown;
     for (const dvec3& corner : corners)
-      if (beyond(center + corner).most > 0 || beyond(center - corner).most > 0) return Side::unknown;
+      if (beyond(center + corner).most > 0 || beyond(center - corner).most > 0)
+        return Side::unknown;
     return Side::inside;
   }
 
@@ -141,15 +152,17 @@ class Search {
   std::vector<Solid> solids_;
 };
 
-/// Tightens `bounds`, which contain the csg solid under `world_from_csg`. Each side moves inward to the first part, 1/32 of the
-/// box long in each direction, that is not shown to be outside, and then again with 1/128 of the new box, or until a fixed effort
-/// is spent (2048 parts per side). Where the surfaces meet the side at a slant, a few parts remain between. The bounds never cut
+/// Tightens `bounds`, which contain the csg solid under `world_from_csg`. Each side moves inward to
+/// the first part, 1/32 of the box long in each direction, that is not shown to be outside, and
+/// then again with 1/128 of the new box, or until a fixed effort is spent (2048 parts per side).
+/// Where the surfaces meet the side at a slant, a few parts remain between. The bounds never cut
 /// the solid, and are empty when no part of the box can contain any of it.
 Bounds tightened(const CsgShape& csg, const glm::dmat4& world_from_csg, const Bounds& bounds) {
   const dvec3 size = bounds.max - bounds.min;
   const double least = std::min({size.x, size.y, size.z});
   if (least < 0) return {};
-  if (csg.operation == CsgShape::Operation::set_union) return bounds;  // a union of tight bounds is tight
+  if (csg.operation == CsgShape::Operation::set_union)
+    return bounds;  // a union of tight bounds is tight
   std::size_t solids = 0;
   for (const auto& operand : csg.operands) solids += solid_count(*operand);
   if (!(least > 0) || !std::isfinite(glm::length(size)) || solids > max_csg_operands) return bounds;
@@ -157,7 +170,8 @@ Bounds tightened(const CsgShape& csg, const glm::dmat4& world_from_csg, const Bo
   Box box{bounds.min, bounds.max};
   for (const double share : {1.0 / 32, 1.0 / 128})
     for (int axis = 0; axis < 3; ++axis) {
-      const double high = search.reach(box, axis, 1, share), low = -search.reach(box, axis, -1, share);
+      const double high = search.reach(box, axis, 1, share),
+                   low = -search.reach(box, axis, -1, share);
       if (!(low <= high)) return {};
       box.min[axis] = low;
       box.max[axis] = high;

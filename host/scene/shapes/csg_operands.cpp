@@ -26,13 +26,16 @@ void check(const CsgShape& csg, ShapeCheck& report) {
   for (const auto& operand : csg.operands) {
     const auto* capsules = std::get_if<CapsulesShape>(&operand->geometry);
     if (!is_closed(*operand)) return report.error("the csg has an operand that is an open surface");
-    if (capsules && capsules->p0.size() != 1) return report.error("the csg has an operand of more or fewer than one capsule");
+    if (capsules && capsules->p0.size() != 1)
+      return report.error("the csg has an operand of more or fewer than one capsule");
     if (operand->emission) return report.error("the csg has an operand that is an area light");
   }
   std::size_t solids = 0;
   for (const auto& operand : csg.operands) {
     solids += solid_count(*operand);
-    if (solids > max_csg_operands) return report.error("the csg holds more than " + std::to_string(max_csg_operands) + " solids");
+    if (solids > max_csg_operands)
+      return report.error("the csg holds more than " + std::to_string(max_csg_operands) +
+                          " solids");
   }
   for (const auto& operand : csg.operands) report.operand(*operand);
 }

@@ -6,7 +6,8 @@
 
 namespace caplet {
 
-/// A disk of `radius` in the plane z = height, normal +z. As in pbrt it may have a hole of `inner_radius` and end at `phi_max`.
+/// A disk of `radius` in the plane z = height, normal +z. As in pbrt it may have a hole of
+/// `inner_radius` and end at `phi_max`.
 struct DiskShape {
   double height = 0;
   double radius = 1;

@@ -14,9 +14,10 @@ struct End {
   bool round;
 };
 
-/// Bounds the distance from a hull to a point at height y along the axis and rho off it; the ends are at heights 0 and l. The
-/// hull is the union over s of sums of a disk and a ball whose radii are linear in s. The distance from these is convex in s, and
-/// at any s it is no less than the distance from the hull.
+/// Bounds the distance from a hull to a point at height y along the axis and rho off it; the ends
+/// are at heights 0 and l. The hull is the union over s of sums of a disk and a ball whose radii
+/// are linear in s. The distance from these is convex in s, and at any s it is no less than the
+/// distance from the hull.
 Beyond beyond_hull(double y, double rho, double l, const End& a, const End& b) {
   const auto at = [&](double s) {
     const double disk = (a.round ? 0 : (1 - s) * a.radius) + (b.round ? 0 : s * b.radius);
@@ -44,16 +45,18 @@ Beyond beyond_ends(const dvec3& p, const dvec3& p0, const dvec3& p1, const End& 
   const double y = glm::dot(p - p0, axis);
   const double rho = glm::length(p - p0 - y * axis);
   if (!a.round && !b.round) {
-    // The solid is bounded by two planes and the side; its slope c keeps the function from growing faster than distance.
+    // The solid is bounded by two planes and the side; its slope c keeps the function from growing
+    // faster than distance.
     const double taper = (a.radius - b.radius) / l, c = 1 / std::sqrt(1 + taper * taper);
     return Beyond::exactly(std::max({-y, y - l, c * (rho - a.radius + taper * y)}));
   }
   return beyond_hull(y, rho, l, a, b);
 }
 
-/// Returns the bounds of balls or of disks with normal n across the axis, whose image has half extents radius |row - (row.n) n|.
-Bounds bounds_of_ends(const dvec3& p0, const dvec3& p1, double radius0, double radius1, const std::array<Cap, 2>& caps,
-                      const glm::dmat4& m) {
+/// Returns the bounds of balls or of disks with normal n across the axis, whose image has half
+/// extents radius |row - (row.n) n|.
+Bounds bounds_of_ends(const dvec3& p0, const dvec3& p1, double radius0, double radius1,
+                      const std::array<Cap, 2>& caps, const glm::dmat4& m) {
   const glm::dmat3 a(m);
   const dvec3 n = glm::normalize(p1 - p0), ball = row_lengths(a);
   dvec3 disk;
@@ -74,7 +77,9 @@ void check_ends(const dvec3& p0, const dvec3& p1, const std::string& what, Shape
     report.error(what + " has no axis: its ends are the same point as 32-bit floats");
 }
 
-Cap drawn_cap(Draws& draws) { return draws.one_in(2) ? Cap::flat : draws.one_in(2) ? Cap::round : Cap::open; }
+Cap drawn_cap(Draws& draws) {
+  return draws.one_in(2) ? Cap::flat : draws.one_in(2) ? Cap::round : Cap::open;
+}
 
 }  // namespace
 
@@ -96,16 +101,18 @@ void check(const CapsulesShape& capsules, ShapeCheck& report) {
   const std::size_t count = capsules.p0.size();
   if (capsules.p1.size() != count || capsules.radius0.size() != count ||
       (!capsules.radius1.empty() && capsules.radius1.size() != count) ||
-      (!capsules.materials.empty() && capsules.materials.size() != count) || (!capsules.u.empty() && capsules.u.size() != count))
+      (!capsules.materials.empty() && capsules.materials.size() != count) ||
+      (!capsules.u.empty() && capsules.u.size() != count))
     return report.error("the capsules' lists differ in length");
   for (std::size_t i = 0; i < count; ++i) {
     const float r0 = capsules.radius0[i], r1 = capsules.radius1.empty() ? r0 : capsules.radius1[i];
     const auto capsule = [i] { return "capsule " + std::to_string(i); };
-    if (!is_finite(capsules.p0[i]) || !is_finite(capsules.p1[i]) || !std::isfinite(r0) || !std::isfinite(r1))
+    if (!is_finite(capsules.p0[i]) || !is_finite(capsules.p1[i]) || !std::isfinite(r0) ||
+        !std::isfinite(r1))
       return report.error(capsule() + " is not finite");
     if (r0 < 0 || r1 < 0) return report.error(capsule() + " has a negative radius");
-    if (!capsules.u.empty() &&
-        !(is_finite(capsules.u[i]) && std::abs(capsules.u[i].x) <= 1e18f && std::abs(capsules.u[i].y) <= 1e18f))
+    if (!capsules.u.empty() && !(is_finite(capsules.u[i]) && std::abs(capsules.u[i].x) <= 1e18f &&
+                                 std::abs(capsules.u[i].y) <= 1e18f))
       return report.error(capsule() + "'s u is not finite or beyond 1e18");
     if (!capsules.materials.empty() && capsules.materials[i] >= report.materials())
       return report.error(capsule() + " has a material that does not exist");
@@ -144,11 +151,13 @@ void check(const CylinderShape& c, ShapeCheck& report) {
 }
 
 Beyond beyond(const CylinderShape& c, const dvec3& p) {
-  return beyond_ends(p, c.p0, c.p1, {c.radius, c.caps[0] == Cap::round}, {c.radius, c.caps[1] == Cap::round});
+  return beyond_ends(p, c.p0, c.p1, {c.radius, c.caps[0] == Cap::round},
+                     {c.radius, c.caps[1] == Cap::round});
 }
 
 CylinderShape drawn(std::type_identity<CylinderShape>, Draws& draws) {
-  return CylinderShape{dvec3(draws.point()), dvec3(0), draws.thin(), {drawn_cap(draws), drawn_cap(draws)}};
+  return CylinderShape{
+      dvec3(draws.point()), dvec3(0), draws.thin(), {drawn_cap(draws), drawn_cap(draws)}};
 }
 
 // --- Cones ---
@@ -159,18 +168,22 @@ Bounds bounds_under(const ConeShape& c, const glm::dmat4& m) {
 
 void check(const ConeShape& c, ShapeCheck& report) {
   for (const double radius : c.radius)
-    if (!(radius >= 0 && std::isfinite(radius))) return report.error("the cone's radii must be from 0 up and finite");
+    if (!(radius >= 0 && std::isfinite(radius)))
+      return report.error("the cone's radii must be from 0 up and finite");
   report.positive(std::max(c.radius[0], c.radius[1]), "the greater of the cone's radii");
   check_ends(c.p0, c.p1, "the cone", report);
 }
 
 Beyond beyond(const ConeShape& c, const dvec3& p) {
-  return beyond_ends(p, c.p0, c.p1, {c.radius[0], c.caps[0] == Cap::round}, {c.radius[1], c.caps[1] == Cap::round});
+  return beyond_ends(p, c.p0, c.p1, {c.radius[0], c.caps[0] == Cap::round},
+                     {c.radius[1], c.caps[1] == Cap::round});
 }
 
 ConeShape drawn(std::type_identity<ConeShape>, Draws& draws) {
-  return ConeShape{
-      dvec3(draws.point()), dvec3(0), {draws.thin(), draws.one_in(3) ? 0 : draws.thin()}, {drawn_cap(draws), drawn_cap(draws)}};
+  return ConeShape{dvec3(draws.point()),
+                   dvec3(0),
+                   {draws.thin(), draws.one_in(3) ? 0 : draws.thin()},
+                   {drawn_cap(draws), drawn_cap(draws)}};
 }
 
 }  // namespace caplet

@@ -12,10 +12,11 @@
 
 namespace caplet {
 
-/// Capsules (p0, p1, one radius) and tapered capsules (two radii): the convex hull of two spheres each. All vectors have one
-/// entry per capsule. `radius1` is empty when no capsule is tapered. `materials` is empty or holds an index into Scene::materials
-/// per capsule (overriding Shape::material). `u` is empty, or holds u at p0 and at p1 of each capsule of a chain, which then has
-/// the uv of pbrt's curves (docs/shapes.md, "Chains").
+/// Capsules (p0, p1, one radius) and tapered capsules (two radii): the convex hull of two spheres
+/// each. All vectors have one entry per capsule. `radius1` is empty when no capsule is tapered.
+/// `materials` is empty or holds an index into Scene::materials per capsule (overriding
+/// Shape::material). `u` is empty, or holds u at p0 and at p1 of each capsule of a chain, which
+/// then has the uv of pbrt's curves (docs/shapes.md, "Chains").
 struct CapsulesShape {
   std::vector<glm::vec3> p0, p1;
   std::vector<float> radius0, radius1;
@@ -23,8 +24,9 @@ struct CapsulesShape {
   std::vector<glm::vec2> u = {};
 };
 
-/// The ends of a cylinder or cone. The solid is the convex hull of its two ends: flat ones are disks across the axis, round ones
-/// balls of the end's radius. Rays pass through an open end, which is otherwise flat; the shape is then no solid.
+/// The ends of a cylinder or cone. The solid is the convex hull of its two ends: flat ones are
+/// disks across the axis, round ones balls of the end's radius. Rays pass through an open end,
+/// which is otherwise flat; the shape is then no solid.
 enum class Cap { flat, round, open };
 
 /// Surfaces: 0 side, 1 the cap at p0, 2 the cap at p1.
@@ -34,7 +36,8 @@ struct CylinderShape {
   std::array<Cap, 2> caps{Cap::flat, Cap::flat};
 };
 
-/// A frustum where both caps are flat; one radius may be 0. The surfaces are numbered as the cylinder's.
+/// A frustum where both caps are flat; one radius may be 0. The surfaces are numbered as the
+/// cylinder's.
 struct ConeShape {
   glm::dvec3 p0{0, 0, 0}, p1{0, 0, 1};
   std::array<double, 2> radius{1, 0};
@@ -54,7 +57,9 @@ inline constexpr int drawn_sorts<CapsulesShape> = 2;
 
 inline std::size_t count_of(const CylinderShape&) { return 1; }
 inline std::size_t surfaces_of(const CylinderShape&) { return 3; }
-inline bool closed(const CylinderShape& c) { return c.caps[0] != Cap::open && c.caps[1] != Cap::open; }
+inline bool closed(const CylinderShape& c) {
+  return c.caps[0] != Cap::open && c.caps[1] != Cap::open;
+}
 Bounds bounds_under(const CylinderShape& cylinder, const glm::dmat4& m);
 void check(const CylinderShape& cylinder, ShapeCheck& report);
 Beyond beyond(const CylinderShape& cylinder, const glm::dvec3& p);

@@ -1,32 +1,40 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// The functions that each geometry defines in shapes/NAME.h, and helpers for them. For every row of geometries.def there are
+// The functions that each geometry defines in shapes/NAME.h, and helpers for them. For every row of
+// geometries.def there are
 //
 //   std::size_t count_of(const Type&)                       the number of primitives
 //   std::size_t surfaces_of(const Type&)                    the number of material slots
-//   bool closed(const Type&)                                whether it has an inside, so that csg can combine it
-//   Bounds bounds_under(const Type&, const dmat4& m)        exact bounds of its image
-//   void check(const Type&, ShapeCheck&)                    reports what cannot be rendered
-//   Beyond beyond(const Type&, const dvec3& p)              how far p is outside; `unknown` for open geometries
-//   Type drawn(std::type_identity<Type>, Draws&)            a random one, for hard scenes; csg has it in
-//                                                           verify/torture.cpp, which draws the operands
+//   bool closed(const Type&)                                whether it has an inside, so that csg
+//   can combine it Bounds bounds_under(const Type&, const dmat4& m)        exact bounds of its
+//   image void check(const Type&, ShapeCheck&)                    reports what cannot be rendered
+//   Beyond beyond(const Type&, const dvec3& p)              how far p is outside; `unknown` for
+//   open geometries Type drawn(std::type_identity<Type>, Draws&)            a random one, for hard
+//   scenes; csg has it in
+//                                                           verify/torture.cpp, which draws the
+//                                                           operands
 //
-// which are found by type: a missing one is a compile error. Lengths and points are in the shape's own space.
+// which are found by type: a missing one is a compile error. Lengths and points are in the shape's
+// own space.
 //
-// A convex solid may be defined by its surfaces, each of which bounds it by a convex function (FacedSolid). It needs no
-// `beyond`, and its reference and the rays that test devices follow from these functions:
+// A convex solid may be defined by its surfaces, each of which bounds it by a convex function
+// (FacedSolid). It needs no `beyond`, and its reference and the rays that test devices follow from
+// these functions:
 //
-//   double outside(const Type&, int surface, const dvec3& p)    grows no faster than distance; in the solid all are
+//   double outside(const Type&, int surface, const dvec3& p)    grows no faster than distance; in
+//   the solid all are
 //                                                               at most 0
-//   dvec3 normal_on(const Type&, int surface, const dvec3& p)   the unit outward normal at a point of the surface
-//   dvec2 uv_on(const Type&, int surface, const dvec3& p)       docs/shapes.md
-//   double tilt_of(const Type&, double moved)                   radians by which its surfaces turn when its points move by
-//   `moved`
+//   dvec3 normal_on(const Type&, int surface, const dvec3& p)   the unit outward normal at a point
+//   of the surface dvec2 uv_on(const Type&, int surface, const dvec3& p)       docs/shapes.md
+//   double tilt_of(const Type&, double moved)                   radians by which its surfaces turn
+//   when its points move by `moved`
 //
-// A geometry of a few numbers may name them as fields (FieldedShape), and then needs no reader of its own:
+// A geometry of a few numbers may name them as fields (FieldedShape), and then needs no reader of
+// its own:
 //
-//   void fields(Type&, auto& each)                          each.corners("p0", "p1", box.p0, box.p1), ...: see Fields
+//   void fields(Type&, auto& each)                          each.corners("p0", "p1", box.p0,
+//   box.p1), ...: see Fields
 #pragma once
 
 #include <algorithm>
@@ -50,10 +58,12 @@ namespace caplet {
 struct Shape;
 
 inline constexpr double full_turn = 6.283185307179586;
-/// The greatest coordinate or size in a scene: squares of 1e18, and sums of some, fit a 32-bit float (3.4e38).
+/// The greatest coordinate or size in a scene: squares of 1e18, and sums of some, fit a 32-bit
+/// float (3.4e38).
 inline constexpr double largest_length = 1e18;
 
-/// Bounds how far a point is outside a solid: `least` is a lower bound of the distance; `most` is at most 0 only inside.
+/// Bounds how far a point is outside a solid: `least` is a lower bound of the distance; `most` is
+/// at most 0 only inside.
 struct Beyond {
   double least, most;
   static Beyond exactly(double distance) { return {distance, distance}; }
@@ -81,11 +91,13 @@ class ShapeCheck {
 
   /// The value must also be positive as a 32-bit float.
   void positive(double value, const char* what) {
-    if (!(static_cast<float>(value) > 0 && std::isfinite(value))) error(std::string(what) + " must be positive and finite");
+    if (!(static_cast<float>(value) > 0 && std::isfinite(value)))
+      error(std::string(what) + " must be positive and finite");
   }
 };
 
-/// Draws random numbers for random geometries, whose sizes are about 1, and for thin ones down to 1e-4.
+/// Draws random numbers for random geometries, whose sizes are about 1, and for thin ones down to
+/// 1e-4.
 class Draws {
  public:
   virtual ~Draws() = default;
@@ -128,13 +140,16 @@ concept FieldedShape = requires(Type& shape, Fields& each) {
 template <FacedSolid Type>
 Beyond beyond(const Type& solid, const glm::dvec3& p) {
   double most = -INFINITY;
-  for (std::size_t i = 0; i < surfaces_of(solid); ++i) most = std::max(most, outside(solid, static_cast<int>(i), p));
+  for (std::size_t i = 0; i < surfaces_of(solid); ++i)
+    most = std::max(most, outside(solid, static_cast<int>(i), p));
   return Beyond::exactly(most);
 }
 
 // --- For bounds ---
 
-inline glm::dvec3 transformed(const glm::dmat4& m, const glm::dvec3& p) { return glm::dvec3(m * glm::dvec4(p, 1)); }
+inline glm::dvec3 transformed(const glm::dmat4& m, const glm::dvec3& p) {
+  return glm::dvec3(m * glm::dvec4(p, 1));
+}
 
 /// Returns half the extents of the unit ball's image under `a`: the lengths of its rows.
 inline glm::dvec3 row_lengths(const glm::dmat3& a) {
@@ -147,7 +162,8 @@ inline void extend_box(Bounds& bounds, const glm::dvec3& center, const glm::dvec
   bounds.extend(center + half);
 }
 
-/// Computes bounds from the greatest value of a.p over the points p of a shape, for each row a of the matrix and its negative.
+/// Computes bounds from the greatest value of a.p over the points p of a shape, for each row a of
+/// the matrix and its negative.
 template <class Greatest>
 Bounds bounds_along_rows(const glm::dmat4& m, Greatest greatest) {
   Bounds bounds;
@@ -162,7 +178,8 @@ Bounds bounds_along_rows(const glm::dmat4& m, Greatest greatest) {
 /// Returns the greatest value of a.x cos(phi) + a.y sin(phi) for 0 <= phi <= phi_max.
 inline double greatest_across(const glm::dvec3& a, double phi_max) {
   const double summit = std::atan2(a.y, a.x);
-  if (phi_max >= full_turn || (summit < 0 ? summit + full_turn : summit) <= phi_max) return std::hypot(a.x, a.y);
+  if (phi_max >= full_turn || (summit < 0 ? summit + full_turn : summit) <= phi_max)
+    return std::hypot(a.x, a.y);
   return std::max(a.x, a.x * std::cos(phi_max) + a.y * std::sin(phi_max));
 }
 

@@ -30,14 +30,17 @@ struct BilinearMeshShape {
 template <class Mesh>
 void check_vertices(const Mesh& mesh, ShapeCheck& report) {
   const std::size_t count = mesh.positions.size();
-  if ((!mesh.normals.empty() && mesh.normals.size() != count) || (!mesh.uvs.empty() && mesh.uvs.size() != count))
+  if ((!mesh.normals.empty() && mesh.normals.size() != count) ||
+      (!mesh.uvs.empty() && mesh.uvs.size() != count))
     return report.error("the mesh has another number of normals or uvs than of vertices");
   for (std::size_t i = 0; i < count; ++i) {
     const char* what = !is_finite(mesh.positions[i])                          ? "position"
                        : !mesh.normals.empty() && !is_finite(mesh.normals[i]) ? "normal"
                        : !mesh.uvs.empty() && !is_finite(mesh.uvs[i])         ? "uv"
                                                                               : nullptr;
-    if (what) return report.error(std::string("the ") + what + " of vertex " + std::to_string(i) + " of the mesh is not finite");
+    if (what)
+      return report.error(std::string("the ") + what + " of vertex " + std::to_string(i) +
+                          " of the mesh is not finite");
   }
 }
 
@@ -46,7 +49,8 @@ void check_faces(const Faces& faces, std::size_t count, ShapeCheck& report) {
   for (const auto& face : faces)
     for (const std::uint32_t vertex : face)
       if (vertex >= count) {
-        report.error("the mesh has the vertex index " + std::to_string(vertex) + ", but " + std::to_string(count) + " vertices");
+        report.error("the mesh has the vertex index " + std::to_string(vertex) + ", but " +
+                     std::to_string(count) + " vertices");
         break;
       }
 }
@@ -55,7 +59,8 @@ template <class Mesh, class Faces>
 Bounds bounds_of_faces(const Mesh& mesh, const Faces& faces, const glm::dmat4& m) {
   Bounds bounds;
   for (const auto& face : faces)
-    for (const std::uint32_t vertex : face) bounds.extend(transformed(m, glm::dvec3(mesh.positions[vertex])));
+    for (const std::uint32_t vertex : face)
+      bounds.extend(transformed(m, glm::dvec3(mesh.positions[vertex])));
   return bounds;
 }
 
@@ -71,8 +76,10 @@ inline void check(const TriangleMeshShape& mesh, ShapeCheck& report) {
   check_faces(mesh.triangles, mesh.positions.size(), report);
 }
 inline TriangleMeshShape drawn(std::type_identity<TriangleMeshShape>, Draws& draws) {
-  TriangleMeshShape out{{draws.point(), draws.point(), draws.point(), draws.point()}, {{0, 1, 2}, {1, 2, 3}}, {}, {}};
-  if (draws.one_in(2)) out.positions[3] = out.positions[0] + static_cast<float>(draws.thin()) * draws.point();
+  TriangleMeshShape out{
+      {draws.point(), draws.point(), draws.point(), draws.point()}, {{0, 1, 2}, {1, 2, 3}}, {}, {}};
+  if (draws.one_in(2))
+    out.positions[3] = out.positions[0] + static_cast<float>(draws.thin()) * draws.point();
   return out;
 }
 
@@ -80,16 +87,19 @@ inline std::size_t count_of(const BilinearMeshShape& mesh) { return mesh.patches
 inline std::size_t surfaces_of(const BilinearMeshShape&) { return 1; }
 inline bool closed(const BilinearMeshShape&) { return false; }
 inline Beyond beyond(const BilinearMeshShape&, const glm::dvec3&) { return unknown; }
-inline Bounds bounds_under(const BilinearMeshShape& mesh, const glm::dmat4& m) { return bounds_of_faces(mesh, mesh.patches, m); }
+inline Bounds bounds_under(const BilinearMeshShape& mesh, const glm::dmat4& m) {
+  return bounds_of_faces(mesh, mesh.patches, m);
+}
 inline void check(const BilinearMeshShape& mesh, ShapeCheck& report) {
   check_vertices(mesh, report);
   check_faces(mesh.patches, mesh.positions.size(), report);
 }
 inline BilinearMeshShape drawn(std::type_identity<BilinearMeshShape>, Draws& draws) {
-  return BilinearMeshShape{{draws.point(), draws.point(), draws.point(), draws.point(), draws.point(), draws.point()},
-                           {{0, 1, 2, 3}, {2, 3, 4, 5}},
-                           {},
-                           {}};
+  return BilinearMeshShape{
+      {draws.point(), draws.point(), draws.point(), draws.point(), draws.point(), draws.point()},
+      {{0, 1, 2, 3}, {2, 3, 4, 5}},
+      {},
+      {}};
 }
 
 }  // namespace caplet

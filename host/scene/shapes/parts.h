@@ -8,7 +8,8 @@
 
 namespace caplet {
 
-/// A part of a sphere around the origin, as in pbrt: z_min <= z <= z_max, 0 <= phi <= phi_max. It is open.
+/// A part of a sphere around the origin, as in pbrt: z_min <= z <= z_max, 0 <= phi <= phi_max. It
+/// is open.
 struct PartialSphereShape {
   double radius = 1, z_min = -1, z_max = 1, phi_max = full_turn;
 };
@@ -31,14 +32,19 @@ inline std::size_t count_of(const PartialSphereShape&) { return 1; }
 inline std::size_t surfaces_of(const PartialSphereShape&) { return 1; }
 inline bool closed(const PartialSphereShape&) { return false; }
 inline Beyond beyond(const PartialSphereShape&, const glm::dvec3&) { return unknown; }
-inline void check(const PartialSphereShape& sphere, ShapeCheck& report) { check_part(sphere, "the sphere", report); }
+inline void check(const PartialSphereShape& sphere, ShapeCheck& report) {
+  check_part(sphere, "the sphere", report);
+}
 
 inline Bounds bounds_under(const PartialSphereShape& s, const glm::dmat4& m) {
-  // At height z the sphere has the radius rho = sqrt(r^2 - z^2), and a.p is at most a_z z + across rho. This is concave in z with
-  // its maximum at r a_z / |(across, a_z)| where across >= 0; otherwise it is convex.
+  // At height z the sphere has the radius rho = sqrt(r^2 - z^2), and a.p is at most a_z z + across
+  // rho. This is concave in z with its maximum at r a_z / |(across, a_z)| where across >= 0;
+  // otherwise it is convex.
   return bounds_along_rows(m, [&](const glm::dvec3& a) {
     const double across = greatest_across(a, s.phi_max);
-    const auto at = [&](double z) { return a.z * z + across * std::sqrt(std::max(0.0, s.radius * s.radius - z * z)); };
+    const auto at = [&](double z) {
+      return a.z * z + across * std::sqrt(std::max(0.0, s.radius * s.radius - z * z));
+    };
     const double slope = std::hypot(across, a.z);
     if (across < 0 || slope == 0) return std::max(at(s.z_min), at(s.z_max));
     return at(std::clamp(s.radius * a.z / slope, s.z_min, s.z_max));
@@ -54,11 +60,14 @@ inline std::size_t count_of(const OpenCylinderShape&) { return 1; }
 inline std::size_t surfaces_of(const OpenCylinderShape&) { return 1; }
 inline bool closed(const OpenCylinderShape&) { return false; }
 inline Beyond beyond(const OpenCylinderShape&, const glm::dvec3&) { return unknown; }
-inline void check(const OpenCylinderShape& cylinder, ShapeCheck& report) { check_part(cylinder, "the cylinder", report); }
+inline void check(const OpenCylinderShape& cylinder, ShapeCheck& report) {
+  check_part(cylinder, "the cylinder", report);
+}
 
 inline Bounds bounds_under(const OpenCylinderShape& c, const glm::dmat4& m) {
-  return bounds_along_rows(
-      m, [&](const glm::dvec3& a) { return c.radius * greatest_across(a, c.phi_max) + std::max(a.z * c.z_min, a.z * c.z_max); });
+  return bounds_along_rows(m, [&](const glm::dvec3& a) {
+    return c.radius * greatest_across(a, c.phi_max) + std::max(a.z * c.z_min, a.z * c.z_max);
+  });
 }
 
 inline OpenCylinderShape drawn(std::type_identity<OpenCylinderShape>, Draws& draws) {

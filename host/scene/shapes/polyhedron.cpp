@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Converts half-spaces to faces: a box that contains the whole solid is cut by one plane after the other.
+// Converts half-spaces to faces: a box that contains the whole solid is cut by one plane after the
+// other.
 #include "scene/shapes/polyhedron.h"
 
 #include <algorithm>
@@ -28,7 +29,9 @@ struct Face {
   std::vector<dvec3> corners;
 };
 
-bool same_point(const dvec3& a, const dvec3& b, double tolerance) { return glm::length(a - b) <= tolerance; }
+bool same_point(const dvec3& a, const dvec3& b, double tolerance) {
+  return glm::length(a - b) <= tolerance;
+}
 
 /// A convex body, stored as its faces.
 class Body {
@@ -49,9 +52,11 @@ class Body {
       }
   }
 
-  /// Keeps the part below the plane. Returns false when nothing is left, or, up to rounding, only points in the plane.
+  /// Keeps the part below the plane. Returns false when nothing is left, or, up to rounding, only
+  /// points in the plane.
   bool cut(const Plane& plane, std::size_t number) {
-    // Coordinates are within `half`, rounded to 2^-53 of it; a few operations on them are within 2^-46.
+    // Coordinates are within `half`, rounded to 2^-53 of it; a few operations on them are within
+    // 2^-46.
     const auto above = [&](const dvec3& x) { return glm::dot(plane.normal, x) - plane.offset; };
     double highest = -HUGE_VAL, lowest = HUGE_VAL;
     for (const Face& face : faces_)
@@ -76,7 +81,8 @@ class Body {
             ++in_plane;
           }
         }
-        if ((above_a > tolerance_ && above_b < -tolerance_) || (above_a < -tolerance_ && above_b > tolerance_)) {
+        if ((above_a > tolerance_ && above_b < -tolerance_) ||
+            (above_a < -tolerance_ && above_b > tolerance_)) {
           const dvec3 x = a + (above_a / (above_a - above_b)) * (b - a);
           kept.push_back(x);
           rim.push_back(x);
@@ -95,17 +101,22 @@ class Body {
  private:
   /// Adds the new face: the corners in its plane, in order.
   void close(const Plane& plane, std::size_t number, std::vector<dvec3>& rim) {
-    const dvec3 center = std::accumulate(rim.begin(), rim.end(), dvec3(0)) / std::max(1.0, double(rim.size()));
-    const dvec3 s = glm::normalize(glm::cross(plane.normal, std::abs(plane.normal.x) < 0.7 ? dvec3(1, 0, 0) : dvec3(0, 1, 0)));
+    const dvec3 center =
+        std::accumulate(rim.begin(), rim.end(), dvec3(0)) / std::max(1.0, double(rim.size()));
+    const dvec3 s = glm::normalize(
+        glm::cross(plane.normal, std::abs(plane.normal.x) < 0.7 ? dvec3(1, 0, 0) : dvec3(0, 1, 0)));
     const dvec3 t = glm::cross(plane.normal, s);
     std::vector<std::pair<double, dvec3>> around;
     around.reserve(rim.size());
-    for (const dvec3& x : rim) around.emplace_back(std::atan2(glm::dot(x - center, t), glm::dot(x - center, s)), x);
+    for (const dvec3& x : rim)
+      around.emplace_back(std::atan2(glm::dot(x - center, t), glm::dot(x - center, s)), x);
     std::ranges::sort(around, {}, &std::pair<double, dvec3>::first);
     Face face{number, {}};
     for (const auto& [angle, x] : around)
-      if (face.corners.empty() || !same_point(face.corners.back(), x, 4 * tolerance_)) face.corners.push_back(x);
-    while (face.corners.size() > 1 && same_point(face.corners.front(), face.corners.back(), 4 * tolerance_))
+      if (face.corners.empty() || !same_point(face.corners.back(), x, 4 * tolerance_))
+        face.corners.push_back(x);
+    while (face.corners.size() > 1 &&
+           same_point(face.corners.front(), face.corners.back(), 4 * tolerance_))
       face.corners.pop_back();
     if (face.corners.size() >= 3) faces_.push_back(face);
   }
@@ -115,7 +126,8 @@ class Body {
 
 }  // namespace
 
-std::vector<std::vector<dvec3>> polyhedron_faces(const PolyhedronShape& polyhedron, std::size_t* bad_plane) {
+std::vector<std::vector<dvec3>> polyhedron_faces(const PolyhedronShape& polyhedron,
+                                                 std::size_t* bad_plane) {
   const std::size_t n = polyhedron.points.size();
   const auto blame = [&](std::size_t plane) {
     if (bad_plane) *bad_plane = plane;
@@ -126,12 +138,14 @@ std::vector<std::vector<dvec3>> polyhedron_faces(const PolyhedronShape& polyhedr
   double size = 0;
   for (std::size_t i = 0; i < n; ++i) {
     const double length = glm::length(polyhedron.normals[i]);
-    if (!(length > 0 && length < HUGE_VAL && std::isfinite(glm::length(polyhedron.points[i])))) return blame(i);
+    if (!(length > 0 && length < HUGE_VAL && std::isfinite(glm::length(polyhedron.points[i]))))
+      return blame(i);
     size = std::max(size, glm::length(polyhedron.points[i] - center));
   }
   if (size == 0) size = 1;  // all planes through one point: a cone or nothing
 
-  // The second pass starts from a box that fits, because rounding errors grow with the box that is cut.
+  // The second pass starts from a box that fits, because rounding errors grow with the box that is
+  // cut.
   double half = 1e6 * size;
   for (int pass = 0; pass < 2; ++pass) {
     Body body(half);
@@ -151,7 +165,8 @@ std::vector<std::vector<dvec3>> polyhedron_faces(const PolyhedronShape& polyhedr
     }
     if (endless) {
       // An unbounded face reaches the box.
-      while (first_endless + 1 < n && std::ranges::none_of(faces[first_endless], [&](const dvec3& x) {
+      while (first_endless + 1 < n &&
+             std::ranges::none_of(faces[first_endless], [&](const dvec3& x) {
                const dvec3 a = glm::abs(x - center);
                return std::max({a.x, a.y, a.z}) >= half * (1 - 1e-9);
              }))
@@ -170,12 +185,15 @@ std::vector<dvec3> polyhedron_corners(const PolyhedronShape& polyhedron, std::si
   Bounds bounds;
   for (const auto& face : faces)
     for (const dvec3& x : face) bounds.extend(x);
-  // Each face has its own copy of a corner. Copies differ by rounding, and more so where faces meet at small angles.
+  // Each face has its own copy of a corner. Copies differ by rounding, and more so where faces meet
+  // at small angles.
   const double tolerance = 1e-9 * glm::length(bounds.max - bounds.min);
   std::vector<dvec3> corners;
   for (const auto& face : faces)
     for (const dvec3& x : face)
-      if (std::ranges::none_of(corners, [&](const dvec3& y) { return same_point(x, y, tolerance); })) corners.push_back(x);
+      if (std::ranges::none_of(corners,
+                               [&](const dvec3& y) { return same_point(x, y, tolerance); }))
+        corners.push_back(x);
   return corners;
 }
 
@@ -187,7 +205,8 @@ Bounds bounds_under(const PolyhedronShape& polyhedron, const glm::dmat4& m) {
 
 void check(const PolyhedronShape& polyhedron, ShapeCheck& report) {
   const std::size_t planes = polyhedron.points.size();
-  if (polyhedron.normals.size() != planes) return report.error("the polyhedron has another number of normals than of points");
+  if (polyhedron.normals.size() != planes)
+    return report.error("the polyhedron has another number of normals than of points");
   if (planes == 0) return report.error("the polyhedron has no planes");
   if (planes > max_polyhedron_planes)
     return report.error("the polyhedron has " + std::to_string(planes) + " planes, more than " +
@@ -195,13 +214,16 @@ void check(const PolyhedronShape& polyhedron, ShapeCheck& report) {
   double reach = 0;  // greatest distance of a point from the first
   for (std::size_t i = 0; i < planes; ++i) {
     const auto plane = [i] { return "plane " + std::to_string(i) + " of the polyhedron "; };
-    if (!is_finite(polyhedron.points[i]) || !is_finite(polyhedron.normals[i])) return report.error(plane() + "is not finite");
-    if (!(glm::length(polyhedron.normals[i]) > 0)) return report.error(plane() + "has no normal: it is zero");
+    if (!is_finite(polyhedron.points[i]) || !is_finite(polyhedron.normals[i]))
+      return report.error(plane() + "is not finite");
+    if (!(glm::length(polyhedron.normals[i]) > 0))
+      return report.error(plane() + "has no normal: it is zero");
     reach = std::max(reach, glm::length(polyhedron.points[i] - polyhedron.points[0]));
   }
   std::size_t bad = 0;
   if (!polyhedron_corners(polyhedron, &bad).empty()) return;
-  // Cut by a distant box, an unbounded polyhedron has corners; one without an inside still has none.
+  // Cut by a distant box, an unbounded polyhedron has corners; one without an inside still has
+  // none.
   PolyhedronShape boxed = polyhedron;
   for (int side = 0; side < 6; ++side) {
     dvec3 n(0);
@@ -210,21 +232,23 @@ void check(const PolyhedronShape& polyhedron, ShapeCheck& report) {
     boxed.normals.push_back(n);
   }
   const bool unbounded = !polyhedron_corners(boxed).empty();
-  report.error(std::string("the polyhedron ") + (unbounded ? "has no bounds" : "has no inside") + ": look at plane " +
-               std::to_string(bad) + " (counted from 0)");
+  report.error(std::string("the polyhedron ") + (unbounded ? "has no bounds" : "has no inside") +
+               ": look at plane " + std::to_string(bad) + " (counted from 0)");
 }
 
 Beyond beyond(const PolyhedronShape& polyhedron, const dvec3& p) {
   double most = -INFINITY;
   for (std::size_t i = 0; i < polyhedron.points.size(); ++i)
-    most = std::max(most, glm::dot(glm::normalize(polyhedron.normals[i]), p - polyhedron.points[i]));
+    most =
+        std::max(most, glm::dot(glm::normalize(polyhedron.normals[i]), p - polyhedron.points[i]));
   return Beyond::exactly(most);
 }
 
 PolyhedronShape drawn(std::type_identity<PolyhedronShape>, Draws& draws) {
   const double r = draws.size;
-  return PolyhedronShape{{dvec3(-r), dvec3(-r), dvec3(-r), dvec3(0.3 * r), dvec3(0, 0, 0.5 * r)},
-                         {{-1, 0, 0}, {0, -2, 0}, {0, 0, -1}, {1, 1, 1}, {0.1, 0.2, draws.uniform(0.5, 3)}}};
+  return PolyhedronShape{
+      {dvec3(-r), dvec3(-r), dvec3(-r), dvec3(0.3 * r), dvec3(0, 0, 0.5 * r)},
+      {{-1, 0, 0}, {0, -2, 0}, {0, 0, -1}, {1, 1, 1}, {0.1, 0.2, draws.uniform(0.5, 3)}}};
 }
 
 }  // namespace caplet

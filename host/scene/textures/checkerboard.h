@@ -8,7 +8,8 @@
 
 namespace caplet {
 
-/// A pattern of unit squares of (s, t) or of unit cubes: tex1 where the sum of the integer parts is even.
+/// A pattern of unit squares of (s, t) or of unit cubes: tex1 where the sum of the integer parts is
+/// even.
 struct CheckerboardTexture {
   TextureOperand tex1 = 1, tex2 = 0;
   TextureMapping mapping = {};

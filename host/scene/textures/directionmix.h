@@ -9,7 +9,8 @@
 
 namespace caplet {
 
-/// amount tex1 + (1 - amount) tex2, where amount is the absolute cosine between the surface's normal and `dir`.
+/// amount tex1 + (1 - amount) tex2, where amount is the absolute cosine between the surface's
+/// normal and `dir`.
 struct DirectionmixTexture {
   TextureOperand tex1 = 0, tex2 = 1;
   glm::dvec3 dir{0, 1, 0};  // world, unit

@@ -13,8 +13,10 @@
 namespace caplet {
 
 /// The order is that of CAPLET_WRAP_... and CAPLET_FILTER_... (kernels/shared/kinds.h).
-inline constexpr std::array<const char*, 4> texture_wrap_names = {"repeat", "black", "clamp", "octahedralsphere"};
-inline constexpr std::array<const char*, 4> texture_filter_names = {"point", "bilinear", "trilinear", "EWA"};
+inline constexpr std::array<const char*, 4> texture_wrap_names = {"repeat", "black", "clamp",
+                                                                  "octahedralsphere"};
+inline constexpr std::array<const char*, 4> texture_filter_names = {"point", "bilinear",
+                                                                    "trilinear", "EWA"};
 
 /// `scale` times an image at (s, t); its bottom row is at t = 0. invert: 1 minus that, at least 0.
 struct ImagemapTexture {
@@ -29,7 +31,8 @@ struct ImagemapTexture {
     visit.image({"filename", "the image"}, self.image);
     visit.choice({"wrap", "what lies beyond the image's edges"}, self.wrap, texture_wrap_names);
     visit.choice({"filter", "how texels are filtered"}, self.filter, texture_filter_names);
-    visit.number({"maxanisotropy", "greatest ratio of a footprint's sides, for EWA"}, self.maxanisotropy);
+    visit.number({"maxanisotropy", "greatest ratio of a footprint's sides, for EWA"},
+                 self.maxanisotropy);
     visit.number({"scale", "factor of the image's values"}, self.scale);
     visit.flag({"invert", "1 less the value, from 0 up"}, self.invert);
     visit.mapping(self.mapping);

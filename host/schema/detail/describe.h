@@ -28,13 +28,21 @@ class Describe {
  public:
   explicit Describe(std::vector<Parameter>& out) : out_(out) {}
 
-  void albedo(const Field& field, const Spectrum& value) { add(field, surface_spectrum, text_of(value)); }
-  void unbounded(const Field& field, const Spectrum& value) { add(field, surface_spectrum, text_of(value)); }
+  void albedo(const Field& field, const Spectrum& value) {
+    add(field, surface_spectrum, text_of(value));
+  }
+  void unbounded(const Field& field, const Spectrum& value) {
+    add(field, surface_spectrum, text_of(value));
+  }
   void index(const Field& field, const Spectrum& value) {
     add(field, {"float", "spectrum", "rgb", "blackbody"}, text_of(value)).above_low = true;
   }
-  void emission(const Field& field, const Spectrum&) { add(field, light_spectrum, "the colour space's white"); }
-  void emission(const Field& field, const std::optional<Spectrum>&) { add(field, light_spectrum, ""); }
+  void emission(const Field& field, const Spectrum&) {
+    add(field, light_spectrum, "the colour space's white");
+  }
+  void emission(const Field& field, const std::optional<Spectrum>&) {
+    add(field, light_spectrum, "");
+  }
   void emission(const Field& field, const std::optional<Spectrum>& radiance, double scale) {
     emission(field, radiance);
     add(radiance_scale_field, {"float"}, text_of(scale));
@@ -42,19 +50,31 @@ class Describe {
   void operand(const Field& field, const TextureOperand& of) {
     add(field, {"float", "rgb", "spectrum", "blackbody", "texture"}, text_of(of.value));
   }
-  void factor(const Field& field, const TextureOperand& of) { add(field, {"float", "texture"}, text_of(of.value)); }
+  void factor(const Field& field, const TextureOperand& of) {
+    add(field, {"float", "texture"}, text_of(of.value));
+  }
   void number(const Field& field, double value) {
-    add(field, textured_ ? std::vector<std::string>{"float", "texture"} : std::vector<std::string>{"float"}, text_of(value));
+    add(field,
+        textured_ ? std::vector<std::string>{"float", "texture"}
+                  : std::vector<std::string>{"float"},
+        text_of(value));
   }
   void integer(const Field& field, int value) { add(field, {"integer"}, fmt::format("{}", value)); }
-  void seed(const Field& field, std::uint32_t value) { add(field, {"integer"}, fmt::format("{}", value)); }
+  void seed(const Field& field, std::uint32_t value) {
+    add(field, {"integer"}, fmt::format("{}", value));
+  }
   void flag(const Field& field, bool value) { add(field, {"bool"}, value ? "true" : "false"); }
   template <class Names>
   void choice(const Field& field, int value, const Names& names) {
-    add(field, {"string"}, names[static_cast<std::size_t>(value)]).choices = {names.begin(), names.end()};
+    add(field, {"string"}, names[static_cast<std::size_t>(value)]).choices = {names.begin(),
+                                                                              names.end()};
   }
-  void position(const Field& field, const glm::dvec3& value) { add(field, {"point3"}, text_of(value)); }
-  void vector(const Field& field, const glm::dvec3& value) { add(field, {"vector3"}, text_of(value)); }
+  void position(const Field& field, const glm::dvec3& value) {
+    add(field, {"point3"}, text_of(value));
+  }
+  void vector(const Field& field, const glm::dvec3& value) {
+    add(field, {"vector3"}, text_of(value));
+  }
   void direction(const Field& field, const glm::dvec3& value) { vector(field, value); }
   void direction(const Field& from, const Field& to, const glm::dvec3&) {
     if (!has(from.name)) position(from, glm::dvec3(0));
@@ -74,26 +94,37 @@ class Describe {
   void vectors(const Field& field, const std::shared_ptr<Image>& of) {
     image(field, of);
   }
-  void profile(const Field& field, const std::shared_ptr<const IesProfile>& of) { image(field, of); }
-  void parts(const Field& field, const std::array<std::uint32_t, 2>&) { add(field, {"string"}, ""); }
+  void profile(const Field& field, const std::shared_ptr<const IesProfile>& of) {
+    image(field, of);
+  }
+  void parts(const Field& field, const std::array<std::uint32_t, 2>&) {
+    add(field, {"string"}, "");
+  }
   void roughness(const RoughnessFields& fields, double, double) {
     for (const Field& alpha : {fields.alpha_u, fields.alpha_v})
-      add(alpha, {"float", "texture"}, "").excludes = {fields.roughness, fields.uroughness, fields.vroughness};
+      add(alpha, {"float", "texture"}, "").excludes = {fields.roughness, fields.uroughness,
+                                                       fields.vroughness};
     add({fields.roughness, "roughness along both directions", 0}, {"float", "texture"}, "0");
     add({fields.uroughness, "roughness along dp/du", 0}, {"float", "texture"}, "that of both");
     add({fields.vroughness, "roughness along dp/dv", 0}, {"float", "texture"}, "that of both");
-    if (!has("remaproughness")) add({"remaproughness", "GGX's alpha is the square root of the roughness"}, {"bool"}, "true");
+    if (!has("remaproughness"))
+      add({"remaproughness", "GGX's alpha is the square root of the roughness"}, {"bool"}, "true");
   }
-  void metal(const MetalFields& fields, const Spectrum& eta, const Spectrum& k, const std::optional<Spectrum>&) {
+  void metal(const MetalFields& fields, const Spectrum& eta, const Spectrum& k,
+             const std::optional<Spectrum>&) {
     unbounded(fields.eta, eta);
     unbounded(fields.k, k);
     add(fields.reflectance, surface_spectrum, "").excludes = {fields.eta.name, fields.k.name};
   }
   void pigment(const PigmentFields& fields, const Spectrum&, const std::optional<Spectrum>&) {
-    add(fields.sigma_a, surface_spectrum, "").excludes = {"reflectance", "color", "eumelanin", "pheomelanin"};
-    add(fields.reflectance, surface_spectrum, "").excludes = {"sigma_a", "eumelanin", "pheomelanin"};
-    add({"color", "the same as reflectance", 0, 1}, surface_spectrum, "").excludes = {"sigma_a", "eumelanin", "pheomelanin"};
-    add({"eumelanin", "concentration of the brown pigment", 0}, {"float", "texture"}, text_of(HairMaterial::eumelanin));
+    add(fields.sigma_a, surface_spectrum, "").excludes = {"reflectance", "color", "eumelanin",
+                                                          "pheomelanin"};
+    add(fields.reflectance, surface_spectrum, "").excludes = {"sigma_a", "eumelanin",
+                                                              "pheomelanin"};
+    add({"color", "the same as reflectance", 0, 1}, surface_spectrum, "").excludes = {
+        "sigma_a", "eumelanin", "pheomelanin"};
+    add({"eumelanin", "concentration of the brown pigment", 0}, {"float", "texture"},
+        text_of(HairMaterial::eumelanin));
     add({"pheomelanin", "concentration of the red pigment", 0}, {"float", "texture"}, "0");
   }
   void mapping(const TextureMapping& of) {
@@ -117,9 +148,11 @@ class Describe {
     add(SpotLight::delta_field, {"float"}, "5");
   }
   void sky(const InfiniteLight&) {
-    const auto one_of = [&](const Field& field, std::vector<std::string> types, const char* fallback) {
+    const auto one_of = [&](const Field& field, std::vector<std::string> types,
+                            const char* fallback) {
       Parameter& out = add(field, std::move(types), fallback);
-      for (const Field* other : {&InfiniteLight::radiance_field, &InfiniteLight::image_field, &InfiniteLight::preset_field})
+      for (const Field* other : {&InfiniteLight::radiance_field, &InfiniteLight::image_field,
+                                 &InfiniteLight::preset_field})
         if (other->name != field.name) out.excludes.emplace_back(other->name);
     };
     one_of(InfiniteLight::radiance_field, light_spectrum, "the colour space's white");
@@ -139,12 +172,16 @@ class Describe {
     position({"p1", "the opposite corner"}, of.p1);
   }
   void counts(const GridCounts& of) {
-    for (std::size_t k = 0; k < 3; ++k) integer({grid_count_names[k], "cells along this side", 1}, of[k]);
+    for (std::size_t k = 0; k < 3; ++k)
+      integer({grid_count_names[k], "cells along this side", 1}, of[k]);
   }
-  void grid(const Field& field, const FloatGrid&, const GridCounts&, bool) { add(field, {"float"}, ""); }
+  void grid(const Field& field, const FloatGrid&, const GridCounts&, bool) {
+    add(field, {"float"}, "");
+  }
   void grid(const Field& field, const ColorGrid&, const GridCounts&) { add(field, {"rgb"}, ""); }
   void volume(const SparseGridPointer&, const SparseGridPointer&, const glm::dmat4&) {
-    add({"filename", "a NanoVDB file with the grids density and, if it glows, temperature"}, {"string"}, "");
+    add({"filename", "a NanoVDB file with the grids density and, if it glows, temperature"},
+        {"string"}, "");
   }
   void heat(const std::optional<Spectrum>&, const FloatGrid&) {}
   void any_of(const ColorGrid&, const ColorGrid&, const ColorGrid&) {}
@@ -182,7 +219,9 @@ class Describe {
   /// Coefficients of media cannot be textures.
   struct Coefficients {
     Describe& to;
-    void unbounded(const Field& field, const Spectrum& value) const { to.add(field, medium_spectrum, text_of(value)); }
+    void unbounded(const Field& field, const Spectrum& value) const {
+      to.add(field, medium_spectrum, text_of(value));
+    }
     void number(const Field& field, double value) const { to.number(field, value); }
     void asymmetry(double g) const { to.asymmetry(g); }
   };
@@ -191,8 +230,10 @@ class Describe {
   static std::string text_of(double value) { return schema::text_of(value); }
   static std::string text_of(const Spectrum& value) { return schema::text_of(value); }
 
-  static inline const std::vector<std::string> surface_spectrum = {"rgb", "spectrum", "blackbody", "float", "texture"};
-  static inline const std::vector<std::string> light_spectrum = {"rgb", "spectrum", "blackbody", "float"};
+  static inline const std::vector<std::string> surface_spectrum = {"rgb", "spectrum", "blackbody",
+                                                                   "float", "texture"};
+  static inline const std::vector<std::string> light_spectrum = {"rgb", "spectrum", "blackbody",
+                                                                 "float"};
   static inline const std::vector<std::string> medium_spectrum = light_spectrum;
 
   std::vector<Parameter>& out_;

@@ -36,7 +36,8 @@ struct Wish {
   std::string text;
 };
 
-/// The state that the server's thread and the renderer's thread share, behind one mutex. It sends nothing.
+/// The state that the server's thread and the renderer's thread share, behind one mutex. It sends
+/// nothing.
 class Clients {
  public:
   Clients(const ShowView& look, bool read_only) : read_only_(read_only), wanted_(look) {}
@@ -46,7 +47,8 @@ class Clients {
   /// Adds a page, and returns the message that greets it.
   Text join(ClientId id);
   void leave(ClientId id);
-  /// Stores what the page says. Returns the pages that have to be told of a new look. Throws InputError.
+  /// Stores what the page says. Returns the pages that have to be told of a new look. Throws
+  /// InputError.
   std::vector<ClientId> take(ClientId id, const Message& message, const std::string& text);
   /// A picture that a page has not been shown, and the one of the same eye that it has.
   struct NextPicture {
@@ -57,7 +59,8 @@ class Clients {
 
   // The renderer's thread calls these.
 
-  /// Waits for something to do. `has_more`: the picture can be improved. Returns false when the session ends.
+  /// Waits for something to do. `has_more`: the picture can be improved. Returns false when the
+  /// session ends.
   bool wait_for_work(bool has_more);
   /// Returns the look that the pages want, if it is new.
   std::optional<ShowView> take_look();

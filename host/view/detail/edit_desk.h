@@ -16,12 +16,13 @@
 
 namespace caplet::view {
 
-/// Makes what pages wish, and tells all pages what the scene then is. Only the renderer's thread calls it, once there is one.
+/// Makes what pages wish, and tells all pages what the scene then is. Only the renderer's thread
+/// calls it, once there is one.
 class EditDesk {
  public:
   /// All of these must outlive this. `device`: its name.
-  EditDesk(const LiveScene& live, const Editor& editor, Keeping& keeping, Clients& clients, const EyeFilms& films,
-           std::string device);
+  EditDesk(const LiveScene& live, const Editor& editor, Keeping& keeping, Clients& clients,
+           const EyeFilms& films, std::string device);
 
   /// Sets the message that greets pages.
   void prepare_greeting(bool read_only);

@@ -19,12 +19,13 @@
 
 namespace caplet::view {
 
-/// Renders one look, of one eye or two, coarsely at first. Both eyes share one session: the film of the other eye waits here.
-/// Only the renderer's thread calls it.
+/// Renders one look, of one eye or two, coarsely at first. Both eyes share one session: the film of
+/// the other eye waits here. Only the renderer's thread calls it.
 class EyeFilms {
  public:
   /// The scene and its editor must outlive this. Sends the scene to the device.
-  EyeFilms(LiveScene& live, const Editor& editor, const Device& device, const ViewerOptions& options);
+  EyeFilms(LiveScene& live, const Editor& editor, const Device& device,
+           const ViewerOptions& options);
 
   /// Returns the scene on the device, for queries.
   DeviceScene& device_scene() const { return *session_.scene_on(0); }
@@ -40,7 +41,8 @@ class EyeFilms {
   void begin(const ShowView& look);
   /// Drops the picture in progress.
   void drop() { scale_ = 0; }
-  /// Renders the next samples. `between_batches` may throw to end it; its argument says whether the picture is coarse.
+  /// Renders the next samples. `between_batches` may throw to end it; its argument says whether the
+  /// picture is coarse.
   void step(const std::function<void(bool is_coarse)>& between_batches);
 
   /// Returns the picture of the eye that the last step rendered.

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Fields of forms: the fields of a scene's parts that host/scene's lists visit, with name, kind and range.
+// Fields of forms: the fields of a scene's parts that host/scene's lists visit, with name, kind and
+// range.
 #pragma once
 
 #include <cstdint>
@@ -27,13 +28,16 @@ struct Slot {
 class FormFields {
  public:
   virtual ~FormFields() = default;
-  virtual void number(const std::string& name, double& value, double low, double high, Slot* slot = nullptr) = 0;
+  virtual void number(const std::string& name, double& value, double low, double high,
+                      Slot* slot = nullptr) = 0;
   virtual void whole(const std::string& name, int& value, int low, int high) = 0;
-  virtual void choice(const std::string& name, int& value, const std::vector<std::string>& options) = 0;
+  virtual void choice(const std::string& name, int& value,
+                      const std::vector<std::string>& options) = 0;
   virtual void flag(const std::string& name, bool& value) = 0;
   virtual void text(const std::string& name, std::string& value) = 0;
   /// `most`: the greatest allowed value.
-  virtual void spectrum(const std::string& name, Spectrum& value, double most, Slot* slot = nullptr) = 0;
+  virtual void spectrum(const std::string& name, Spectrum& value, double most,
+                        Slot* slot = nullptr) = 0;
   /// A number above 0, or none.
   virtual void option(const std::string& name, std::optional<double>& value) = 0;
   virtual void point(const std::string& name, glm::dvec3& value) = 0;
@@ -58,7 +62,8 @@ void visit_form(FormFields& fields, ViewEdit& view, FormSubject::Kind kind);
 /// Lists the kinds that can be made without an existing part.
 std::vector<std::string> new_kinds(FormSubject::Kind what);
 
-/// Makes a part of a kind in the list, with a name that the scene does not have yet. Throws InputError.
+/// Makes a part of a kind in the list, with a name that the scene does not have yet. Throws
+/// InputError.
 Material new_material(const Scene& scene, const Add& add);
 Texture new_texture(const Scene& scene, const Add& add);
 Light new_light(const Add& add);

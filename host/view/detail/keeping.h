@@ -20,20 +20,23 @@ namespace caplet::view {
 
 class Keeping {
  public:
-  /// Replays the changes of an earlier session that `keeper` has. Both scenes outlive this. Without a keeper nothing is kept.
+  /// Replays the changes of an earlier session that `keeper` has. Both scenes outlive this. Without
+  /// a keeper nothing is kept.
   Keeping(LiveScene& live, Editor& editor, std::unique_ptr<Keeper> keeper);
 
-  /// Handles an Edit, Undo, Discard or Kept; `text` is the message as received. Returns whether the scene has changed. Throws
-  /// InputError.
+  /// Handles an Edit, Undo, Discard or Kept; `text` is the message as received. Returns whether the
+  /// scene has changed. Throws InputError.
   bool make(const Message& message, const std::string& text);
-  /// Saves with the scene's own camera and film, or with that camera. Returns the message `saved`, or `save_asks` when data in
-  /// the file would be lost. Throws InputError and RunError.
-  nlohmann::ordered_json save(const Save& save, const ShowView& look, const std::function<bool()>& cancelled);
+  /// Saves with the scene's own camera and film, or with that camera. Returns the message `saved`,
+  /// or `save_asks` when data in the file would be lost. Throws InputError and RunError.
+  nlohmann::ordered_json save(const Save& save, const ShowView& look,
+                              const std::function<bool()>& cancelled);
   /// Uses the pause after a picture for other work.
   void pause() {
     if (keeper_) keeper_->look_at_contents();
   }
-  /// Returns the message on unsaved changes: whether there are any, whether they are kept, and what an earlier session left.
+  /// Returns the message on unsaved changes: whether there are any, whether they are kept, and what
+  /// an earlier session left.
   nlohmann::ordered_json text() const;
   /// Returns the camera and the size that the scene is saved with.
   const ShowView& own_look() const { return own_; }

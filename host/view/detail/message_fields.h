@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Reads and checks the fields of messages from the page. Each function throws InputError with the field as its place.
+// Reads and checks the fields of messages from the page. Each function throws InputError with the
+// field as its place.
 #pragma once
 
 #include <fmt/format.h>
@@ -36,7 +37,8 @@ inline const json& field(const json& object, const char* name) {
 inline double number(const json& value, const std::string& name, double least, double most) {
   if (!value.is_number()) refuse(name, "is not a number");
   const double out = value.get<double>();
-  if (!(out >= least && out <= most)) refuse(name, fmt::format("is {}, and not in {} to {}", out, least, most));
+  if (!(out >= least && out <= most))
+    refuse(name, fmt::format("is {}, and not in {} to {}", out, least, most));
   return out;
 }
 
@@ -65,7 +67,8 @@ inline glm::dmat4 matrix(const json& object, const char* name) {
   if (!rows.is_array() || rows.size() != 16) refuse(name, "is not a list of sixteen numbers");
   glm::dmat4 out;
   for (int i = 0; i < 16; ++i)
-    out[i % 4][i / 4] = number(rows[static_cast<std::size_t>(i)], fmt::format("{}[{}]", name, i), -1e12, 1e12);
+    out[i % 4][i / 4] =
+        number(rows[static_cast<std::size_t>(i)], fmt::format("{}[{}]", name, i), -1e12, 1e12);
   return out;
 }
 
@@ -77,14 +80,17 @@ inline std::uint32_t id(const json& value, const std::string& name) {
   return static_cast<std::uint32_t>(out);
 }
 
-inline std::uint32_t id(const json& object, const char* name) { return id(field(object, name), std::string(name)); }
+inline std::uint32_t id(const json& object, const char* name) {
+  return id(field(object, name), std::string(name));
+}
 
 inline std::vector<std::uint32_t> ids(const json& object) {
   const json& list = field(object, "ids");
   if (!list.is_array() || list.empty() || list.size() > most_chosen)
     refuse("ids", fmt::format("is not a list of 1 to {} numbers", most_chosen));
   std::vector<std::uint32_t> out;
-  for (std::size_t i = 0; i < list.size(); ++i) out.push_back(id(list[i], fmt::format("ids[{}]", i)));
+  for (std::size_t i = 0; i < list.size(); ++i)
+    out.push_back(id(list[i], fmt::format("ids[{}]", i)));
   std::ranges::sort(out);
   if (const auto twice = std::ranges::adjacent_find(out); twice != out.end())
     refuse("ids", fmt::format("names {} twice", *twice));
@@ -95,7 +101,8 @@ inline glm::dvec3 point(const json& object, const char* name) {
   const json& list = field(object, name);
   if (!list.is_array() || list.size() != 3) refuse(name, "is not a list of three numbers");
   glm::dvec3 out;
-  for (int i = 0; i < 3; ++i) out[i] = number(list[static_cast<std::size_t>(i)], fmt::format("{}[{}]", name, i), -1e30, 1e30);
+  for (int i = 0; i < 3; ++i)
+    out[i] = number(list[static_cast<std::size_t>(i)], fmt::format("{}[{}]", name, i), -1e30, 1e30);
   return out;
 }
 

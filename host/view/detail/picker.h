@@ -13,7 +13,8 @@
 
 namespace caplet::view {
 
-/// Answers what a pixel shows, what a thing is, and what a form says. Only the renderer's thread calls it.
+/// Answers what a pixel shows, what a thing is, and what a form says. Only the renderer's thread
+/// calls it.
 class Picker {
  public:
   /// The scene and its editor must outlive this. `device`: its name. Compiles the query's kernel.

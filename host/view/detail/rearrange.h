@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Adds and removes things. A rearrangement changes the scene as a whole, and returns the one that undoes it.
+// Adds and removes things. A rearrangement changes the scene as a whole, and returns the one that
+// undoes it.
 #pragma once
 
 #include <cstddef>
@@ -26,7 +27,8 @@ void put(std::vector<T>& into, std::vector<std::pair<std::size_t, T>>& from) {
   out.reserve(into.size() + from.size());
   auto next = from.begin();
   for (T& each : into) {
-    while (next != from.end() && next->first == out.size()) out.push_back(std::move((next++)->second));
+    while (next != from.end() && next->first == out.size())
+      out.push_back(std::move((next++)->second));
     out.push_back(std::move(each));
   }
   while (next != from.end()) out.push_back(std::move((next++)->second));
@@ -34,7 +36,8 @@ void put(std::vector<T>& into, std::vector<std::pair<std::size_t, T>>& from) {
 }
 
 template <class T>
-void take_out(std::vector<T>& of, const std::vector<std::size_t>& places, std::vector<std::pair<std::size_t, T>>& to) {
+void take_out(std::vector<T>& of, const std::vector<std::size_t>& places,
+              std::vector<std::pair<std::size_t, T>>& to) {
   std::vector<T> rest;
   rest.reserve(of.size() - places.size());
   auto next = places.begin();
@@ -51,7 +54,8 @@ void take_out(std::vector<T>& of, const std::vector<std::size_t>& places, std::v
 
 /// Converts indices among shown things to indices among all, including hidden ones; both ascend.
 template <class T>
-std::vector<std::size_t> places_in_whole(const HiddenList<T>& hidden, std::vector<std::size_t> places) {
+std::vector<std::size_t> places_in_whole(const HiddenList<T>& hidden,
+                                         std::vector<std::size_t> places) {
   std::size_t before = 0;
   for (std::size_t& place : places) {
     while (before < hidden.size() && hidden[before].first <= place + before) ++before;
@@ -90,7 +94,8 @@ Rearrange addition(std::shared_ptr<const Things> things) {
 
 template <class Rearrange>
 Rearrange removal(std::vector<std::size_t> shapes, std::vector<std::size_t> instances) {
-  return {[shapes = std::move(shapes), instances = std::move(instances)](Scene& scene, HiddenPointer& hidden) {
+  return {[shapes = std::move(shapes), instances = std::move(instances)](Scene& scene,
+                                                                         HiddenPointer& hidden) {
     auto things = std::make_shared<Things>();
     take_out(scene.shapes, shapes, things->shapes);
     take_out(scene.instances, instances, things->instances);

@@ -18,8 +18,8 @@
 
 namespace caplet::view {
 
-/// What the renderer's thread works with. All of it must outlive the loop, and belongs to that thread except for clients and
-/// server.
+/// What the renderer's thread works with. All of it must outlive the loop, and belongs to that
+/// thread except for clients and server.
 struct RenderTools {
   Clients& clients;
   Server& server;
@@ -29,7 +29,8 @@ struct RenderTools {
   Keeping& keeping;
 };
 
-/// Renders and answers on its own thread until the clients' session ends. The owner's thread calls the public functions.
+/// Renders and answers on its own thread until the clients' session ends. The owner's thread calls
+/// the public functions.
 class RenderLoop {
  public:
   explicit RenderLoop(const RenderTools& tools);

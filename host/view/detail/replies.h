@@ -14,7 +14,9 @@ namespace caplet::view {
 
 using Text = std::shared_ptr<const std::string>;
 
-inline Text text_of(const nlohmann::ordered_json& message) { return std::make_shared<const std::string>(json_dump(message)); }
+inline Text text_of(const nlohmann::ordered_json& message) {
+  return std::make_shared<const std::string>(json_dump(message));
+}
 
 /// Returns the message of an error. `number`: of the request, if it has one.
 inline Text error_text(const std::string& what, double number = 0) {

@@ -22,15 +22,16 @@ nlohmann::ordered_json to_json(const glm::dvec3& v);
 /// The page sends cameras in the same form (messages.h).
 nlohmann::ordered_json camera_text(const ShowView& look);
 
-/// Returns name, bounds (bounds_or_unit_of), shapes and instances by their object.id, materials, the device's name, and the
-/// samples per pixel of a finished picture.
-nlohmann::ordered_json scene_text(const Scene& scene, const std::string& device, std::uint32_t samples);
+/// Returns name, bounds (bounds_or_unit_of), shapes and instances by their object.id, materials,
+/// the device's name, and the samples per pixel of a finished picture.
+nlohmann::ordered_json scene_text(const Scene& scene, const std::string& device,
+                                  std::uint32_t samples);
 
 /// Returns the names of hidden things: shapes, then instances.
 nlohmann::ordered_json hidden_text(const Scene& scene, const Hidden& hidden);
 
-/// Returns a thing: its transform, bounds, surfaces with their materials, and one of its capsules if it has some, with its ends
-/// in the world. Returns null if the thing does not exist.
+/// Returns a thing: its transform, bounds, surfaces with their materials, and one of its capsules
+/// if it has some, with its ends in the world. Returns null if the thing does not exist.
 nlohmann::ordered_json thing_text(const Scene& scene, std::uint32_t id, std::uint32_t primitive);
 
 }  // namespace caplet::view

@@ -14,7 +14,8 @@ ShowView look_of(const ViewEdit& own);
 /// Returns the scene's own view.
 inline ShowView look_of_scene(const Scene& scene) { return look_of(view_of(scene)); }
 
-/// Returns `own` as seen by `look`, with a pixel for each square of `scale` pixels. `eye`: 0 is the left of a stereo pair.
+/// Returns `own` as seen by `look`, with a pixel for each square of `scale` pixels. `eye`: 0 is the
+/// left of a stereo pair.
 ViewEdit shown_view(const ViewEdit& own, const ShowView& look, int scale, int eye);
 
 }  // namespace caplet::view

@@ -28,14 +28,17 @@ static inline float3 ball_sample(__global const float* ball, float3 p, float2 u)
   const float t = u.x * (cone > 0.0f ? cone : 2.0f);
   const float sine = sqrt(fmax(0.0f, t * (2.0f - t))), phi = 2.0f * CAPLET_PI * u.y;
   const Frame frame = frame_from_normal(unit_or(axis, (float3)(0.0f, 0.0f, 1.0f)));
-  return normalize(frame.s * (sine * cos(phi)) + frame.t * (sine * sin(phi)) + frame.n * (1.0f - t));
+  return normalize(frame.s * (sine * cos(phi)) + frame.t * (sine * sin(phi)) +
+                   frame.n * (1.0f - t));
 }
 
 // Finds the first crossing beyond t_min of the primitive at `slot` that a ray from p along wi sees.
 // Returns 0 when there is none.
-static inline int primitive_crossing(const Tree* tree, const Surfaces* surfaces, uint slot, uint instance, float3 p, float3 wi, float t_min,
+static inline int primitive_crossing(const Tree* tree, const Surfaces* surfaces, uint slot,
+                                     uint instance, float3 p, float3 wi, float t_min,
                                      HitRecord* hit) {
-  const GeometryRecord geometry = surfaces->geometries[surfaces->primitive_geometry[as_uint(tree->leaves[slot])]];
+  const GeometryRecord geometry =
+      surfaces->geometries[surfaces->primitive_geometry[as_uint(tree->leaves[slot])]];
   float3 o = p, d = wi;
   if (instance != CAPLET_NONE) {
     o = transform_point(tree->instances[instance].object_from_world, p);
@@ -50,7 +53,8 @@ static inline int primitive_crossing(const Tree* tree, const Surfaces* surfaces,
   const uint lane = slot & 7u;
   real t;
   real_mask side;
-  const real_mask found = any_shape_hit(geometry.shape, &ray, tree->leaves + (slot - lane), lane, &t, &side);
+  const real_mask found =
+      any_shape_hit(geometry.shape, &ray, tree->leaves + (slot - lane), lane, &t, &side);
   float ts[CAPLET_REAL_WIDTH];
   int sides[CAPLET_REAL_WIDTH];
   real_store(t, ts);
@@ -65,7 +69,8 @@ static inline int primitive_crossing(const Tree* tree, const Surfaces* surfaces,
 
 // Replaces the first crossing `hit` by one of all crossings along the ray, each with the same
 // chance. Returns the number of crossings.
-static inline uint choose_crossing(const Tree* tree, const Surfaces* surfaces, uint slot, uint instance, float3 p, float3 wi, HitRecord* hit) {
+static inline uint choose_crossing(const Tree* tree, const Surfaces* surfaces, uint slot,
+                                   uint instance, float3 p, float3 wi, HitRecord* hit) {
   const uint seed = hash_combine(hash_combine(as_uint(wi.x), as_uint(wi.y)), as_uint(wi.z));
   uint count = 1u;
   HitRecord next = *hit;

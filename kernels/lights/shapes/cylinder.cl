@@ -11,7 +11,9 @@
 #include "shapes/surface_local.cl"
 
 // Returns the areas of the side and of the ends that emit.
-static inline float3 cylinder_areas(const Surfaces* surfaces, __global const GeometryRecord* geometry, __global const float* data) {
+static inline float3 cylinder_areas(const Surfaces* surfaces,
+                                    __global const GeometryRecord* geometry,
+                                    __global const float* data) {
   const float r = cylinder_r(data);
   float3 area = (float3)(2.0f * CAPLET_PI * r * length(cylinder_p1(data) - cylinder_p0(data)),
                          cylinder_cap0(data) == CAPLET_CAP_OPEN ? 0.0f : CAPLET_PI * r * r,
@@ -32,7 +34,8 @@ static inline float cylinder_density(float3 areas) {
 
 // Samples x on the surface, n outward (object space), and which surface: the side or an end.
 // Returns the density per area, 0 when nothing emits.
-static inline float cylinder_sample(__global const float* data, float3 areas, float2 u, float3* x, float3* n, uint* surface) {
+static inline float cylinder_sample(__global const float* data, float3 areas, float2 u, float3* x,
+                                    float3* n, uint* surface) {
   const float density = cylinder_density(areas);
   if (!(density > 0.0f)) return 0.0f;
   const float3 p0 = cylinder_p0(data), p1 = cylinder_p1(data);

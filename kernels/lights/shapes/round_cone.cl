@@ -24,7 +24,8 @@ typedef struct {
 typedef struct {
   float3 e, f;
   float a, rho;
-  float height, angle;     // of q over the axis, for sampling by angle, and the angle that z0 .. z1 fill
+  float height,
+      angle;  // of q over the axis, for sampling by angle, and the angle that z0 .. z1 fill
   float cone, cap0, cap1;  // probabilities; all 0: nothing faces q
   float low0, high0, low1, high1;
   int inside;
@@ -46,7 +47,8 @@ static inline RoundCone round_cone_of_sphere(float3 center, float radius) {
 static inline RoundCone round_cone_make(float3 p0, float3 p1, float r0, float r1) {
   const float3 axis = p1 - p0;
   const float length = sqrt(dot(axis, axis));
-  if (!(length > fabs(r0 - r1))) return r0 >= r1 ? round_cone_of_sphere(p0, r0) : round_cone_of_sphere(p1, r1);
+  if (!(length > fabs(r0 - r1)))
+    return r0 >= r1 ? round_cone_of_sphere(p0, r0) : round_cone_of_sphere(p1, r1);
   RoundCone k;
   k.p0 = p0;
   k.d = axis / length;
@@ -106,12 +108,16 @@ static inline void cap_range(float a, float rho, float r, float* low, float* hig
   *high = fmax(*high, *low);
 }
 
-static inline float cone_radius(const RoundCone* k, float z) { return fmax(k->c * k->r0 - (z - k->z0) * (k->s / k->c), 0.0f); }
+static inline float cone_radius(const RoundCone* k, float z) {
+  return fmax(k->c * k->r0 - (z - k->z0) * (k->s / k->c), 0.0f);
+}
 
 // Along a cone that is long as seen from q, points are sampled by equal angles about q's foot on
 // the axis (Kulla and Fajardo, "Importance sampling techniques for path tracing in participating
 // media", 2012); else in proportion to the radius.
-static inline int cone_is_long(const RoundCone* k, const RoundConeView* v) { return !v->inside && k->z1 - k->z0 > v->rho; }
+static inline int cone_is_long(const RoundCone* k, const RoundConeView* v) {
+  return !v->inside && k->z1 - k->z0 > v->rho;
+}
 
 static inline RoundConeView round_cone_view(const RoundCone* k, float3 q) {
   RoundConeView v;
@@ -152,13 +158,17 @@ static inline RoundConeView round_cone_view(const RoundCone* k, float3 q) {
     // roughly.
     cap_range(v.a, v.rho, k->r0, &v.low0, &v.high0);
     cap_range(a1, v.rho, k->r1, &v.low1, &v.high1);
-    v.cap0 = sqr(k->r0 / d0) * (v.high0 - v.low0) * cap_arc(&v, v.a, k->r0, 0.5f * (v.low0 + v.high0));
-    v.cap1 = k->single ? 0.0f : sqr(k->r1 / d1) * (v.high1 - v.low1) * cap_arc(&v, a1, k->r1, 0.5f * (v.low1 + v.high1));
+    v.cap0 =
+        sqr(k->r0 / d0) * (v.high0 - v.low0) * cap_arc(&v, v.a, k->r0, 0.5f * (v.low0 + v.high0));
+    v.cap1 = k->single ? 0.0f
+                       : sqr(k->r1 / d1) * (v.high1 - v.low1) *
+                             cap_arc(&v, a1, k->r1, 0.5f * (v.low1 + v.high1));
     const float arc = k->single ? 0.0f : cone_arc(k, &v);
     if (arc > 0.0f) {
       // The radius is between the one nearest to q and the mean one: never 0, even at a tip.
       const float mean = 0.5f * k->c * (k->r0 + k->r1);
-      const float radius = cone_is_long(k, &v) ? 0.5f * (mean + cone_radius(k, clamp(v.a, k->z0, k->z1))) : mean;
+      const float radius =
+          cone_is_long(k, &v) ? 0.5f * (mean + cone_radius(k, clamp(v.a, k->z0, k->z1))) : mean;
       v.cone = arc * radius * v.angle / (k->c * v.height);
     }
   }
@@ -175,19 +185,22 @@ static inline float cone_density(const RoundCone* k, const RoundConeView* v, flo
   const float arc = cone_arc(k, v), begin = k->c * k->r0, end = k->c * k->r1;
   if (!(arc > 0.0f)) return 0.0f;
   // The density is per unit of z and of arc length across: dA = R(z) dpsi dz / c.
-  if (!cone_is_long(k, v)) return v->cone * k->c * 2.0f / ((begin + end) * (k->z1 - k->z0) * 2.0f * arc);
+  if (!cone_is_long(k, v))
+    return v->cone * k->c * 2.0f / ((begin + end) * (k->z1 - k->z0) * 2.0f * arc);
   const float per_z = v->height / (v->angle * (sqr(v->height) + sqr(z - v->a)));
   return v->cone * k->c * per_z / (2.0f * arc * cone_radius(k, z));
 }
 
-static inline float cap_density(const RoundConeView* v, float a, float r, float h, float low, float high, float chance) {
+static inline float cap_density(const RoundConeView* v, float a, float r, float h, float low,
+                                float high, float chance) {
   const float arc = cap_arc(v, a, r, h);
   // At the silhouette rounding may leave no arc: such a point is never sampled.
   return arc > 0.0f && high > low ? chance / (r * r * (high - low) * 2.0f * arc) : 0.0f;
 }
 
 // Samples a point *x and its outward unit normal *n; returns the density per area, 0: nothing.
-static inline float round_cone_sample(const RoundCone* k, const RoundConeView* v, float2 u, float3* x, float3* n) {
+static inline float round_cone_sample(const RoundCone* k, const RoundConeView* v, float2 u,
+                                      float3* x, float3* n) {
   if (u.x < v->cone) {
     const float t = u.x / v->cone, arc = cone_arc(k, v);
     float z;
@@ -195,7 +208,8 @@ static inline float round_cone_sample(const RoundCone* k, const RoundConeView* v
       // z is height * tan(angle of z0 + t * angle), by the addition theorem: no digits are lost
       // where both are near a right angle.
       const float begin = k->z0 - v->a, sine = sin(t * v->angle), cosine = cos(t * v->angle);
-      z = v->a + v->height * (begin * cosine + v->height * sine) / (v->height * cosine - begin * sine);
+      z = v->a +
+          v->height * (begin * cosine + v->height * sine) / (v->height * cosine - begin * sine);
       z = clamp(z, k->z0, k->z1);
     } else {
       z = mix(k->z0, k->z1, sample_linear(t, k->r0, k->r1));

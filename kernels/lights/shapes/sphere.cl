@@ -18,13 +18,15 @@ static inline float sphere_cone(float distance_squared, float radius) {
 
 // Returns the normal of the sphere at the nearer crossing of a direction at (1 - cos) = u.x * cone
 // from the axis. `axis` unit, from p to the centre; `radius_over_distance` < 1.
-static inline float3 sphere_cone_sample(float3 axis, float radius_over_distance, float cone, float2 u) {
+static inline float3 sphere_cone_sample(float3 axis, float radius_over_distance, float cone,
+                                        float2 u) {
   const float t = u.x * cone;
   const float sine_squared = t * (2.0f - t);
   const float ratio_squared = sqr(radius_over_distance);
   // The law of sines in the triangle p, centre, crossing gives the cosine of the angle at the
   // centre.
-  const float cosine = sine_squared / radius_over_distance + (1.0f - t) * sqrt(fmax(0.0f, 1.0f - sine_squared / ratio_squared));
+  const float cosine = sine_squared / radius_over_distance +
+                       (1.0f - t) * sqrt(fmax(0.0f, 1.0f - sine_squared / ratio_squared));
   const float sine = sqrt(fmax(0.0f, 1.0f - cosine * cosine));
   const float phi = 2.0f * CAPLET_PI * u.y;
   const Frame frame = frame_from_normal(axis);

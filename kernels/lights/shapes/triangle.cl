@@ -40,8 +40,10 @@ static inline TriangleView triangle_view(float3 v0, float3 v1, float3 v2, float3
   // The solid angle is that of Van Oosterom and Strackee, "The solid angle of a plane triangle",
   // 1983, with the triple product by differences of the corners.
   const float triple = fabs(dot(t.d0, cross(t.d1 - t.d0, t.d2 - t.d0)));
-  const float omega = 2.0f * atan2(triple, 1.0f + dot(t.d0, t.d1) + dot(t.d1, t.d2) + dot(t.d2, t.d0));
-  if (omega > CAPLET_TRIANGLE_MIN_SOLID_ANGLE && omega < CAPLET_TRIANGLE_MAX_SOLID_ANGLE) t.solid_angle = omega;
+  const float omega =
+      2.0f * atan2(triple, 1.0f + dot(t.d0, t.d1) + dot(t.d1, t.d2) + dot(t.d2, t.d0));
+  if (omega > CAPLET_TRIANGLE_MIN_SOLID_ANGLE && omega < CAPLET_TRIANGLE_MAX_SOLID_ANGLE)
+    t.solid_angle = omega;
   return t;
 }
 

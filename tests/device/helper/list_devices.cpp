@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Prints the number of devices, then what choosing one says. For choose_test.cpp, which runs it without a platform.
+// Prints the number of devices, then what choosing one says. For choose_test.cpp, which runs it
+// without a platform.
 #include <iostream>
 
 #include "device/device.h"

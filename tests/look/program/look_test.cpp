@@ -27,7 +27,8 @@ class Look : public testing::Test {
   void SetUp() override { test::write_file(folder_ / "cell.swc", two_balls); }
   Result run(const Names& arguments) const { return test::run_program(arguments, folder_); }
   LayeredImage picture(const char* scene, Names more) const {
-    more.insert(more.begin(), {"render", scene, "-q", "-o", "out.exr", "--size", "48x32", "--spp", "4"});
+    more.insert(more.begin(),
+                {"render", scene, "-q", "-o", "out.exr", "--size", "48x32", "--spp", "4"});
     const Result result = run(more);
     EXPECT_EQ(result.code, 0) << testing::PrintToString(more) << result.err;
     return read_exr(folder_ / "out.exr");
@@ -38,7 +39,8 @@ class Look : public testing::Test {
 
 // Shapes are lit as before to the bit; only what camera rays see of the sky is another.
 TEST_F(Look, BackgroundsReplaceTheSkyAndNothingElse) {
-  const LayeredImage sky = picture("scene.pbrt", {}), white = picture("scene.pbrt", {"--background", "white"}),
+  const LayeredImage sky = picture("scene.pbrt", {}),
+                     white = picture("scene.pbrt", {"--background", "white"}),
                      none = picture("scene.pbrt", {"--background", "transparent"});
   const std::vector<float>& coverage = sky.find("A")->floats;
   EXPECT_EQ(white.find("A")->floats, coverage);
@@ -46,7 +48,8 @@ TEST_F(Look, BackgroundsReplaceTheSkyAndNothingElse) {
   int inside = 0, outside = 0, edge = 0;
   for (std::size_t i = 0; i < coverage.size(); ++i)
     for (const char* name : {"R", "G", "B"}) {
-      const float before = sky.find(name)->floats[i], over = white.find(name)->floats[i], alone = none.find(name)->floats[i];
+      const float before = sky.find(name)->floats[i], over = white.find(name)->floats[i],
+                  alone = none.find(name)->floats[i];
       if (coverage[i] == 1) {
         EXPECT_EQ(over, before);
         EXPECT_EQ(alone, before);
@@ -67,7 +70,9 @@ TEST_F(Look, BackgroundsReplaceTheSkyAndNothingElse) {
 }
 
 TEST_F(Look, WhatIsAskedForIsConvertedToo) {
-  const Names asked = {"--view", "top", "--orthographic", "--background", "#4080c0", "--light", "dramatic", "--least-width", "3"};
+  const Names asked = {"--view",       "top",           "--orthographic",
+                       "--background", "#4080c0",       "--light",
+                       "dramatic",     "--least-width", "3"};
   const LayeredImage direct = picture("cell.swc", asked);
   Names convert = {"convert", "cell.swc", "cell.pbrt", "-q"};
   convert.insert(convert.end(), asked.begin(), asked.end());
@@ -82,24 +87,29 @@ TEST_F(Look, WhatIsAskedForIsConvertedToo) {
 
 // Seen from the front the soma is at the left; the line runs to the right and then up.
 TEST_F(Look, ViewsAndWidthsAreSeen) {
-  const LayeredImage thin = picture("cell.swc", {"--view", "front", "--orthographic", "--least-width", "0"}),
-                     wide = picture("cell.swc", {"--view", "front", "--orthographic", "--least-width", "4"});
+  const LayeredImage thin = picture("cell.swc",
+                                    {"--view", "front", "--orthographic", "--least-width", "0"}),
+                     wide = picture("cell.swc",
+                                    {"--view", "front", "--orthographic", "--least-width", "4"});
   const auto sum = [](const LayeredImage& image) {
     double out = 0;
     for (const float share : image.find("A")->floats) out += double{share};
     return out;
   };
-  // 9.01 units over 0.95 * 48 pixels; the wide line is 8 + 3 units long and 4 pixels thick, less what the soma hides and with an
-  // end.
+  // 9.01 units over 0.95 * 48 pixels; the wide line is 8 + 3 units long and 4 pixels thick, less
+  // what the soma hides and with an end.
   const double pixels = 0.95 * 48 / 9.01;
   EXPECT_NEAR(sum(thin), 3.1416 * pixels * pixels + 0.02 * 10 * pixels * pixels, 6);
   EXPECT_NEAR(sum(wide), 3.1416 * pixels * pixels + 10 * pixels * 4, 25);
   const std::vector<float>& share = wide.find("A")->floats;
   // The soma's middle, 3.505 left of the content's and 1.005 below it.
-  EXPECT_EQ(share[static_cast<std::size_t>(16 + 1.005 * pixels) * 48 + static_cast<std::size_t>(24 - 3.505 * pixels)], 1);
-  // In the line's row at x = 1 all samples of a pixel, 1.5 to each side, meet the wide one; two rows below none meets the thin
-  // one.
-  const auto row = static_cast<std::size_t>(16 + 1.005 * pixels), column = static_cast<std::size_t>(24 + 1.495 * pixels);
+  EXPECT_EQ(share[static_cast<std::size_t>(16 + 1.005 * pixels) * 48 +
+                  static_cast<std::size_t>(24 - 3.505 * pixels)],
+            1);
+  // In the line's row at x = 1 all samples of a pixel, 1.5 to each side, meet the wide one; two
+  // rows below none meets the thin one.
+  const auto row = static_cast<std::size_t>(16 + 1.005 * pixels),
+             column = static_cast<std::size_t>(24 + 1.495 * pixels);
   EXPECT_EQ(share[row * 48 + column], 1);
   EXPECT_LT(thin.find("A")->floats[row * 48 + column], 0.5);
   EXPECT_EQ(thin.find("A")->floats[(row + 2) * 48 + column], 0);
@@ -121,12 +131,14 @@ TEST_F(Look, BadWordsAreRefusedByName) {
     const char* flag;
   };
   for (const Row& row :
-       {Row{{"--view", "up"}, "--view"}, Row{{"--up", "q"}, "--up"}, Row{{"--projection", "fish"}, "--projection"},
-        Row{{"--light", "moon"}, "--light"}, Row{{"--background", "mauve"}, "--background"},
+       {Row{{"--view", "up"}, "--view"}, Row{{"--up", "q"}, "--up"},
+        Row{{"--projection", "fish"}, "--projection"}, Row{{"--light", "moon"}, "--light"},
+        Row{{"--background", "mauve"}, "--background"},
         Row{{"--least-width", "thick"}, "--least-width"}, Row{{"--axes"}, "--preview"},
         Row{{"--scale-bar", "3 furlongs", "--preview", "p.png"}, "--scale-bar"},
         Row{{"--outline", "0", "--preview", "p.png"}, "--outline"},
-        Row{{"--depth-cue", "2", "--preview", "p.png"}, "--depth-cue"}, Row{{"--color-bar", "--preview", "p.png"}, "--color-bar"},
+        Row{{"--depth-cue", "2", "--preview", "p.png"}, "--depth-cue"},
+        Row{{"--color-bar", "--preview", "p.png"}, "--color-bar"},
         Row{{"--axes", "--stereo", "1", "--preview", "p.png"}, "--stereo"}}) {
 #ifndef CAPLET_WITH_OIIO
     if (std::ranges::find(row.arguments, "p.png") != row.arguments.end()) continue;
@@ -143,27 +155,37 @@ TEST_F(Look, BadWordsAreRefusedByName) {
 #ifdef CAPLET_WITH_OIIO
 
 TEST_F(Look, PreviewsAreWhiteOrTransparentThroughout) {
-  EXPECT_EQ(run({"render", "scene.pbrt", "-q", "-o", "none", "--preview", "w.png", "--background", "white"}).code, 0);
+  EXPECT_EQ(run({"render", "scene.pbrt", "-q", "-o", "none", "--preview", "w.png", "--background",
+                 "white"})
+                .code,
+            0);
   const TextureImage white = FileImageReader().read_texture(folder_ / "w.png", {});
   EXPECT_EQ(white.channels, 3);
   for (const std::size_t i : {0U, 1U, 2U}) EXPECT_EQ(white.bytes[i], 255);
-  EXPECT_EQ(run({"render", "scene.pbrt", "-q", "-o", "none", "--preview", "t.png", "--background", "transparent"}).code, 0);
+  EXPECT_EQ(run({"render", "scene.pbrt", "-q", "-o", "none", "--preview", "t.png", "--background",
+                 "transparent"})
+                .code,
+            0);
   const TextureImage clear = FileImageReader().read_texture(folder_ / "t.png", {});
   ASSERT_EQ(clear.channels, 4);
   EXPECT_EQ(clear.bytes[3], 0);
   EXPECT_EQ(clear.bytes[4 * (8 * 24 + 12) + 3], 255);
-  const Result jpeg = run({"render", "scene.pbrt", "-q", "-o", "none", "--preview", "t.jpg", "--background", "transparent"});
+  const Result jpeg = run({"render", "scene.pbrt", "-q", "-o", "none", "--preview", "t.jpg",
+                           "--background", "transparent"});
   EXPECT_EQ(jpeg.code, 2);
   EXPECT_THAT(jpeg.err, AllOf(HasSubstr("--preview"), HasSubstr(".png")));
 }
 
-// The layers that overlays look at are not written where no one asked for them, and the picture stays as it is.
+// The layers that overlays look at are not written where no one asked for them, and the picture
+// stays as it is.
 TEST_F(Look, OverlaysAreOnThePreviewAlone) {
   const LayeredImage plain = picture("cell.swc", {"--layers", "none"});
-  const LayeredImage drawn = picture(
-      "cell.swc", {"--layers", "none", "--preview", "d.png", "--scale-bar", "auto", "--axes", "--outline", "--depth-cue"});
+  const LayeredImage drawn =
+      picture("cell.swc", {"--layers", "none", "--preview", "d.png", "--scale-bar", "auto",
+                           "--axes", "--outline", "--depth-cue"});
   ASSERT_EQ(drawn.channels.size(), plain.channels.size());
-  for (const Channel& channel : plain.channels) EXPECT_EQ(channel.floats, drawn.find(channel.name)->floats) << channel.name;
+  for (const Channel& channel : plain.channels)
+    EXPECT_EQ(channel.floats, drawn.find(channel.name)->floats) << channel.name;
   EXPECT_TRUE(fs::exists(folder_ / "d.png"));
 }
 

@@ -57,7 +57,8 @@ class SpectrumOnDevice : public testing::Test {
  protected:
   static void SetUpTestSuite() {
     device_ = std::make_unique<Device>(test::test_device());
-    program_ = std::make_unique<Program>(Program::from_source(*device_, "spectrum_test", flatten_kernels(kernels), ""));
+    program_ = std::make_unique<Program>(
+        Program::from_source(*device_, "spectrum_test", flatten_kernels(kernels), ""));
   }
   static void TearDownTestSuite() {
     program_.reset();
@@ -74,7 +75,8 @@ class SpectrumOnDevice : public testing::Test {
     const Buffer<WorldRecord> world(*device_, std::span<const WorldRecord>(&scene_.world, 1));
     cl::Kernel kernel = program_->kernel(name);
     cl_uint argument = 0;
-    for (const RawBuffer* buffer : std::initializer_list<const RawBuffer*>{&spectra, &tables, &observer, &wavelengths, &world})
+    for (const RawBuffer* buffer : std::initializer_list<const RawBuffer*>{
+             &spectra, &tables, &observer, &wavelengths, &world})
       kernel.setArg(argument++, buffer->handle());
     bind(kernel);
     launch(*device_, kernel, count, 1);
@@ -98,7 +100,8 @@ TEST_F(SpectrumOnDevice, EveryKindAsOnTheHost) {
   std::uniform_real_distribution<float> nm(360, 830);
   std::vector<float> lambda(256);
   for (float& value : lambda) value = nm(random);
-  lambda[0] = 360, lambda[1] = 830, lambda[2] = 100, lambda[3] = 2000;  // beyond the tables: clamped, never read outside
+  lambda[0] = 360, lambda[1] = 830, lambda[2] = 100,
+  lambda[3] = 2000;  // beyond the tables: clamped, never read outside
   const Buffer<float> lambda_buffer(*device_, std::span<const float>(lambda));
   const std::size_t count = scene_.spectra.size() * 64;
   const Buffer<float> out(*device_, 4 * count);
@@ -112,10 +115,12 @@ TEST_F(SpectrumOnDevice, EveryKindAsOnTheHost) {
     for (std::size_t i = 0; i < 256; ++i) {
       const SpectrumRecord& r = scene_.spectra[s];
       const double place = std::clamp(double{lambda[i]}, 360.0, 830.0) - 360;
-      const auto cell = std::min(static_cast<std::size_t>(place), std::size_t{CAPLET_LAMBDA_COUNT - 2});
+      const auto cell =
+          std::min(static_cast<std::size_t>(place), std::size_t{CAPLET_LAMBDA_COUNT - 2});
       double expected = r.scale, tolerance = 1e-6 * r.scale;
       if (r.kind == spectrum_table || r.kind == spectrum_sigmoid_illuminant) {
-        const double low = scene_.spectrum_tables[r.table + cell], high = scene_.spectrum_tables[r.table + cell + 1];
+        const double low = scene_.spectrum_tables[r.table + cell],
+                     high = scene_.spectrum_tables[r.table + cell + 1];
         expected *= low + (place - static_cast<double>(cell)) * (high - low);
         // The fraction is exact; five roundings of the larger value follow.
         tolerance = 5 * 6e-8 * r.scale * std::max(low, high);
@@ -123,12 +128,16 @@ TEST_F(SpectrumOnDevice, EveryKindAsOnTheHost) {
       if (r.kind == spectrum_sigmoid || r.kind == spectrum_sigmoid_illuminant) {
         const double l = lambda[i], c0 = r.c0, c1 = r.c1, c2 = r.c2, x = (c0 * l + c1) * l + c2;
         expected *= sigmoid_value({c0, c1, c2}, l);
-        // Horner's rule errs by 3 roundings of its largest terms; the slope of s is 1 / (2 (1 + x^2)^1.5).
-        const double polynomial = 3 * 6e-8 * (std::abs(c0) * l * l + std::abs(c1) * l + std::abs(c2));
-        tolerance = 2 * tolerance + 1.5 * std::max(1.0, expected) * (polynomial / std::pow(1 + x * x, 1.5) + 4e-7) +
+        // Horner's rule errs by 3 roundings of its largest terms; the slope of s is 1 / (2 (1 +
+        // x^2)^1.5).
+        const double polynomial =
+            3 * 6e-8 * (std::abs(c0) * l * l + std::abs(c1) * l + std::abs(c2));
+        tolerance = 2 * tolerance +
+                    1.5 * std::max(1.0, expected) * (polynomial / std::pow(1 + x * x, 1.5) + 4e-7) +
                     1.5 * expected * polynomial;
       }
-      EXPECT_NEAR(values[4 * (64 * s) + i], expected, tolerance) << "spectrum " << s << " at " << lambda[i];
+      EXPECT_NEAR(values[4 * (64 * s) + i], expected, tolerance)
+          << "spectrum " << s << " at " << lambda[i];
     }
 }
 
@@ -158,7 +167,8 @@ TEST_F(SpectrumOnDevice, WavelengthsAndTheirColor) {
   table.add_illuminant(RgbSpectrum{{1, 1, 1}, ColorSpace::srgb});
   constexpr std::size_t count = 64;
   std::vector<float> u;
-  // The place within each stratum by the golden ratio: four wavelengths u + i/4 share strata, and must not share places.
+  // The place within each stratum by the golden ratio: four wavelengths u + i/4 share strata, and
+  // must not share places.
   for (std::size_t i = 0; i < count; ++i) {
     const double place = std::fmod(static_cast<double>(i) * 0.6180339887, 1.0);
     u.push_back(static_cast<float>((static_cast<double>(i) + place) / count));
@@ -177,7 +187,8 @@ TEST_F(SpectrumOnDevice, WavelengthsAndTheirColor) {
       const double v = std::fmod(u[i] + 0.25 * static_cast<double>(lane), 1.0);
       const auto cell = static_cast<std::size_t>(v * 1024);
       const double low = scene_.wavelength_table[cell], high = scene_.wavelength_table[cell + 1];
-      EXPECT_NEAR(values[16 * i + lane], low + (v * 1024 - static_cast<double>(cell)) * (high - low), 1e-4);
+      EXPECT_NEAR(values[16 * i + lane],
+                  low + (v * 1024 - static_cast<double>(cell)) * (high - low), 1e-4);
       EXPECT_NEAR(values[16 * i + 4 + lane] * 1024 * (high - low), 1, 1e-6);
       if (lane == 3) continue;
       xyz[static_cast<int>(lane)] += values[16 * i + 8 + lane] / count;
@@ -186,14 +197,15 @@ TEST_F(SpectrumOnDevice, WavelengthsAndTheirColor) {
   const std::array<double, 9> m = rgb_from_xyz(ColorSpace::srgb);
   for (std::size_t row = 0; row < 3; ++row) {
     EXPECT_NEAR(m[3 * row] * xyz.x + m[3 * row + 1] * xyz.y + m[3 * row + 2] * xyz.z, 1, 1e-3);
-    // The hero wavelength alone, its density a quarter, has the same mean; one wavelength in 64 strata leaves a noise of 6e-3,
-    // and this is five times that.
+    // The hero wavelength alone, its density a quarter, has the same mean; one wavelength in 64
+    // strata leaves a noise of 6e-3, and this is five times that.
     EXPECT_NEAR(m[3 * row] * hero.x + m[3 * row + 1] * hero.y + m[3 * row + 2] * hero.z, 1, 3e-2);
   }
 }
 
 TEST_F(SpectrumOnDevice, DensitiesIntegrateToOne) {
-  // Sum over cells of density times width, as the kernel computes the density: 1024 cells of probability 1/1024 each.
+  // Sum over cells of density times width, as the kernel computes the density: 1024 cells of
+  // probability 1/1024 each.
   SpectrumTable table(scene_, ColorSpace::srgb);
   table.add_reflectance(ConstantSpectrum{1});
   std::vector<float> u;
@@ -210,22 +222,27 @@ TEST_F(SpectrumOnDevice, DensitiesIntegrateToOne) {
   for (std::size_t i = 0; i < u.size(); ++i)
     for (std::size_t lane = 0; lane < 4; ++lane) {
       const std::size_t cell = i + 256 * lane;
-      integral +=
-          double{values[16 * i + 4 + lane]} * (double{scene_.wavelength_table[cell + 1]} - double{scene_.wavelength_table[cell]});
+      integral += double{values[16 * i + 4 + lane]} * (double{scene_.wavelength_table[cell + 1]} -
+                                                       double{scene_.wavelength_table[cell]});
     }
   EXPECT_NEAR(integral, 1, 1e-6);
 }
 
-// The columns are the XYZ primaries: published matrices, as in the tests of the film's development. Whites by a spectrum or as xy
-// differ by up to 2e-4 in XYZ.
+// The columns are the XYZ primaries: published matrices, as in the tests of the film's development.
+// Whites by a spectrum or as xy differ by up to 2e-4 in XYZ.
 TEST_F(SpectrumOnDevice, MatrixIsThatOfTheFilmsSpace) {
   const std::pair<ColorSpace, std::array<double, 9>> spaces[] = {
-      {ColorSpace::srgb, {3.2404542, -1.5371385, -0.4985314, -0.9692660, 1.8760108, 0.0415560, 0.0556434, -0.2040259, 1.0572252}},
+      {ColorSpace::srgb,
+       {3.2404542, -1.5371385, -0.4985314, -0.9692660, 1.8760108, 0.0415560, 0.0556434, -0.2040259,
+        1.0572252}},
       {ColorSpace::dci_p3,
-       {2.4934969, -0.9313836, -0.4027108, -0.8294890, 1.7626641, 0.0236247, 0.0358458, -0.0761724, 0.9568845}},
+       {2.4934969, -0.9313836, -0.4027108, -0.8294890, 1.7626641, 0.0236247, 0.0358458, -0.0761724,
+        0.9568845}},
       {ColorSpace::rec2020,
-       {1.7166512, -0.3556708, -0.2533663, -0.6666844, 1.6164812, 0.0157685, 0.0176399, -0.0427706, 0.9421031}},
-      {ColorSpace::aces2065_1, {1.0498110, 0, -0.0000975, -0.4959030, 1.3733130, 0.0982400, 0, 0, 0.9912520}},
+       {1.7166512, -0.3556708, -0.2533663, -0.6666844, 1.6164812, 0.0157685, 0.0176399, -0.0427706,
+        0.9421031}},
+      {ColorSpace::aces2065_1,
+       {1.0498110, 0, -0.0000975, -0.4959030, 1.3733130, 0.0982400, 0, 0, 0.9912520}},
   };
   for (const auto& [space, m] : spaces) {
     Scene scene;
@@ -238,7 +255,8 @@ TEST_F(SpectrumOnDevice, MatrixIsThatOfTheFilmsSpace) {
     kernel.setArg(1, out.handle());
     launch(*device_, kernel, 1, 1);
     const std::vector<float> values = out.read();
-    for (std::size_t i = 0; i < 9; ++i) EXPECT_NEAR(values[i], m[i], 1e-3) << static_cast<int>(space) << ' ' << i;
+    for (std::size_t i = 0; i < 9; ++i)
+      EXPECT_NEAR(values[i], m[i], 1e-3) << static_cast<int>(space) << ' ' << i;
   }
 }
 

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Builds a scene from pbrt's statements: keeps the graphics state, and resolves at the end what only then is known.
+// Builds a scene from pbrt's statements: keeps the graphics state, and resolves at the end what
+// only then is known.
 #pragma once
 
 #include <cstdint>
@@ -31,7 +32,8 @@ struct Building {
   bool in_world = false, has_camera = false;
 
   /// Joins a statement's own parameters with the attributes of its target (none: "").
-  Parameters parameters(const Statement& at, const std::string& owner, ParameterList own, std::string_view attribute_target = {});
+  Parameters parameters(const Statement& at, const std::string& owner, ParameterList own,
+                        std::string_view attribute_target = {});
   /// Returns the statement's own parameters with the state's colour space, and warns of duplicates.
   ParameterList taken(ParameterList own);
   /// As check_name of names.h.
@@ -63,7 +65,8 @@ class TransformBuilder : public TransformTarget {
   void coordinate_system(const Statement& at, const Word& name) override;
   void identity(const Statement& at) override;
   void inverse_transform(const Statement& at, const glm::dmat4& matrix) override;
-  void look_at(const Statement& at, const glm::dvec3& eye, const glm::dvec3& target, const glm::dvec3& up) override;
+  void look_at(const Statement& at, const glm::dvec3& eye, const glm::dvec3& target,
+               const glm::dvec3& up) override;
   void rotate(const Statement& at, double degrees, const glm::dvec3& axis) override;
   void scale(const Statement& at, const glm::dvec3& factors) override;
   void transform(const Statement& at, const glm::dmat4& matrix) override;
@@ -128,14 +131,16 @@ class SceneBuilder : public SceneTarget {
   explicit SceneBuilder(Building& building) : to_(building), draft_(building.draft) {}
   void area_light_source(const Statement& at, const std::string& type, ParameterList own) override;
   void light_source(const Statement& at, const std::string& type, ParameterList own) override;
-  void make_named_material(const Statement& at, const std::string& name, ParameterList own) override;
+  void make_named_material(const Statement& at, const std::string& name,
+                           ParameterList own) override;
   void make_named_medium(const Statement& at, const std::string& name, ParameterList own) override;
   void material(const Statement& at, const std::string& type, ParameterList own) override;
-  void medium_interface(const Statement& at, const Word& inside, const std::optional<Word>& outside) override;
+  void medium_interface(const Statement& at, const Word& inside,
+                        const std::optional<Word>& outside) override;
   void named_material(const Statement& at, const Word& name) override;
   void shape(const Statement& at, const std::string& type, ParameterList own) override;
-  void texture(const Statement& at, const std::string& name, const Word& kind, const Word& texture_class,
-               ParameterList own) override;
+  void texture(const Statement& at, const std::string& name, const Word& kind,
+               const Word& texture_class, ParameterList own) override;
 
  private:
   std::optional<std::uint32_t> side_of(const Word& medium);
@@ -146,7 +151,8 @@ class SceneBuilder : public SceneTarget {
 };
 
 /// Adds the shapes of a file in another format: Shape "file" and "swc" (pbrt/file_shapes.cpp).
-void add_shapes_of_file(const Statement& at, const std::string& type, Parameters& given, Building& to);
+void add_shapes_of_file(const Statement& at, const std::string& type, Parameters& given,
+                        Building& to);
 
 class Builder {
  public:

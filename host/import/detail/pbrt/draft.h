@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// The scene while its statements are read: shapes refer to materials and media that may be stated later. The functions of
-// detail/pbrt/resolve.h replace these references at the end.
+// The scene while its statements are read: shapes refer to materials and media that may be stated
+// later. The functions of detail/pbrt/resolve.h replace these references at the end.
 #pragma once
 
 #include <cstdint>
@@ -45,7 +45,8 @@ struct MaterialStatement {
   SourceLocation where = {};
 };
 
-/// What shapes refer to until all materials are known: the default, a Material statement, or a name.
+/// What shapes refer to until all materials are known: the default, a Material statement, or a
+/// name.
 struct MaterialUse {
   std::optional<std::size_t> statement;
   std::string name;
@@ -53,17 +54,20 @@ struct MaterialUse {
   std::optional<std::uint32_t> made = {};  // a material of another file, already in the scene
 };
 
-/// The materials' statements, and their uses. Shape::material is an index into `uses`, of which the first is the default.
+/// The materials' statements, and their uses. Shape::material is an index into `uses`, of which the
+/// first is the default.
 struct MaterialDraft {
   std::vector<MaterialStatement> statements;
   std::map<std::string, std::size_t> named;
   std::vector<MaterialUse> uses{1};
   std::map<std::string, std::uint32_t> uses_by_name;
-  std::set<std::string> said_two_sided;  // places of shapes whose statements state that they are not one-sided
+  std::set<std::string>
+      said_two_sided;  // places of shapes whose statements state that they are not one-sided
 
   /// Returns the use of a name; `where` is that of the first use.
   std::uint32_t use_of_name(const std::string& name, const SourceLocation& where);
-  /// Returns the statement of a use; no value for the default, for materials of other files and for unknown names.
+  /// Returns the statement of a use; no value for the default, for materials of other files and for
+  /// unknown names.
   std::optional<std::size_t> statement_of(const MaterialUse& use) const;
 };
 
@@ -73,7 +77,8 @@ struct MediumStatement {
   std::optional<std::uint32_t> index = {};  // in the scene, once it is used
 };
 
-/// The media's statements by name, and their uses. The sides of shapes and the camera are indices into `uses`.
+/// The media's statements by name, and their uses. The sides of shapes and the camera are indices
+/// into `uses`.
 struct MediumDraft {
   struct Use {
     std::string name;
@@ -105,7 +110,8 @@ struct Draft {
   MediumDraft media = {};
   ObjectDraft objects = {};
   TextureTable textures = {};
-  std::map<std::pair<std::string, ImageEncoding>, std::shared_ptr<const TextureImage>> texture_images = {};
+  std::map<std::pair<std::string, ImageEncoding>, std::shared_ptr<const TextureImage>>
+      texture_images = {};
   SharedParameters attributes = {};  // of all Attribute statements
 
   /// Reads the images that parameters name, each once. The draft must outlive what is returned.
@@ -117,7 +123,8 @@ struct Draft {
     for (Object& object : scene.objects)
       for (Shape& shape : object.shapes) visit(shape);
   }
-  /// Returns "; the nearest known name is ..." for errors that are shown; the search is skipped for the rest, as it is slow.
+  /// Returns "; the nearest known name is ..." for errors that are shown; the search is skipped for
+  /// the rest, as it is slow.
   template <class Map>
   std::string nearest(const std::string& name, const Map& map) const {
     if (map.empty() || diagnostics.is_full()) return {};

@@ -16,7 +16,8 @@
 
 namespace caplet::pbrt {
 
-/// Reads numbers, flags and choices, which all families share. Fields that are not given keep their values.
+/// Reads numbers, flags and choices, which all families share. Fields that are not given keep their
+/// values.
 struct FieldReader {
   Parameters& parameters;
 
@@ -30,7 +31,8 @@ struct FieldReader {
   }
   /// Accepts any integer and keeps its 32 bits.
   void seed(const Field& field, std::uint32_t& value) {
-    value = static_cast<std::uint32_t>(parameters.integer(field.name, static_cast<std::int32_t>(value)));
+    value = static_cast<std::uint32_t>(
+        parameters.integer(field.name, static_cast<std::int32_t>(value)));
   }
   void flag(const Field& field, bool& value) { value = parameters.boolean(field.name, value); }
   template <class Names>
@@ -41,8 +43,10 @@ struct FieldReader {
       value = static_cast<int>(found - names.begin());
       return;
     }
-    parameters.error(field.name, "is " + in_quotes(given) + "; the nearest known name is \"" +
-                                     nearest_name(given, std::vector<std::string>(names.begin(), names.end())) + "\"");
+    parameters.error(field.name,
+                     "is " + in_quotes(given) + "; the nearest known name is \"" +
+                         nearest_name(given, std::vector<std::string>(names.begin(), names.end())) +
+                         "\"");
   }
 
  protected:

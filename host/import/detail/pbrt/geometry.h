@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Readers of the geometry in Shape statements, one per type (docs/formats/pbrt.md). They report errors at their places and return
-// something harmless, because the scene is then refused as a whole.
+// Readers of the geometry in Shape statements, one per type (docs/formats/pbrt.md). They report
+// errors at their places and return something harmless, because the scene is then refused as a
+// whole.
 #pragma once
 
 #include <glm/vec3.hpp>
@@ -27,7 +28,8 @@ glm::dvec3 required_point(Parameters& parameters, std::string_view name);
 double positive_length(Parameters& parameters, std::string_view name, double fallback);
 /// Reads "float radius": one value, positive and at most largest_length.
 double positive_radius(Parameters& parameters, double fallback);
-/// Reads "phimax" in radians, above 0 and at most a full turn (larger values become a full turn, as in pbrt).
+/// Reads "phimax" in radians, above 0 and at most a full turn (larger values become a full turn, as
+/// in pbrt).
 double phi_max(Parameters& parameters);
 /// Reads a length of either sign, at most largest_length.
 double length(Parameters& parameters, std::string_view name, double fallback);
@@ -61,7 +63,8 @@ class FieldCheck : public ShapeCheck {
   bool good_ = true;
 };
 
-/// Reads a shape whose model names its fields. If something is missing or wrong, it reports that and returns the default shape.
+/// Reads a shape whose model names its fields. If something is missing or wrong, it reports that
+/// and returns the default shape.
 template <FieldedShape Type>
 Type read_fields(Parameters& parameters) {
   Type shape;
@@ -88,12 +91,14 @@ PolyhedronShape make_polyhedron(Parameters& parameters);
 TriangleMeshShape make_triangle_mesh(Parameters& parameters);
 /// Reads only "P" and "indices".
 TriangleMeshShape make_vertices_and_triangles(Parameters& parameters);
-/// Makes a "loopsubdiv": the limit surface of Loop's rules, as triangles of its level (shapes/loop_subdivision.cpp).
+/// Makes a "loopsubdiv": the limit surface of Loop's rules, as triangles of its level
+/// (shapes/loop_subdivision.cpp).
 TriangleMeshShape make_loop_subdivision(Parameters& parameters);
 BilinearMeshShape make_bilinear_mesh(Parameters& parameters);
-/// Makes chains of tapered capsules along pbrt's curve. The distance between a chain's axis and the curve at the same parameter
-/// is at most max(1e-3 of the greater width, 1e-5 of the diagonal of the control points' bounds). Radii are linear in the same
-/// parameter, so this also bounds the Hausdorff distance of the chain from the round tube.
+/// Makes chains of tapered capsules along pbrt's curve. The distance between a chain's axis and the
+/// curve at the same parameter is at most max(1e-3 of the greater width, 1e-5 of the diagonal of
+/// the control points' bounds). Radii are linear in the same parameter, so this also bounds the
+/// Hausdorff distance of the chain from the round tube.
 CapsulesShape make_curve(Parameters& parameters);
 CsgShape make_csg(Parameters& parameters, const ObjectLookup& objects);
 

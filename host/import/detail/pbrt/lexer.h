@@ -23,13 +23,17 @@ struct SyntaxError {
 struct Token {
   enum class Kind { word, string, open, close, end };
   Kind kind = Kind::end;
-  std::string_view text;  // a string's without its quotes, escapes resolved; lives as long as the lexer
+  std::string_view
+      text;  // a string's without its quotes, escapes resolved; lives as long as the lexer
   int line = 0, column = 0;
 };
 
-inline SourceLocation place_of(const Token& token, const std::string& file) { return {file, token.line, token.column}; }
+inline SourceLocation place_of(const Token& token, const std::string& file) {
+  return {file, token.line, token.column};
+}
 
-/// Splits text into words, "strings" and brackets. `#` starts a comment. Columns count bytes from 1.
+/// Splits text into words, "strings" and brackets. `#` starts a comment. Columns count bytes
+/// from 1.
 class Lexer {
  public:
   /// `behind`: the text that follows this one, that of the including file; null: nothing follows.
@@ -37,11 +41,13 @@ class Lexer {
   Lexer(const Lexer&) = delete;
   Lexer& operator=(const Lexer&) = delete;
 
-  /// Returns the next token without taking it. Throws SyntaxError for an unterminated string or an unknown escape.
+  /// Returns the next token without taking it. Throws SyntaxError for an unterminated string or an
+  /// unknown escape.
   const Token& peek();
   Token next();
-  /// Appends the plain numbers (`whole`: 32-bit integers) that come next, up to the first other token. This is a fast path for
-  /// long lists. Only blanks and line ends may separate them, no comments.
+  /// Appends the plain numbers (`whole`: 32-bit integers) that come next, up to the first other
+  /// token. This is a fast path for long lists. Only blanks and line ends may separate them, no
+  /// comments.
   void take_numbers(std::vector<double>& numbers, bool whole);
   SourceLocation place(const Token& token) const { return place_of(token, file_); }
   const std::string& file() const { return file_; }
@@ -65,7 +71,8 @@ class Lexer {
 /// Quotes a token for messages: shortened, with control characters replaced.
 std::string in_quotes(std::string_view text);
 
-/// Returns the number that a word of `file` states. Throws SyntaxError when it is not a number or not finite.
+/// Returns the number that a word of `file` states. Throws SyntaxError when it is not a number or
+/// not finite.
 double parse_number(const Token& token, const std::string& file);
 /// Returns the 32-bit integer that a word of `file` states. Throws SyntaxError otherwise.
 int parse_integer(const Token& token, const std::string& file);

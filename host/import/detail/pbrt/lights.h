@@ -31,9 +31,10 @@ class LightFiles {
   std::map<std::string, std::shared_ptr<const IesProfile>> profiles_;
 };
 
-/// Makes the light of a LightSource statement of an accepted type; no value when it had errors (reported).
-std::optional<Light> make_light(const std::string& type, Parameters& parameters, const glm::dmat4& world_from_light,
-                                LightFiles& files);
+/// Makes the light of a LightSource statement of an accepted type; no value when it had errors
+/// (reported).
+std::optional<Light> make_light(const std::string& type, Parameters& parameters,
+                                const glm::dmat4& world_from_light, LightFiles& files);
 
 /// Makes the emission that an AreaLightSource statement gives to the shapes after it.
 AreaEmission make_area_emission(Parameters& parameters, LightFiles& files);

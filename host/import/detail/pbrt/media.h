@@ -10,6 +10,7 @@
 namespace caplet::pbrt {
 
 /// Makes the medium of a MakeNamedMedium statement of an accepted type.
-Medium make_medium(const std::string& type, const std::string& name, Parameters& parameters, const glm::dmat4& world_from_medium);
+Medium make_medium(const std::string& type, const std::string& name, Parameters& parameters,
+                   const glm::dmat4& world_from_medium);
 
 }  // namespace caplet::pbrt

@@ -30,7 +30,8 @@ const std::vector<std::string>& directive_names();
 /// Returns whether pbrt-v4 or Caplet has this type of `directive`.
 bool is_known_name(std::string_view directive, const std::string& name);
 
-/// Says why a type of `directive` cannot be used, and how such errors are grouped; `text` is empty where it is accepted.
+/// Says why a type of `directive` cannot be used, and how such errors are grouped; `text` is empty
+/// where it is accepted.
 struct Refusal {
   std::string text;
   bool is_known = true;  // pbrt-v4 knows it, but it is not supported yet
@@ -38,6 +39,7 @@ struct Refusal {
 Refusal refusal_of(std::string_view directive, const std::string& name);
 
 /// True if `name` is accepted; otherwise reports that it is unknown, or known and not rendered yet.
-bool check_name(std::string_view directive, const std::string& name, const SourceLocation& where, Diagnostics& diagnostics);
+bool check_name(std::string_view directive, const std::string& name, const SourceLocation& where,
+                Diagnostics& diagnostics);
 
 }  // namespace caplet::pbrt

@@ -14,19 +14,23 @@
 namespace caplet::pbrt {
 
 /// `camera_from_world` is the current transform.
-void set_camera(const std::string& type, Parameters& parameters, const glm::dmat4& world_from_camera, Scene& scene);
+void set_camera(const std::string& type, Parameters& parameters,
+                const glm::dmat4& world_from_camera, Scene& scene);
 /// `images` reads what the film names; without it such a name is an error.
 void set_film(const std::string& type, Parameters& parameters, ColorSpace space, Scene& scene,
               const ImageReader* images = nullptr);
 void set_filter(const std::string& type, Parameters& parameters, Scene& scene);
 /// Returns the sampler's own seed, if it has one.
-std::optional<std::uint32_t> set_sampler(const std::string& type, Parameters& parameters, Scene& scene);
+std::optional<std::uint32_t> set_sampler(const std::string& type, Parameters& parameters,
+                                         Scene& scene);
 void set_integrator(const std::string& type, Parameters& parameters, Scene& scene);
-/// Checks the parameters of an accelerator, which have no effect because accelerators do not change the picture.
+/// Checks the parameters of an accelerator, which have no effect because accelerators do not change
+/// the picture.
 void check_accelerator(const std::string& type, Parameters& parameters);
 
-/// Handles one Option statement of `file`; `value` is the token after the name. Returns the seed if it sets one.
-std::optional<std::uint32_t> set_option(const std::string& name, const Token& value, const std::string& file,
-                                        Diagnostics& diagnostics);
+/// Handles one Option statement of `file`; `value` is the token after the name. Returns the seed if
+/// it sets one.
+std::optional<std::uint32_t> set_option(const std::string& name, const Token& value,
+                                        const std::string& file, Diagnostics& diagnostics);
 
 }  // namespace caplet::pbrt

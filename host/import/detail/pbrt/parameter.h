@@ -17,9 +17,11 @@ namespace caplet::pbrt {
 
 struct Parameter {
   std::string type,
-      name;  // old type names are replaced by the new ones ("point" -> "point3"); no type: any that suits the values
+      name;  // old type names are replaced by the new ones ("point" -> "point3"); no type: any that
+             // suits the values
   SourceLocation where;
-  std::vector<double> numbers;       // integer, float, points, vectors, normal, rgb, blackbody, spectrum (pairs)
+  std::vector<double>
+      numbers;  // integer, float, points, vectors, normal, rgb, blackbody, spectrum (pairs)
   std::vector<std::string> strings;  // string, texture, spectrum (a name or a file)
   std::vector<bool> bools;
   ColorSpace space = ColorSpace::srgb;     // that of the graphics state; the builder sets it

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Reads the parameters of pbrt statements with type checks. A parameter that a statement does not ask for is an error.
+// Reads the parameters of pbrt statements with type checks. A parameter that a statement does not
+// ask for is an error.
 #pragma once
 
 #include <array>
@@ -24,7 +25,8 @@ namespace caplet::pbrt {
 
 enum class SpectrumUse { albedo, unbounded, illuminant };
 
-/// The value of a Texture statement: a constant, a texture of the scene, or the reason why it cannot be rendered.
+/// The value of a Texture statement: a constant, a texture of the scene, or the reason why it
+/// cannot be rendered.
 struct TextureValue {
   bool is_float = false;
   double number = 0;
@@ -36,11 +38,14 @@ struct TextureValue {
 class TextureTable {
  public:
   /// Returns false and adds nothing if one of that name and kind exists.
-  bool add(const std::string& name, TextureValue value) { return of(value.is_float).emplace(name, std::move(value)).second; }
+  bool add(const std::string& name, TextureValue value) {
+    return of(value.is_float).emplace(name, std::move(value)).second;
+  }
   /// Returns the texture of the kind, else that of the other kind, else null.
   const TextureValue* find(const std::string& name, bool is_float) const {
     for (const bool kind : {is_float, !is_float})
-      if (const auto found = of_[kind ? 1 : 0].find(name); found != of_[kind ? 1 : 0].end()) return &found->second;
+      if (const auto found = of_[kind ? 1 : 0].find(name); found != of_[kind ? 1 : 0].end())
+        return &found->second;
     return nullptr;
   }
 
@@ -49,7 +54,8 @@ class TextureTable {
   std::map<std::string, TextureValue> of_[2];
 };
 
-/// Finds a finished object by its name. Returns null, with the reason in `problem`, if there is none.
+/// Finds a finished object by its name. Returns null, with the reason in `problem`, if there is
+/// none.
 using ObjectLookup = std::function<const Object*(const std::string& name, std::string& problem)>;
 
 using SharedParameters = std::vector<std::shared_ptr<Parameter>>;
@@ -57,16 +63,20 @@ using SharedParameters = std::vector<std::shared_ptr<Parameter>>;
 /// Adds the errors of a file that is named at `where`; each line has both places.
 void add_errors(const InputError& problem, const SourceLocation& where, Diagnostics& diagnostics);
 
-/// Resolves a file name of a statement: beside the statement's file, else beside the scene's main file.
-std::string resolve_file(const std::string& name, const SourceLocation& where, const std::string& main_file);
+/// Resolves a file name of a statement: beside the statement's file, else beside the scene's main
+/// file.
+std::string resolve_file(const std::string& name, const SourceLocation& where,
+                         const std::string& main_file);
 
-/// The parameters of one statement. `main_file` must outlive them; `owner` names the statement in messages (`Shape "sphere"`). A
-/// missing parameter gives the fallback; a wrong one reports an error and gives the fallback. The names passed in must be
-/// literals, because they are kept by reference.
+/// The parameters of one statement. `main_file` must outlive them; `owner` names the statement in
+/// messages (`Shape "sphere"`). A missing parameter gives the fallback; a wrong one reports an
+/// error and gives the fallback. The names passed in must be literals, because they are kept by
+/// reference.
 class Parameters {
  public:
-  Parameters(std::vector<Parameter> own, SharedParameters attributes, std::string owner, SourceLocation where,
-             const std::string& main_file, ColorSpace space, Diagnostics& diagnostics);
+  Parameters(std::vector<Parameter> own, SharedParameters attributes, std::string owner,
+             SourceLocation where, const std::string& main_file, ColorSpace space,
+             Diagnostics& diagnostics);
 
   bool has(std::string_view name);
   double number(std::string_view name, double fallback);
@@ -77,9 +87,12 @@ class Parameters {
   glm::dvec3 vector(std::string_view name, const glm::dvec3& fallback);
   /// Returns all values of a parameter whose type is one of `types`; null when it is missing.
   const Parameter* values(std::string_view name, std::initializer_list<std::string_view> types);
-  std::optional<Spectrum> spectrum(std::string_view name, SpectrumUse use, const TextureTable* textures = nullptr);
-  /// Returns the texture that a parameter names, if the scene has it and it is of floats or spectra as requested.
-  std::optional<std::uint32_t> texture(std::string_view name, bool is_float, const TextureTable& textures);
+  std::optional<Spectrum> spectrum(std::string_view name, SpectrumUse use,
+                                   const TextureTable* textures = nullptr);
+  /// Returns the texture that a parameter names, if the scene has it and it is of floats or spectra
+  /// as requested.
+  std::optional<std::uint32_t> texture(std::string_view name, bool is_float,
+                                       const TextureTable& textures);
   /// Reads a float or a constant texture of floats.
   double number_or_texture(std::string_view name, double fallback, const TextureTable& textures);
   /// Marks a parameter as known and without effect here.

@@ -39,7 +39,8 @@ class Arguments {
 /// Parses a scene and the files that it includes.
 class Parser {
  public:
-  Parser(const Target& target, Diagnostics& diagnostics) : target_(target), diagnostics_(diagnostics) {}
+  Parser(const Target& target, Diagnostics& diagnostics)
+      : target_(target), diagnostics_(diagnostics) {}
   /// `behind`: the text that follows, that of the including file; null: nothing follows.
   void parse(const std::string& file, std::string text, Lexer* behind = nullptr);
 

@@ -10,7 +10,8 @@
 
 namespace caplet::pbrt {
 
-/// Imports scene text in memory. `file` is its name, for messages and for relative paths. Throws InputError.
+/// Imports scene text in memory. `file` is its name, for messages and for relative paths. Throws
+/// InputError.
 Scene import_text(const std::string& file, std::string text, const ImageReader& images);
 
 }  // namespace caplet::pbrt

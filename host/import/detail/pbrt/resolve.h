@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// What is known only at the end of a scene: which materials and media are used, interfaces, hair, subsurfaces, instances.
+// What is known only at the end of a scene: which materials and media are used, interfaces, hair,
+// subsurfaces, instances.
 #pragma once
 
 #include <cstdint>
@@ -34,12 +35,14 @@ struct PartlyThere {
 
 /// The materials of the statements.
 struct MadeMaterials {
-  std::vector<std::uint32_t> indices;               // in the scene, or interface_material; by statement
-  std::map<std::uint32_t, Medium> media_within;     // media behind boundaries, by the boundary's index in the scene
+  std::vector<std::uint32_t> indices;  // in the scene, or interface_material; by statement
+  std::map<std::uint32_t, Medium>
+      media_within;  // media behind boundaries, by the boundary's index in the scene
   std::map<std::size_t, PartlyThere> partly_there;  // by statement
 };
 
-/// Makes the materials of all statements. One that cannot be rendered is an error if a shape has it, otherwise a warning.
+/// Makes the materials of all statements. One that cannot be rendered is an error if a shape has
+/// it, otherwise a warning.
 MadeMaterials make_materials(Draft& draft);
 
 /// Calls `visit` with every material index of a shape.
@@ -48,13 +51,15 @@ void each_material(Draft& draft, const std::function<void(std::uint32_t&)>& visi
 /// Calls `visit` with the material of every visible surface.
 void each_surface(const Shape& shape, const std::function<void(std::uint32_t)>& visit);
 
-/// A mix with an interface lets rays pass at random: the probability becomes the shape's alpha. `partly_there` is by statement.
+/// A mix with an interface lets rays pass at random: the probability becomes the shape's alpha.
+/// `partly_there` is by statement.
 void take_out_interfaces(Draft& draft, const std::map<std::size_t, PartlyThere>& partly_there);
-/// Removes shapes whose material is an interface and that do not separate media: they are invisible.
+/// Removes shapes whose material is an interface and that do not separate media: they are
+/// invisible.
 void drop_interfaces(Draft& draft, const std::vector<std::uint32_t>& index_of_use);
 
-/// Returns whether the shape is closed and of hair, which is one-sided: its scattering function includes the path through the
-/// fibre, so rays must not hit the far side.
+/// Returns whether the shape is closed and of hair, which is one-sided: its scattering function
+/// includes the path through the fibre, so rays must not hit the far side.
 bool is_closed_hair(Shape& shape, const std::vector<Material>& materials);
 
 /// Fills shapes that have a subsurface material with its medium.

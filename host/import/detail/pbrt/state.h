@@ -33,8 +33,8 @@ class CurrentTransform {
   void restart_inverse(const glm::dmat4& matrix);
   /// Reports a singular or non-affine transform before something is placed with it.
   void check_place(Diagnostics& diagnostics) const;
-  /// Returns the place of a light. An infinite light has no position: as in pbrt-v4, directions are mapped by the inverse, whose
-  /// last row they do not use.
+  /// Returns the place of a light. An infinite light has no position: as in pbrt-v4, directions are
+  /// mapped by the inverse, whose last row they do not use.
   glm::dmat4 place_of_light(const std::string& type, Diagnostics& diagnostics) const;
 
  private:
@@ -43,8 +43,10 @@ class CurrentTransform {
     std::string what;
   };
   glm::dmat4 ctm_{1};
-  std::optional<Fault> flat_;          // the first singular transform, which was not multiplied into the matrix
-  std::optional<Fault> skewed_;        // the first that is not affine; the matrix contains it, for directions only
+  std::optional<Fault>
+      flat_;  // the first singular transform, which was not multiplied into the matrix
+  std::optional<Fault>
+      skewed_;  // the first that is not affine; the matrix contains it, for directions only
   std::optional<glm::dmat4> inverse_;  // if the file states it, so that it need not be computed
 };
 
@@ -62,7 +64,8 @@ struct GraphicsState {
 class Blocks {
  public:
   void begin(const Statement& at, const GraphicsState& state);
-  /// Returns the state that the block saved. Throws SyntaxError unless `opener` opened the last block.
+  /// Returns the state that the block saved. Throws SyntaxError unless `opener` opened the last
+  /// block.
   GraphicsState end(const Statement& at, std::string_view opener);
   /// Opens a file's own range of blocks. Returns the range outside, for leave().
   std::size_t enter();

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// What the parser of pbrt-v4 text calls: one method per directive, in four interfaces. A method may throw SyntaxError. The parser
-// then reports it and goes on at the next directive.
+// What the parser of pbrt-v4 text calls: one method per directive, in four interfaces. A method may
+// throw SyntaxError. The parser then reports it and goes on at the next directive.
 #pragma once
 
 #include <functional>
@@ -26,7 +26,9 @@ struct Statement {
   SourceLocation where;
 
   /// Returns how messages name the statement: Shape "sphere".
-  std::string of(const std::string& type) const { return std::string(directive) + " " + in_quotes(type); }
+  std::string of(const std::string& type) const {
+    return std::string(directive) + " " + in_quotes(type);
+  }
 };
 
 /// A word or string of a statement, with its place.
@@ -61,7 +63,8 @@ class TransformTarget {
   virtual void coordinate_system(const Statement& at, const Word& name) = 0;
   virtual void identity(const Statement& at) = 0;
   virtual void inverse_transform(const Statement& at, const glm::dmat4& matrix) = 0;
-  virtual void look_at(const Statement& at, const glm::dvec3& eye, const glm::dvec3& target, const glm::dvec3& up) = 0;
+  virtual void look_at(const Statement& at, const glm::dvec3& eye, const glm::dvec3& target,
+                       const glm::dvec3& up) = 0;
   virtual void rotate(const Statement& at, double degrees, const glm::dvec3& axis) = 0;
   virtual void scale(const Statement& at, const glm::dvec3& factors) = 0;
   virtual void transform(const Statement& at, const glm::dmat4& matrix) = 0;
@@ -96,17 +99,21 @@ class StateTarget {
 class SceneTarget {
  public:
   virtual ~SceneTarget() = default;
-  virtual void area_light_source(const Statement& at, const std::string& type, ParameterList own) = 0;
+  virtual void area_light_source(const Statement& at, const std::string& type,
+                                 ParameterList own) = 0;
   virtual void light_source(const Statement& at, const std::string& type, ParameterList own) = 0;
-  virtual void make_named_material(const Statement& at, const std::string& name, ParameterList own) = 0;
-  virtual void make_named_medium(const Statement& at, const std::string& name, ParameterList own) = 0;
+  virtual void make_named_material(const Statement& at, const std::string& name,
+                                   ParameterList own) = 0;
+  virtual void make_named_medium(const Statement& at, const std::string& name,
+                                 ParameterList own) = 0;
   virtual void material(const Statement& at, const std::string& type, ParameterList own) = 0;
   /// `outside`: no value where one name stands for both sides.
-  virtual void medium_interface(const Statement& at, const Word& inside, const std::optional<Word>& outside) = 0;
+  virtual void medium_interface(const Statement& at, const Word& inside,
+                                const std::optional<Word>& outside) = 0;
   virtual void named_material(const Statement& at, const Word& name) = 0;
   virtual void shape(const Statement& at, const std::string& type, ParameterList own) = 0;
-  virtual void texture(const Statement& at, const std::string& name, const Word& kind, const Word& texture_class,
-                       ParameterList own) = 0;
+  virtual void texture(const Statement& at, const std::string& name, const Word& kind,
+                       const Word& texture_class, ParameterList own) = 0;
 };
 
 using Target = std::tuple<OptionTarget&, TransformTarget&, StateTarget&, SceneTarget&>;

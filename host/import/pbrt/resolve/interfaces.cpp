@@ -59,19 +59,25 @@ void take_out_interfaces(Draft& draft, const std::map<std::size_t, PartlyThere>&
       of = own ? own : of;
     });
     if (!some) return;
-    if (!all) return draft.diagnostics.error(shape.where, "all of a shape has one material where one is a mix with an interface");
+    if (!all)
+      return draft.diagnostics.error(
+          shape.where, "all of a shape has one material where one is a mix with an interface");
     if (shape.emission)
-      return draft.diagnostics.error(shape.where, "the shape is an area light, whose material is no mix with an interface");
+      return draft.diagnostics.error(
+          shape.where, "the shape is an area light, whose material is no mix with an interface");
     if (shape.media.differ() || of->subsurface)
-      return draft.diagnostics.error(shape.where,
-                                     "the shape parts media, and its material is a mix with an interface: it would be both");
+      return draft.diagnostics.error(
+          shape.where,
+          "the shape parts media, and its material is a mix with an interface: it would be both");
     shape.alpha = alpha_of(*of, shape, draft);
   };
   draft.each_shape(visit);
 }
 
 void drop_interfaces(Draft& draft, const std::vector<std::uint32_t>& index_of_use) {
-  const auto is_interface = [&](std::uint32_t use) { return use != 0 && index_of_use[use] == interface_material; };
+  const auto is_interface = [&](std::uint32_t use) {
+    return use != 0 && index_of_use[use] == interface_material;
+  };
   const auto passes = [&](Shape& shape) {
     bool all = true;
     each_surface(shape, [&](std::uint32_t use) { all = all && is_interface(use); });

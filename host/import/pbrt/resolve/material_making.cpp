@@ -21,7 +21,8 @@ std::vector<bool> used_materials(Draft& draft) {
     used[statement] = true;
   };
   const auto use_name = [&](const std::string& name) {
-    if (const auto found = materials.named.find(name); found != materials.named.end()) use(found->second);
+    if (const auto found = materials.named.find(name); found != materials.named.end())
+      use(found->second);
   };
   each_material(draft, [&](std::uint32_t& index) {
     const MaterialUse& one = materials.uses[index];
@@ -46,7 +47,8 @@ std::vector<bool> used_materials(Draft& draft) {
 /// Makes the materials of the statements; parts of a mix are made before it.
 class MaterialMaking {
  public:
-  MaterialMaking(Draft& draft, const std::vector<bool>& used) : draft_(draft), used_(used), made_(used.size()) {}
+  MaterialMaking(Draft& draft, const std::vector<bool>& used)
+      : draft_(draft), used_(used), made_(used.size()) {}
 
   void make(std::size_t statement) {
     Made& made = made_[statement];
@@ -69,9 +71,10 @@ class MaterialMaking {
   /// Warns of materials that are wrong and that no shape has.
   void warn_of_left_out() {
     if (left_out_ == 0 || draft_.diagnostics.has_errors()) return;
-    draft_.diagnostics.warning({},
-                               first_left_out_ + " (no shape has this material" +
-                                   (left_out_ > 1 ? ", nor " + std::to_string(left_out_ - 1) + " others that are wrong)" : ")"));
+    draft_.diagnostics.warning({}, first_left_out_ + " (no shape has this material" +
+                                       (left_out_ > 1 ? ", nor " + std::to_string(left_out_ - 1) +
+                                                            " others that are wrong)"
+                                                      : ")"));
   }
 
  private:
@@ -101,12 +104,14 @@ class MaterialMaking {
       const PartFinder part_named = [this, &made](const std::string& name, std::string& problem) {
         return part(name, made, problem);
       };
-      Material material = make_material(statement.type, statement.parameters, draft_.textures, draft_.image_finder(), part_named,
-                                        draft_.scene, made.within);
+      Material material =
+          make_material(statement.type, statement.parameters, draft_.textures,
+                        draft_.image_finder(), part_named, draft_.scene, made.within);
       material.name = statement.name;
       made.index = static_cast<std::uint32_t>(draft_.scene.materials.size());
       made.sound = !aside.has_errors();
-      if (const auto* mix = std::get_if<MixMaterial>(&material.model); mix && made.sound && part_interface(*mix, material, made))
+      if (const auto* mix = std::get_if<MixMaterial>(&material.model);
+          mix && made.sound && part_interface(*mix, material, made))
         return;
       if (made.sound) draft_.scene.materials.push_back(std::move(material));
     }
@@ -118,16 +123,19 @@ class MaterialMaking {
     }
   }
 
-  /// A mix with an interface becomes its other material, with a probability as alpha; a mix of two interfaces is an interface.
+  /// A mix with an interface becomes its other material, with a probability as alpha; a mix of two
+  /// interfaces is an interface.
   static bool part_interface(const MixMaterial& mix, const Material& material, Made& made) {
-    const bool first = mix.materials[0] == interface_material, second = mix.materials[1] == interface_material;
+    const bool first = mix.materials[0] == interface_material,
+               second = mix.materials[1] == interface_material;
     if (!first && !second) return false;
     made.index = first && second ? interface_material : mix.materials[first ? 1 : 0];
     if (first && second) {
       made.sound = false;
       return true;
     }
-    PartlyThere& there = made.partly_there.emplace(PartlyThere{mix.amount, second, made.within.has_value()});
+    PartlyThere& there =
+        made.partly_there.emplace(PartlyThere{mix.amount, second, made.within.has_value()});
     for (const TexturedField& field : material.textures)
       if (field.field == "amount") there.amount.texture = field.texture;
     return true;
@@ -137,7 +145,8 @@ class MaterialMaking {
   std::optional<std::uint32_t> part(const std::string& name, Made& whole, std::string& problem) {
     const auto found = draft_.materials.named.find(name);
     if (found == draft_.materials.named.end()) {
-      problem = "names the material " + in_quotes(name) + ", which is not defined" + draft_.nearest(name, draft_.materials.named);
+      problem = "names the material " + in_quotes(name) + ", which is not defined" +
+                draft_.nearest(name, draft_.materials.named);
       return std::nullopt;
     }
     const Made& made = made_[found->second];
@@ -147,12 +156,14 @@ class MaterialMaking {
     }
     make(found->second);
     if (made.partly_there) {
-      problem = "names the material " + in_quotes(name) + ", a mix with an interface, of which no other mix is made";
+      problem = "names the material " + in_quotes(name) +
+                ", a mix with an interface, of which no other mix is made";
       return std::nullopt;
     }
     if (made.sound && made.within) {
       if (whole.within && whole.within->where.to_string() != made.within->where.to_string()) {
-        problem = "names the material " + in_quotes(name) + ", a second subsurface: one alone can be within";
+        problem = "names the material " + in_quotes(name) +
+                  ", a second subsurface: one alone can be within";
         return std::nullopt;
       }
       whole.within = made.within;

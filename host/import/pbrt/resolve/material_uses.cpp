@@ -29,7 +29,8 @@ void each_material(Draft& draft, const std::function<void(std::uint32_t&)>& visi
 void each_surface(const Shape& shape, const std::function<void(std::uint32_t)>& visit) {
   if (const auto* csg = std::get_if<CsgShape>(&shape.geometry)) {
     if (shape.materials.empty()) {
-      for (const std::shared_ptr<const Shape>& operand : csg->operands) each_surface(*operand, visit);
+      for (const std::shared_ptr<const Shape>& operand : csg->operands)
+        each_surface(*operand, visit);
       return;
     }
   }
@@ -53,9 +54,10 @@ bool is_closed_hair(Shape& shape, const std::vector<Material>& materials) {
 
 namespace {
 
-/// Returns the index in the scene of each use's material, or interface_material; 0 for the default and for unknown names, which
-/// are errors where a shape has them.
-std::vector<std::uint32_t> indices_of_uses(Draft& draft, const std::vector<std::uint32_t>& index_of_statement) {
+/// Returns the index in the scene of each use's material, or interface_material; 0 for the default
+/// and for unknown names, which are errors where a shape has them.
+std::vector<std::uint32_t> indices_of_uses(Draft& draft,
+                                           const std::vector<std::uint32_t>& index_of_statement) {
   const std::vector<MaterialUse>& uses = draft.materials.uses;
   std::vector<std::uint32_t> index_of_use(uses.size(), 0);
   std::vector<bool> of_shape(uses.size(), false);
@@ -68,7 +70,8 @@ std::vector<std::uint32_t> indices_of_uses(Draft& draft, const std::vector<std::
     else if (const auto statement = draft.materials.statement_of(use))
       index_of_use[i] = index_of_statement[*statement];
     else if (of_shape[i])
-      draft.diagnostics.error(use.where, undefined + draft.nearest(use.name, draft.materials.named));
+      draft.diagnostics.error(use.where,
+                              undefined + draft.nearest(use.name, draft.materials.named));
     else  // pbrt-v4 resolves a name at the shape that uses it
       draft.warnings.add(use.where, undefined + " (no shape has it)", "undefined material");
   }
@@ -81,11 +84,15 @@ void add_interface(Draft& draft, std::vector<std::uint32_t>& index_of_use) {
   const auto interface = static_cast<std::uint32_t>(draft.scene.materials.size());
   bool is_used = false;
   std::ranges::replace(index_of_use, interface_material, interface);
-  each_material(draft, [&](std::uint32_t& use) { is_used = is_used || (use != 0 && index_of_use[use] == interface); });
-  if (is_used) draft.scene.materials.push_back({InterfaceMaterial{}, "interface", {draft.main_file}});
+  each_material(draft, [&](std::uint32_t& use) {
+    is_used = is_used || (use != 0 && index_of_use[use] == interface);
+  });
+  if (is_used)
+    draft.scene.materials.push_back({InterfaceMaterial{}, "interface", {draft.main_file}});
 }
 
-/// Replaces the uses in shapes by indices in the scene; the default material is added if a shape has it.
+/// Replaces the uses in shapes by indices in the scene; the default material is added if a shape
+/// has it.
 void assign(Draft& draft, std::vector<std::uint32_t>& index_of_use) {
   bool uses_default = false;
   index_of_use[0] = static_cast<std::uint32_t>(draft.scene.materials.size());
@@ -93,12 +100,15 @@ void assign(Draft& draft, std::vector<std::uint32_t>& index_of_use) {
     uses_default = uses_default || material == 0;
     material = index_of_use[material];
   });
-  if (uses_default) draft.scene.materials.push_back({DiffuseMaterial{}, "default", {draft.main_file}});
+  if (uses_default)
+    draft.scene.materials.push_back({DiffuseMaterial{}, "default", {draft.main_file}});
 }
 
 void make_hair_one_sided(Draft& draft) {
   const std::vector<Material>& materials = draft.scene.materials;
-  const auto is_hair = [](const Material& one) { return std::holds_alternative<HairMaterial>(one.model); };
+  const auto is_hair = [](const Material& one) {
+    return std::holds_alternative<HairMaterial>(one.model);
+  };
   if (std::ranges::none_of(materials, is_hair)) return;
   draft.each_shape([&](Shape& shape) {
     if (!is_closed_hair(shape, materials)) return;

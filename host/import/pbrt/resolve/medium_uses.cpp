@@ -10,8 +10,8 @@ namespace caplet::pbrt {
 
 namespace {
 
-/// A csg is one solid with one medium: that of its statement, or else that of its operands (all but the subtracted ones), which
-/// must agree.
+/// A csg is one solid with one medium: that of its statement, or else that of its operands (all but
+/// the subtracted ones), which must agree.
 MediumSides media_of_csg(const Shape& shape, Diagnostics& diagnostics) {
   const auto& csg = std::get<CsgShape>(shape.geometry);
   if (csg.operands.empty()) return shape.media;
@@ -20,10 +20,13 @@ MediumSides media_of_csg(const Shape& shape, Diagnostics& diagnostics) {
   for (std::size_t i = 0; i < (difference ? 1 : csg.operands.size()); ++i) {
     const Shape& operand = *csg.operands[i];
     const bool says_nothing = shape.media.differ() && !operand.media.differ();
-    if (says_nothing || operand.media == sides || (!operand.media.differ() && !sides.differ())) continue;
-    diagnostics.error(operand.where, "the operand of a csg has another MediumInterface than " +
-                                         std::string(shape.media.differ() ? "the csg itself" : "the first operand") +
-                                         ": a csg is of one medium (" + shape.where.to_string() + ")");
+    if (says_nothing || operand.media == sides || (!operand.media.differ() && !sides.differ()))
+      continue;
+    diagnostics.error(
+        operand.where,
+        "the operand of a csg has another MediumInterface than " +
+            std::string(shape.media.differ() ? "the csg itself" : "the first operand") +
+            ": a csg is of one medium (" + shape.where.to_string() + ")");
     return shape.media;
   }
   return sides.differ() ? sides : shape.media;
@@ -33,7 +36,8 @@ class MediumUses {
  public:
   explicit MediumUses(Draft& draft) : draft_(draft), said_(draft.media.uses.size()) {}
 
-  /// Replaces the index of a use by that of the medium in the scene. An undefined medium is reported once.
+  /// Replaces the index of a use by that of the medium in the scene. An undefined medium is
+  /// reported once.
   void resolve(std::optional<std::uint32_t>& side) {
     if (!side) return;
     const std::uint32_t number = *side;
@@ -76,8 +80,8 @@ class MediumUses {
   void report(std::uint32_t number) {
     const MediumDraft::Use& use = draft_.media.uses[number];
     if (!said_[number])
-      draft_.diagnostics.error(
-          use.where, "the medium " + in_quotes(use.name) + " is not defined" + draft_.nearest(use.name, draft_.media.statements));
+      draft_.diagnostics.error(use.where, "the medium " + in_quotes(use.name) + " is not defined" +
+                                              draft_.nearest(use.name, draft_.media.statements));
     said_[number] = true;
   }
 

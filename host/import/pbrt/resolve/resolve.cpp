@@ -8,13 +8,15 @@ namespace {
 
 /// Reports parameters of Attribute statements that no statement after them knows.
 void check_attributes(Draft& draft) {
-  // An earlier Attribute counts as used if a later one of the same name that replaced it was used; hence the reverse order.
+  // An earlier Attribute counts as used if a later one of the same name that replaced it was used;
+  // hence the reverse order.
   for (auto it = draft.attributes.rbegin(); it != draft.attributes.rend(); ++it)
     if ((*it)->replaced_by && (*it)->replaced_by->used) (*it)->used = true;
   for (const auto& parameter : draft.attributes)
     if (parameter->consulted && !parameter->used && !parameter->broken)
-      draft.diagnostics.error(parameter->where,
-                              "no statement after this Attribute knows the parameter " + in_quotes(parameter->name));
+      draft.diagnostics.error(
+          parameter->where,
+          "no statement after this Attribute knows the parameter " + in_quotes(parameter->name));
 }
 
 void resolve_instances(Draft& draft) {
@@ -23,8 +25,8 @@ void resolve_instances(Draft& draft) {
     if (const auto found = objects.names.find(use.name); found != objects.names.end())
       draft.scene.instances.push_back({found->second, use.world_from_object, use.where});
     else
-      draft.diagnostics.error(use.where,
-                              "the object " + in_quotes(use.name) + " is not defined" + draft.nearest(use.name, objects.names));
+      draft.diagnostics.error(use.where, "the object " + in_quotes(use.name) + " is not defined" +
+                                             draft.nearest(use.name, objects.names));
   }
 }
 

@@ -15,19 +15,23 @@ namespace {
 
 /// Returns the red, green and blue of a spectrum that has them.
 std::optional<glm::dvec3> as_colors(const Spectrum& spectrum) {
-  if (const auto* constant = std::get_if<ConstantSpectrum>(&spectrum)) return glm::dvec3(constant->value);
+  if (const auto* constant = std::get_if<ConstantSpectrum>(&spectrum))
+    return glm::dvec3(constant->value);
   if (const auto* rgb = std::get_if<RgbSpectrum>(&spectrum)) return rgb->rgb;
   return std::nullopt;
 }
 
-/// Computes means of whole textures in red, green and blue; no value for textures without a simple mean.
+/// Computes means of whole textures in red, green and blue; no value for textures without a simple
+/// mean.
 struct TextureMean {
   const Scene& scene;
 
   std::optional<glm::dvec3> of(const TextureOperand& operand) const {
     return operand.texture ? of(*operand.texture) : as_colors(operand.value);
   }
-  std::optional<glm::dvec3> of(std::uint32_t texture) const { return std::visit(*this, scene.textures[texture].model); }
+  std::optional<glm::dvec3> of(std::uint32_t texture) const {
+    return std::visit(*this, scene.textures[texture].model);
+  }
 
   std::optional<glm::dvec3> operator()(const ImagemapTexture& map) const {
     const TextureImage& image = *map.image;
@@ -64,7 +68,8 @@ struct TextureMean {
 
 }  // namespace
 
-Medium subsurface_medium(Parameters& parameters, const TextureTable& textures, const Scene& scene, const Spectrum& eta) {
+Medium subsurface_medium(Parameters& parameters, const TextureTable& textures, const Scene& scene,
+                         const Spectrum& eta) {
   HomogeneousMedium model;
   model.scattering = HomogeneousMedium::milk();
   ScatteringProperties& of = model.scattering;
@@ -84,17 +89,21 @@ Medium subsurface_medium(Parameters& parameters, const TextureTable& textures, c
       parameters.error(given, "varies over the surface: no medium can be made of it");
       return std::nullopt;
     }
-    parameters.diagnostics().warning(parameters.where(given), parameters.owner() + ": \"" + given +
-                                                                  "\" varies over the surface, and counts by its mean within");
+    parameters.diagnostics().warning(
+        parameters.where(given), parameters.owner() + ": \"" + given +
+                                     "\" varies over the surface, and counts by its mean within");
     const glm::dvec3 held = glm::clamp(*mean, 0.0, use == SpectrumUse::albedo ? 1.0 : 1e9);
     return RgbSpectrum{held, parameters.space()};
   };
-  const auto sigma_a = spectrum("sigma_a", SpectrumUse::unbounded), sigma_s = spectrum("sigma_s", SpectrumUse::unbounded);
-  const auto reflectance = spectrum("reflectance", SpectrumUse::albedo), mfp = spectrum("mfp", SpectrumUse::unbounded);
+  const auto sigma_a = spectrum("sigma_a", SpectrumUse::unbounded),
+             sigma_s = spectrum("sigma_s", SpectrumUse::unbounded);
+  const auto reflectance = spectrum("reflectance", SpectrumUse::albedo),
+             mfp = spectrum("mfp", SpectrumUse::unbounded);
   if (!name.empty() + (sigma_a || sigma_s) + reflectance.has_value() > 1)
     parameters.error("takes one of \"name\", \"sigma_a\" with \"sigma_s\", and \"reflectance\"");
   if (sigma_a.has_value() != sigma_s.has_value())
-    parameters.error(sigma_a ? "sigma_a" : "sigma_s", sigma_a ? "needs a \"sigma_s\"" : "needs a \"sigma_a\"");
+    parameters.error(sigma_a ? "sigma_a" : "sigma_s",
+                     sigma_a ? "needs a \"sigma_s\"" : "needs a \"sigma_a\"");
   if (mfp && !reflectance) parameters.error("mfp", "needs a \"reflectance\"");
   of.scale = scale;
   of.g = g;
@@ -113,8 +122,9 @@ Medium subsurface_medium(Parameters& parameters, const TextureTable& textures, c
     const auto color = as_colors(*reflectance), free = as_colors(mfp.value_or(ConstantSpectrum{1}));
     const auto* index = std::get_if<ConstantSpectrum>(&eta);
     if (!color || !free || !index || !(free->x > 0 && free->y > 0 && free->z > 0) || !(scale > 0)) {
-      parameters.error("reflectance", !index ? "needs an \"eta\" that is a number"
-                                             : "and \"mfp\" must be colours or numbers, and the latter positive");
+      parameters.error("reflectance",
+                       !index ? "needs an \"eta\" that is a number"
+                              : "and \"mfp\" must be colours or numbers, and the latter positive");
     } else {
       glm::dvec3 a, s;
       for (int k = 0; k < 3; ++k) {

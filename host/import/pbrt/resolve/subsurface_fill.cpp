@@ -19,8 +19,11 @@ void fill_subsurfaces(Draft& draft, const std::map<std::uint32_t, Medium>& media
       of = material;
     });
     if (!some) return;
-    if (!all) return draft.diagnostics.error(shape.where, "all of a shape has one material where one is a \"subsurface\"");
-    const auto [found, fresh] = index_of.emplace(*of, static_cast<std::uint32_t>(draft.scene.media.size()));
+    if (!all)
+      return draft.diagnostics.error(
+          shape.where, "all of a shape has one material where one is a \"subsurface\"");
+    const auto [found, fresh] =
+        index_of.emplace(*of, static_cast<std::uint32_t>(draft.scene.media.size()));
     if (fresh) {
       draft.scene.media.push_back(media_within.at(*of));
       if (draft.scene.media.back().name.empty()) draft.scene.media.back().name = "subsurface";
