@@ -18,7 +18,7 @@ namespace caplet::mjcf {
 
 namespace {
 
-constexpr std::size_t kMany = std::size_t{1} << 32;
+constexpr std::size_t kMostNumbers = std::size_t{1} << 32;
 
 /// A bone moves vertices by these weights.
 struct Bone {
@@ -119,7 +119,7 @@ class SkinFile {
 /// Reads a skin that is written in the model itself.
 Skin written_skin(const Model& model, const Element& of) {
   const auto numbers = [](const Element& from, const char* name, std::size_t of_each) {
-    std::vector<double> v = numbers_of(from.text(name), 0, kMany, from.where(), name);
+    std::vector<double> v = numbers_of(from.text(name), 0, kMostNumbers, from.where(), name);
     if (v.size() % of_each != 0)
       from.fail(fmt::format("{}: a multiple of {} numbers is needed", name, of_each));
     return v;

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// The options of `caplet render`.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cli/options.h"
+#include "import/import.h"
+#include "post/overlay.h"
+
+namespace caplet::cli {
+
+struct RenderFlags {
+  Encoding encoding = Encoding::automatic;
+  std::vector<std::string> scenes;
+  std::vector<std::string> outputs;
+  std::string preview, stats, device, size, crop, frames;
+  ImportOptions import_options;
+  post::Overlays overlays;
+  std::optional<std::string> layers;
+  std::optional<int> samples_per_pixel, max_depth;
+  std::optional<std::uint32_t> seed;
+  std::optional<double> time_limit, clamp, separation, convergence;
+  std::string layout, display;
+  double patience = 60;
+  std::size_t batch_paths = 0;
+  std::uint32_t turntable = 0;
+  double frames_a_second = 25;
+  bool variance = false, quiet = false, skip_existing = false;
+  bool has_frames() const { return turntable > 0 || !frames.empty(); }
+};
+
+/// Adds the options but for the scene files to the command, which sets `o`.
+void add_render_flags(CLI::App& command, RenderFlags& o);
+
+}  // namespace caplet::cli
