@@ -37,7 +37,7 @@ finds() {
   local planted=$folder/planted-$1
   mkdir -p "$planted"
   cp -r "$root/kernels" "$planted"
-  sed -i "s|^\(static void traced_hit(.*) {\) \(.*\) }$|\1 const uint path = g->queues.queue[item]; \2 $2 }|" "$planted/kernels/stages/extend.cl"
+  sed -i "/^static void traced_hit(/,/^}/ { s|{\$|{ const uint path = g->queues.queue[item];|; s|^}|$2 }| }" "$planted/kernels/stages/extend.cl"
   CAPLET_KERNELS=$planted/kernels watched "planted-$1" render "$root/scenes/capsules.pbrt" -o "$planted/out.exr" --size 2x2 --spp 1 --max-depth 1 \
     >"$planted/output" 2>&1 || true
   if grep -q "$3" "$folder/planted-$1.log"; then
