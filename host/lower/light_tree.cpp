@@ -245,7 +245,7 @@ class LightTreeWriter {
   struct Cosines {
     CosineBits cone, reach;
   };
-  /// What a slot of a node refers to, and the bounds of its lights.
+  /// A slot of a node refers to this, and has the bounds of its lights.
   struct Child {
     std::uint32_t reference;
     LightBounds bounds;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// What cameras of some projections say beside Camera::fields.
+// Lists the parameters that cameras of some projections have beside Camera::fields.
 #pragma once
 
 #include <array>

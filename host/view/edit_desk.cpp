@@ -18,7 +18,7 @@ struct EditDesk::Made {
   Text text;
 };
 
-/// What the editor has counted.
+/// The editor counts these.
 struct EditDesk::Counts {
   std::uint64_t rearrangements = 0, renumberings = 0, camera_changes = 0;
 };

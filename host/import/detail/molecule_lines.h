@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// What readers of molecules line by line share: MDL's files (sdf.cpp) and XYZ (xyz.cpp).
+// The readers of molecules line by line share these: MDL's files (sdf.cpp) and XYZ (xyz.cpp).
 #pragma once
 
 #include <string>

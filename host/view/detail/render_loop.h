@@ -18,8 +18,8 @@
 
 namespace caplet::view {
 
-/// What the renderer's thread works with. All of it must outlive the loop, and belongs to that
-/// thread except for clients and server.
+/// The renderer's thread works with these. They must outlive the loop. All but clients and server
+/// belong to that thread.
 struct RenderTools {
   Clients& clients;
   Server& server;

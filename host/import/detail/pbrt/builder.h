@@ -22,7 +22,7 @@
 
 namespace caplet::pbrt {
 
-/// What the four parts of the builder share.
+/// The four parts of the builder share this.
 struct Building {
   Draft draft;
   GraphicsState state = {};

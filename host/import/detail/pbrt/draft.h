@@ -45,7 +45,7 @@ struct MaterialStatement {
   SourceLocation where = {};
 };
 
-/// What shapes refer to until all materials are known: the default, a Material statement, or a
+/// Shapes refer to this until all materials are known: the default, a Material statement, or a
 /// name.
 struct MaterialUse {
   std::optional<std::size_t> statement;

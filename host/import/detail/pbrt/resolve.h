@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// What is known only at the end of a scene: which materials and media are used, interfaces, hair,
-// subsurfaces, instances.
+// These run at the end of a scene, when all statements are known: they decide which materials and
+// media are used, and make interfaces, hair, subsurfaces and instances.
 #pragma once
 
 #include <cstdint>

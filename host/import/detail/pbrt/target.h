@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// What the parser of pbrt-v4 text calls: one method per directive, in four interfaces. A method may
-// throw SyntaxError. The parser then reports it and goes on at the next directive.
+// The parser of pbrt-v4 text calls these: one method per directive, in four interfaces. A method
+// may throw SyntaxError. The parser then reports it and goes on at the next directive.
 #pragma once
 
 #include <functional>
