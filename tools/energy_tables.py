@@ -95,7 +95,7 @@ def main():
         plane_means.append(means)
     (ROOT / "kernels/bsdf/multiscatter_tables.cl").write_text(
         "// SPDX-License-Identifier: Apache-2.0\n// Copyright Caplet authors\n//\n"
-        "// What one scattering at GGX facets loses, and its means over a hemisphere. Written by tools/energy_tables.py, which says of what.\n"
+        "// These tables say what one scattering at GGX facets loses, and the means over a hemisphere.\n// tools/energy_tables.py wrote them, and says of what.\n"
         "#ifndef CAPLET_BSDF_MULTISCATTER_TABLES_CL\n#define CAPLET_BSDF_MULTISCATTER_TABLES_CL\n\n"
         f"#define LOSS_COSINES {COSINES}\n#define METAL_LOSS_ROUGHNESSES {METAL_ROUGHNESSES}\n"
         f"#define INTERFACE_LOSS_ROUGHNESSES {ROUGHNESSES}\n#define INTERFACE_LOSS_INDICES {INDICES}\n\n"

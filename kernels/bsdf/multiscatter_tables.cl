@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// What one scattering at GGX facets loses, and its means over a hemisphere. Written by
-// tools/energy_tables.py, which says of what.
+// These tables say what one scattering at GGX facets loses, and the means over a hemisphere.
+// tools/energy_tables.py wrote them, and says of what.
 #ifndef CAPLET_BSDF_MULTISCATTER_TABLES_CL
 #define CAPLET_BSDF_MULTISCATTER_TABLES_CL
 

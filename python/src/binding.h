@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// What the files of the binding share. Arrays come as the package's Python has checked them: of 32-
-// or 64-bit floats or of 32-bit unsigned integers, with any strides; what they hold is for the
+// The files of the binding share these. Arrays come as the package's Python has checked them: of
+// 32- or 64-bit floats or of 32-bit unsigned integers, with any strides; what they hold is for the
 // library to check.
 #pragma once
 
