@@ -89,7 +89,7 @@ typedef struct {
 
 // BallSpan is where a line meets the ball of a round end.
 typedef struct {
-  CAPLET_WAITS real enter, exit;
+  real enter, exit;
   real_mask met;
 } BallSpan;
 
