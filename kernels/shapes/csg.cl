@@ -90,8 +90,8 @@ static inline void csg_add(CsgLine* line, uint i, float enter, float exit, float
 static inline void csg_add_group(CsgLine* line, const ShapeRay* own, __global const uint* group,
                                  float shift) {
   __global const float* block = own->leaves + group[1];
-  const uint kind = group[0], count = group[2], first = group[3];
 #if CAPLET_REAL_WIDTH == 8
+  const uint kind = group[0], count = group[2], first = group[3];
   const Span span = solid_span(kind, own, block, 0);
   const uint bits = mask_bits(span.enter & span.exit);
   if ((bits & 15u) == 0) return;
@@ -108,13 +108,15 @@ static inline void csg_add_group(CsgLine* line, const ShapeRay* own, __global co
             surface_exit[i]);
   }
 #else
-  for (uint i = 0; i < count; i++) {
-    const uint at = 2 * (first + i);
+  // The group is read again for each operand.
+  __global const uint* CAPLET_WAITS rows = group;
+  for (CAPLET_WAITS uint i = 0; i < rows[2]; i++) {
     // The loop has one place in the code for all solids, not two; results of the first round stay
     // in `line`, not in registers.
 #pragma unroll 1
-    for (uint grown = 0; grown < 2; grown++) {
-      const Span span = solid_span(kind, own, block, i + 4 * grown);
+    for (CAPLET_WAITS uint grown = 0; grown < 2; grown++) {
+      const Span span = solid_span(rows[0], own, block, i + 4 * grown);
+      const uint at = 2 * (rows[3] + i);
       const int met = (span.enter & span.exit) != 0;
       if (grown == 0) {
         const float exit = fmax(span.t_exit, span.t_enter);

@@ -15,8 +15,6 @@ static void stage_item(const Stage* g, uint item) {
   RayRecord ray = g->shadows.path_shadow[path];
   MediumStack stack = {g->medium_stacks.shadow_inside[path], g->medium_stacks.shadow_around[path]};
   const ShadowTarget target = g->shadows.path_shadow_target[path];
-  const float2 pdfs = g->medium_stacks.shadow_pdfs[path];
-  const float4 wavelengths = g->carried.path_wavelengths[path];
   const float3 o = (float3)(ray.ox, ray.oy, ray.oz), d = (float3)(ray.dx, ray.dy, ray.dz);
   const PathSample at = path_sample(g->batch.batch, g->view.view, path);
   MediumNumbers numbers = {
@@ -46,8 +44,8 @@ static void stage_item(const Stage* g, uint item) {
     const uint medium = medium_stack_medium(&g->media, &stack);
     const float to = met ? hit.t : ray.t_max;
     if (medium != CAPLET_NONE && from < to &&
-        !medium_dims(&g->media, &g->spectra, medium, wavelengths, o, d, from, to, &numbers,
-                     &weights))
+        !medium_dims(&g->media, &g->spectra, medium, g->carried.path_wavelengths[path], o, d, from,
+                     to, &numbers, &weights))
       return;
     if (ends) break;
     const uint boundary =
@@ -62,6 +60,7 @@ static void stage_item(const Stage* g, uint item) {
   }
   const float light = mean4(weights.light), scattering = mean4(weights.scattering);
   if (!(light > 0.0f)) return;
+  const float2 pdfs = g->medium_stacks.shadow_pdfs[path];
   const float weight = pdfs.y > 0.0f ? power_heuristic(pdfs.x * light, pdfs.y * scattering) : 1.0f;
   g->radiance.path_radiance[path] += weights.throughput * (weight / light);
 }
