@@ -338,6 +338,7 @@ class Validator {
       if (radiance.rgb && !sigma_a.rgb) error("an \"Le\" needs a \"sigma_a\"");
     }
     void values(const char* name, const FloatGrid& of, const GridCounts& counts, std::size_t each) {
+      if (std::ranges::min(counts) < 1) return;  // an error of its own
       const std::size_t expected = each * cells_of(counts), given = of ? of->size() : 0;
       if (given != expected)
         return error(std::string(name) + " has " + std::to_string(given) +

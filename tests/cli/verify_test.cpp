@@ -159,6 +159,12 @@ TEST(Verify, WrongUsage) {
   EXPECT_THAT(refused({"scene.pbrt", "--replay", "case-1.json"}),
               HasSubstr("--replay: takes the scene from the cases"));
   EXPECT_THAT(refused({"--replay", "case-1.json", "--json"}), HasSubstr("--json"));
+  EXPECT_THAT(refused({"--replay", "case-1.json", "--heatmap", "heat.exr"}),
+              HasSubstr("--heatmap: does not go with --replay"));
+  EXPECT_THAT(refused({"--replay", "case-1.json", "--save-failures", "cases"}),
+              HasSubstr("--save-failures: does not go with --replay"));
+  EXPECT_THAT(refused({"scene.pbrt", "scene.pbrt", "--save-failures", "cases"}),
+              HasSubstr("--save-failures: keeps the name of one scene file"));
   EXPECT_EQ(test::names_in(folder), (std::vector<std::string>{"case-1.json", "scene.pbrt"}));
 }
 
