@@ -66,6 +66,26 @@ TEST(LeastWidth, OrthographicPixelsAreOfOneSize) {
   EXPECT_FLOAT_EQ(test::capsules_of(scene).radius0[2], 0.1F);
 }
 
+// A sphere of radius 10 has an area of 400 pi.
+TEST(LeastWidth, PixelsOfSphericalCamerasDivideTheSphere) {
+  const double pi = std::acos(-1.0);
+  Scene scene = before_camera();
+  const auto footprint = [&](const glm::dvec3& p) {
+    return pixel_footprint(scene.camera, scene.film, p);
+  };
+  using Mapping = SphericalProjection::Mapping;
+  scene.camera.projection = SphericalProjection{Mapping::equal_area};
+  for (const glm::dvec3& p : {glm::dvec3(10, 0, 0), glm::dvec3(0, -6, -8)})
+    EXPECT_NEAR(footprint(p) * footprint(p) * 200 * 100, 400 * pi, 1e-9);
+  scene.camera.projection = SphericalProjection{Mapping::equirectangular};
+  EXPECT_NEAR(footprint({6, 0, -8}), 10 * pi / 100, 1e-12) << "on the horizon";
+  scene.film.width = 100;
+  EXPECT_NEAR(footprint({6, 0, -8}), 10 * pi / 100, 1e-12) << "pixels are wider than high";
+  EXPECT_NEAR(footprint({0, 9.6, 2.8}), 2.8 * 2 * pi / 100, 1e-12) << "a circle of radius 2.8";
+  scene.camera.world_from_camera[3] = {0, 0, 5, 1};
+  EXPECT_NEAR(footprint({0, 9.6, 7.8}), 2.8 * 2 * pi / 100, 1e-12) << "from the camera";
+}
+
 TEST(LeastWidth, ObjectsGrowForTheInstanceThatNeedsMost) {
   Scene scene = before_camera();
   Object object;
