@@ -90,8 +90,8 @@ void run(const std::string& path, std::uint32_t samples, std::size_t parts,
       "the sum of each alone {:.2f}; "
       "together {:.3f} of the sum, {:.3f} of the device; processors busy: {:.2f} by the device, "
       "{:.2f} by the parts together\n",
-      path, scene.film.width, scene.film.height, all, parts, together, sum, together / sum,
-      together / all, contenders[0]->busy(), contenders[1]->busy());
+      path, scene.view.film.width, scene.view.film.height, all, parts, together, sum,
+      together / sum, together / all, contenders[0]->busy(), contenders[1]->busy());
 }
 
 }  // namespace

@@ -41,8 +41,8 @@ class Random {
 /// Capsules along walks; 10,000 instances of a hundred more; a sky, a lamp.
 Scene make_scene(std::size_t count, Random& random) {
   Scene scene;
-  scene.film.width = 960;
-  scene.film.height = 540;
+  scene.view.film.width = 960;
+  scene.view.film.height = 540;
   scene.materials.resize(3);
   const auto walk = [&](std::size_t capsules, double step) {
     CapsulesShape out;
@@ -69,7 +69,7 @@ Scene make_scene(std::size_t count, Random& random) {
     scene.instances.push_back(
         {0, glm::translate(glm::dmat4(1), glm::dvec3(random.within(-50, 50))), {}});
   scene.lights.push_back({InfiniteLight{}, 1, {}, {}, {}});
-  scene.camera.world_from_camera = glm::translate(glm::dmat4(1), glm::dvec3(0, 0, -150));
+  scene.view.camera.world_from_camera = glm::translate(glm::dmat4(1), glm::dvec3(0, 0, -150));
   return scene;
 }
 
@@ -78,7 +78,7 @@ void run(std::size_t count, const std::string& choice) {
   const Device on = Device::choose(choice);
   Scene scene = make_scene(count, random);
   fmt::print("{} capsules, 10000 instances of 100, {} x {} pixels, on {}\n", count,
-             scene.film.width, scene.film.height, on.info().name);
+             scene.view.film.width, scene.view.film.height, on.info().name);
   Stopwatch watch;
   LiveScene live(std::move(scene));
   fmt::print("{:<28} {:>9.1f} ms\n", "full lowering", 1e3 * watch.lap());
@@ -126,7 +126,7 @@ void run(std::size_t count, const std::string& choice) {
     return CapsuleEdit{{}, i, to};
   });
   measure("the camera", [&] {
-    ViewEdit to = view_of(live.scene());
+    View to = live.scene().view;
     to.camera.projection = PerspectiveProjection{random.uniform(0.5, 1)};
     return to;
   });

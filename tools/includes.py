@@ -20,7 +20,7 @@ import tempfile
 
 PAGE = "docs/architecture.md"
 LIBRARIES = {  # how their headers begin
-    "Boost": ("boost/",), "CLI11": ("CLI/",), "Embree": ("embree3/", "embree4/"), "fmt": ("fmt/",), "gemmi": ("gemmi/",), "glm": ("glm/",), "pugixml": ("pugixml.hpp",),
+    "Boost": ("boost/",), "CLI11": ("CLI/",), "Embree": ("embree3/", "embree4/"), "fmt": ("fmt/",), "gemmi": ("gemmi/",), "glm": ("glm/",), "pugixml": ("pugixml.hpp",), "stb": ("stb/",),
     "json": ("nlohmann/",), "libzip": ("zip.h",), "OpenCL": ("CL/",), "OpenEXR": ("Imf", "Iex", "Imath"), "OpenImageIO": ("OpenImageIO/",), "png": ("png.h",), "spdlog": ("spdlog/",),
     "TBB": ("tbb/", "oneapi/"), "zlib": ("zlib.h",)}
 POSIX = ("sys/", "arpa/", "net/", "netinet/", "dlfcn.h", "fcntl.h", "grp.h", "poll.h", "pwd.h", "signal.h", "unistd.h")

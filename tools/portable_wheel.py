@@ -31,7 +31,7 @@ LEVELS = ["sse2", "avx", "avx2", "avx512"]
 ABSENT = ["libz3.so.4", "libxml2.so.2", "libedit.so.2"]
 # Packages whose headers are compiled in, beside the libraries.
 COMPILED_IN = ["libcli11-dev", "nlohmann-json3-dev", "libboost1.74-dev", "libglm-dev", "opencl-clhpp-headers", "opencl-c-headers", "gemmi-dev",
-               "tao-pegtl-dev", "libstdc++6"]
+               "tao-pegtl-dev", "libstdc++6", "libstb-dev", "fonts-dejavu-core"]
 PARTS = [  # of the table of sizes: what, and its files
     ("LLVM 15", r"libLLVM-15"),
     ("clang 15", r"libclang-cpp"),

@@ -41,8 +41,8 @@ Scene measured_scene() {
   Shape shape;
   shape.geometry = std::move(capsules);
   scene.shapes.push_back(std::move(shape));
-  scene.film.width = 512;
-  scene.film.height = 288;
+  scene.view.film.width = 512;
+  scene.view.film.height = 288;
   add_presentation(scene);
   return scene;
 }

@@ -172,10 +172,11 @@ void add_encoding(CLI::App& command, Encoding& encoding) {
 void apply(const Overrides& overrides, Scene& scene) {
   if (overrides.size) set_film_size(scene, overrides.size->width, overrides.size->height);
   if (overrides.crop) with_flag("--crop", [&] { set_crop(scene, *overrides.crop); });
-  if (overrides.samples_per_pixel) scene.sampler.samples_per_pixel = *overrides.samples_per_pixel;
-  if (overrides.seed) scene.sampler.seed = *overrides.seed;
-  if (overrides.clamp) scene.film.max_component_value = *overrides.clamp;
-  if (overrides.max_depth) scene.integrator.max_depth = *overrides.max_depth;
+  if (overrides.samples_per_pixel)
+    scene.view.sampler.samples_per_pixel = *overrides.samples_per_pixel;
+  if (overrides.seed) scene.view.sampler.seed = *overrides.seed;
+  if (overrides.clamp) scene.view.film.max_component_value = *overrides.clamp;
+  if (overrides.max_depth) scene.view.integrator.max_depth = *overrides.max_depth;
 }
 
 void add_import_options(CLI::App& command, ImportOptions& options) {

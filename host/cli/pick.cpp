@@ -203,7 +203,7 @@ void run_pick(const PickFlags& options, bool has_limit) {
   outputs.check_inputs();
   apply(overrides, scene);
   if (pixel) {
-    with_flag("--pixel", [&] { check_pixel(*pixel, scene.film); });
+    with_flag("--pixel", [&] { check_pixel(*pixel, scene.view.film); });
     ray = ray_of_pixel(scene, (*pixel)[0], (*pixel)[1]);
   }
   const FlatScene flat = lower(scene);

@@ -175,19 +175,19 @@ report::StereoLayout layout_of(const RenderFlags& options) {
 /// from.
 void check_outputs(const RenderFlags& options, const Scene& scene, Layers layers, Files& files) {
   if (options.outputs.empty() && !options.has_frames()) {
-    fs::path name = fs::path(scene.film.filename).filename();
+    fs::path name = fs::path(scene.view.film.filename).filename();
     if (name.empty()) name = fs::path(options.scenes.front()).filename();
     add_output(options, files, name.replace_extension(".exr"));
   }
   files.all.check_inputs();
-  const std::array<int, 4> window =
-      scene.film.crop.value_or(std::array<int, 4>{0, scene.film.width, 0, scene.film.height});
+  const std::array<int, 4> window = scene.view.film.crop.value_or(
+      std::array<int, 4>{0, scene.view.film.width, 0, scene.view.film.height});
   const int width = window[1] - window[0], height = window[3] - window[2];
   const std::string flag = options.crop.empty() ? "--size" : "--crop";
   if (!files.pictures.empty())
     check_exr_size(width, height, layers.channels() * (options.separation ? 2 : 1), flag);
   const bool is_transparent =
-      scene.film.backdrop && scene.film.backdrop->kind == Backdrop::Kind::transparent;
+      scene.view.film.backdrop && scene.view.film.backdrop->kind == Backdrop::Kind::transparent;
   for (const fs::path& preview : files.previews) {
     if (is_transparent && !options.separation) check_preview_alpha(preview, "--preview");
     check_preview_size(
@@ -342,11 +342,8 @@ RenderResult stereo_pictures(const Work& both, report::RunSeconds& seconds) {
     work.render_options.film_on_device = false;
     if (work.render_options.time_limit) *work.render_options.time_limit /= 2;
     Scene seen;
-    seen.camera = camera_of_eye(both.scene, stereo, eye);
-    seen.filter = both.scene.filter;
-    seen.film = both.scene.film;
-    seen.sampler = both.scene.sampler;
-    seen.integrator = both.scene.integrator;
+    seen.view = both.scene.view;
+    seen.view.camera = camera_of_eye(both.scene, stereo, eye);
     const std::size_t i = eye == Eye::left ? 0 : 1;
     if (i == 1) work.render_options.samples_per_pixel = results[0].samples_per_pixel;
     if (i == 1) work.render_options.time_limit.reset();
@@ -474,8 +471,8 @@ void frame_all(const RenderFlags& options, const FrameSource& source, const Over
   }
   log::set_quiet(quiet);
   apply(overrides, all);
-  set_film_size(all, all.film.width, all.film.height);  // frames the camera again
-  move_camera(first, all.camera);
+  set_film_size(all, all.view.film.width, all.view.film.height);  // frames the camera again
+  move_camera(first, all.view.camera);
 }
 
 /// Returns whether all outputs of a frame exist.
@@ -495,7 +492,7 @@ RenderResult render_frames(const Work& of_all, const FrameSource& source,
   if (!of_all.files.movie.empty()) movie.emplace(of_all.files.movie, options.frames_a_second, "-o");
   std::optional<Turntable> table;
   if (source.kind == FrameSource::Kind::turntable) table.emplace(scene);
-  const Camera camera = scene.camera;
+  const Camera camera = scene.view.camera;
   const std::vector<Light> lights = scene.lights;
   const bool is_automatic = scene.automatic_camera;
   LiveScene live(std::move(scene));
@@ -511,7 +508,7 @@ RenderResult render_frames(const Work& of_all, const FrameSource& source,
     if (interrupt_requested())
       throw RunError(fmt::format("interrupted: {} of {} frames are written", made, count));
     if (table) {
-      ViewEdit view = view_of(live.scene());
+      View view = live.scene().view;
       view.camera = table->camera(frame - 1, source.range.count);
       live.edit(view);
       for (std::uint32_t i = 0; i < lights.size(); ++i)
@@ -521,7 +518,7 @@ RenderResult render_frames(const Work& of_all, const FrameSource& source,
       Scene next = scene_of_frame(options, source, frame);
       apply(overrides, next);
       if (is_automatic) {
-        next.camera = camera;
+        next.view.camera = camera;
         next.lights = lights;
       }
       widen_to_least(next);
@@ -588,9 +585,9 @@ void run_render(const RenderFlags& options, const Invocation& invocation) {
   if (!options.quiet)
     log::info("{}: {} primitives, {} x {} pixels, {} samples per pixel on {}",
               scene_names(options.scenes), flat.primitive_count, view.view.crop_width,
-              view.view.crop_height, scene.sampler.samples_per_pixel, names_of(devices));
+              view.view.crop_height, scene.view.sampler.samples_per_pixel, names_of(devices));
   RenderOptions render_options;
-  render_options.samples_per_pixel = scene.sampler.samples_per_pixel;
+  render_options.samples_per_pixel = scene.view.sampler.samples_per_pixel;
   render_options.time_limit = options.time_limit;
   render_options.batch_paths = options.batch_paths;
   render_options.time_stages = !options.stats.empty();
@@ -609,7 +606,7 @@ void run_render(const RenderFlags& options, const Invocation& invocation) {
   const fs::path first = frames && !files.movie.empty() ? files.movie : files.first();
   if (result.interrupted)
     log::warn("interrupted: {} holds {} of {} samples per pixel", first.string(),
-              result.samples_per_pixel, scene.sampler.samples_per_pixel);
+              result.samples_per_pixel, scene.view.sampler.samples_per_pixel);
   log::info("wrote {}", first.string());
 }
 

@@ -135,7 +135,7 @@ void run_verify(const VerifyFlags& o) {
   const std::string name = scene_names(o.scenes);
   outputs.check_inputs();
   if (!o.heatmap.empty()) {
-    const FilmSettings film = scene ? scene->film : verify::torture_scene(o.seed, 0).film;
+    const FilmSettings film = scene ? scene->view.film : verify::torture_scene(o.seed, 0).view.film;
     const ImageSize size = overrides.size.value_or(ImageSize{film.width, film.height});
     check_exr_size(size.width, size.height, report::heatmap_channels, "--size");
   }

@@ -34,9 +34,9 @@ class SceneWriter {
     // This lists every field of the scene, so that a new one does not compile without its
     // statement. Some only describe pictures and have no statement: the file's axes and the legend
     // of its colours.
-    const auto& [textures, materials, media, shapes, objects, instances, lights, camera, filter,
-                 film, sampler, integrator, source, automatic_camera, has_no_up, framing,
-                 world_from_file, unit, legend] = scene_;
+    const auto& [textures, materials, media, shapes, objects, instances, lights, view, source,
+                 automatic_camera, has_no_up, framing, world_from_file, unit, legend] = scene_;
+    const auto& [camera, filter, film, sampler, integrator] = view;
     order_materials();
     order_media();
     name_all();
@@ -112,7 +112,7 @@ class SceneWriter {
       use(shape.media.inside);
       use(shape.media.outside);
     };
-    use(scene_.camera.medium);
+    use(scene_.view.camera.medium);
     std::ranges::for_each(scene_.shapes, visit);
     for (const Object& object : scene_.objects) std::ranges::for_each(object.shapes, visit);
   }
@@ -171,7 +171,8 @@ class SceneWriter {
     Camera::fields(camera, OptionWriter{out});
     if (lens_radius != 0 && is_orthographic(camera))
       out.boolean(Camera::parallel_lens_field.name, true);
-    if (scene_.film.exposure_time != 1) out.number("shutterclose", scene_.film.exposure_time);
+    if (scene_.view.film.exposure_time != 1)
+      out.number("shutterclose", scene_.view.film.exposure_time);
     if (scene_.automatic_camera) out.boolean("automatic", true);
     if (scene_.has_no_up) out.boolean("noup", true);
     if (scene_.framing.toward_viewer) out.vector("view", *scene_.framing.toward_viewer);

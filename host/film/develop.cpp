@@ -66,9 +66,9 @@ class Developer {
  public:
   Developer(const Film& film, const Scene& scene)
       : film_(film),
-        picture_from_xyz_(picture_from_xyz(scene.film)),
-        rgb_from_xyz_(rgb_from_xyz(scene.film.space)),
-        exposure_(scene.film.exposure_time * scene.film.iso / 100),
+        picture_from_xyz_(picture_from_xyz(scene.view.film)),
+        rgb_from_xyz_(rgb_from_xyz(scene.view.film.space)),
+        exposure_(scene.view.film.exposure_time * scene.view.film.iso / 100),
         brightest_(std::ldexp(1.0, film.layout().color_exponent)) {}
 
   void look_at(std::size_t pixel) {
@@ -168,7 +168,7 @@ float instead_of(LayerHow how) {
 
 LayeredImage develop(const Film& film, const Scene& scene, Layers layers, NotFinite& not_finite) {
   CHECK_EQ_(film.layout().layers.has_all(layers), true);
-  LayeredImage image = black_image(film.layout(), scene.film.space, layers);
+  LayeredImage image = black_image(film.layout(), scene.view.film.space, layers);
   const Window& window = film.layout().window;
   Developer developer(film, scene);
   not_finite.of += window.pixels();
@@ -197,7 +197,7 @@ LayeredImage develop(const Film& film, const Scene& scene, Layers layers, NotFin
     not_finite.x = static_cast<std::size_t>(window.x) + pixel % width;
     not_finite.y = static_cast<std::size_t>(window.y) + pixel / width;
   }
-  put_under(image, scene.film.backdrop);
+  put_under(image, scene.view.film.backdrop);
   return image;
 }
 

@@ -194,16 +194,12 @@ Scene joined(std::vector<Imported> files, std::span<const fs::path> paths) {
   // none does, the format that asks for most.
   std::optional<std::size_t> settings = with_camera;
   for (std::size_t i = 0; i < files.size() && !settings; ++i)
-    if (!files[i].scene.film.filename.empty() || files[i].is_lit) settings = i;
+    if (!files[i].scene.view.film.filename.empty() || files[i].is_lit) settings = i;
   const std::size_t head = settings.value_or(0);
   Scene scene;
   {
     const Scene& from = files[head].scene;
-    scene.camera = from.camera;
-    scene.filter = from.filter;
-    scene.film = from.film;
-    scene.sampler = from.sampler;
-    scene.integrator = from.integrator;
+    scene.view = from.view;
     scene.source = from.source;
     scene.has_no_up =
         std::ranges::all_of(files, [](const Imported& file) { return file.scene.has_no_up; });
@@ -214,9 +210,10 @@ Scene joined(std::vector<Imported> files, std::span<const fs::path> paths) {
     for (const Imported& file : files) {
       if (!scene.legend) scene.legend = file.scene.legend;
       if (settings) continue;
-      scene.film.least_width = std::max(scene.film.least_width, file.scene.film.least_width);
-      scene.sampler.samples_per_pixel =
-          std::max(scene.sampler.samples_per_pixel, file.scene.sampler.samples_per_pixel);
+      scene.view.film.least_width =
+          std::max(scene.view.film.least_width, file.scene.view.film.least_width);
+      scene.view.sampler.samples_per_pixel =
+          std::max(scene.view.sampler.samples_per_pixel, file.scene.view.sampler.samples_per_pixel);
     }
   }
   Imported out(std::move(scene));
@@ -228,7 +225,7 @@ Scene joined(std::vector<Imported> files, std::span<const fs::path> paths) {
     prefix_names(part, names[i],
                  paths[i].stem().string());  // pictures use the prefixed names of shapes
     const Appended at = append(out.scene, std::move(part));
-    if (i == head && out.scene.camera.medium) *out.scene.camera.medium += at.media;
+    if (i == head && out.scene.view.camera.medium) *out.scene.view.camera.medium += at.media;
     part = {};
   }
   return presented(std::move(out));
@@ -268,13 +265,13 @@ Scene presented(Imported file) {
     throw InputError(SourceLocation{scene.source},
                      "the scene is empty: it has no shapes, no light and no camera");
   if (!can_be_framed(scene)) return std::move(scene);
-  const Camera camera = scene.camera;
+  const Camera camera = scene.view.camera;
   if (file.is_lit)
     frame_camera(scene);
   else
     add_presentation(scene);
   if (file.has_camera) {
-    scene.camera = camera;
+    scene.view.camera = camera;
     scene.automatic_camera = false;
   }
   return std::move(scene);

@@ -37,9 +37,9 @@ void look_from(Scene& scene, const ImportOptions& options, bool is_turned) {
   if (projects)
     framing.is_orthographic = options.choice("projection", {"perspective", "orthographic"}, 0) == 1;
   if (!can_be_framed(scene)) return;
-  const auto medium = scene.camera.medium;
+  const auto medium = scene.view.camera.medium;
   frame_camera(scene);
-  scene.camera.medium = medium;
+  scene.view.camera.medium = medium;
   turn_lights_to_camera(scene);
 }
 
@@ -50,8 +50,9 @@ void apply_picture_options(Scene& scene, const ImageReader& images, const Import
   look_from(scene, options, is_turned);
   if (const auto light = options.text("light")) set_light(scene, *light, "--light");
   if (const auto backdrop = options.text("background"))
-    scene.film.backdrop = parse_backdrop(*backdrop, images, "--background");
-  if (const auto width = options.text("least-width")) scene.film.least_width = width_of(*width);
+    scene.view.film.backdrop = parse_backdrop(*backdrop, images, "--background");
+  if (const auto width = options.text("least-width"))
+    scene.view.film.least_width = width_of(*width);
 }
 
 }  // namespace caplet

@@ -70,8 +70,8 @@ const std::vector<Format>& formats() {
 void set_usual_picture(Scene& scene, const std::string& name) {
   for (const Format& format : formats())
     if (format.name == name) {
-      scene.sampler.samples_per_pixel = format.samples_per_pixel;
-      scene.film.least_width = format.least_width;
+      scene.view.sampler.samples_per_pixel = format.samples_per_pixel;
+      scene.view.film.least_width = format.least_width;
     }
 }
 

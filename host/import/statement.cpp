@@ -118,7 +118,7 @@ void read_option(const ProgramStatement& statement, pbrt::Parameters& parameters
   if (statement.directive == "Integrator") pbrt::set_integrator(statement.type, parameters, scene);
   if (statement.directive == "Sampler")
     if (const auto seed = pbrt::set_sampler(statement.type, parameters, scene))
-      scene.sampler.seed = *seed;
+      scene.view.sampler.seed = *seed;
 }
 
 /// Returns what `work` makes of the statement's parameters. Throws InputError with all their

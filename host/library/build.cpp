@@ -426,14 +426,14 @@ std::vector<std::string> Scene::media() const {
 void Scene::set_camera(const std::string& type, const Parameters& parameters,
                        const Transform& transform) {
   caplet::Scene one;
-  one.film = data_->model.film;
+  one.view.film = data_->model.view.film;
   caplet::set_option(to_statement(directive_of(Statement::camera), type, parameters),
                      to_model(transform), one);
   check_textures(one);
   Data& data = changed();
-  one.camera.medium = data.model.camera.medium;
-  data.model.camera = one.camera;
-  data.model.film.exposure_time = one.film.exposure_time;
+  one.view.camera.medium = data.model.view.camera.medium;
+  data.model.view.camera = one.view.camera;
+  data.model.view.film.exposure_time = one.view.film.exposure_time;
   data.model.automatic_camera = one.automatic_camera;
   data.model.has_no_up = one.has_no_up;
   data.model.framing = one.framing;
@@ -442,14 +442,14 @@ void Scene::set_camera(const std::string& type, const Parameters& parameters,
   if (data.model.automatic_camera && can_be_framed(data.model)) frame_camera(data.model);
 }
 
-Transform Scene::camera() const { return to_public(data_->model.camera.world_from_camera); }
+Transform Scene::camera() const { return to_public(data_->model.view.camera.world_from_camera); }
 
 void Scene::set_camera_medium(std::optional<std::uint32_t> medium) {
   if (medium && *medium >= data_->model.media.size())
     throw InputError(fmt::format("there is no medium {}, of {} counted from 0", *medium,
                                  data_->model.media.size()));
   Data& data = changed();
-  data.model.camera.medium = medium;
+  data.model.view.camera.medium = medium;
   data.as_a_whole();
 }
 
@@ -458,18 +458,13 @@ void Scene::set_option(Statement statement, const std::string& type, const Param
       statement != Statement::sampler && statement != Statement::integrator)
     throw InputError("an option is a film, a filter, a sampler or an integrator");
   caplet::Scene one;
-  one.film = data_->model.film;
-  one.filter = data_->model.filter;
-  one.sampler = data_->model.sampler;
-  one.integrator = data_->model.integrator;
+  one.view = data_->model.view;
   caplet::set_option(to_statement(directive_of(statement), type, parameters), glm::dmat4(1), one);
   check_textures(one);
   Data& data = changed();
-  const bool sky_changes = data.model.film.backdrop.has_value() != one.film.backdrop.has_value();
-  data.model.film = one.film;
-  data.model.filter = one.filter;
-  data.model.sampler = one.sampler;
-  data.model.integrator = one.integrator;
+  const bool sky_changes =
+      data.model.view.film.backdrop.has_value() != one.view.film.backdrop.has_value();
+  data.model.view = one.view;
   if (data.model.automatic_camera && statement == Statement::film) frame_camera(data.model);
   if (sky_changes) data.as_a_whole();
 }
@@ -485,13 +480,13 @@ void Scene::present() {
   diagnostics.finish();
   if (data.studio_light) model.lights.clear();
   const bool needs_light = data.open_light && !is_lit(model);
-  const caplet::Camera camera = model.camera;
+  const caplet::Camera camera = model.view.camera;
   if (needs_light)
     add_presentation(model);
   else if (data.open_camera)
     frame_camera(model);
   if (!data.open_camera) {
-    model.camera = camera;
+    model.view.camera = camera;
     model.automatic_camera = false;
     // The studio's lights are placed around this camera.
     const glm::dmat3 view(camera.world_from_camera);

@@ -100,7 +100,7 @@ class Numbers {
 }  // namespace
 
 std::optional<Hit> Questions::pixel(int x, int y) const {
-  check_pixel({x, y}, scene.film);
+  check_pixel({x, y}, scene.view.film);
   try_device(device, {.shapes = shapes, .nearest = true});
   const RayRecord ray = ray_of_pixel(scene, x, y);
   return to_nearest(query.closest(std::span(&ray, 1)).front(), scene);

@@ -16,7 +16,7 @@ Film render(const Scene& scene, const Device& device, const RenderOptions& optio
   const caplet::Device& on = Inside::device(device);
   const FlatScene flat = lower(model);
   try_device(on, {.shapes = flat.shapes, .render = true});
-  const auto samples = static_cast<std::uint32_t>(model.sampler.samples_per_pixel);
+  const auto samples = static_cast<std::uint32_t>(model.view.sampler.samples_per_pixel);
   caplet::Session session(flat, lower_view(model), {on},
                           {.layers = Layers::all(), .most_samples = samples});
   SessionRuns runs;

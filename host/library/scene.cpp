@@ -96,8 +96,8 @@ std::vector<std::string> Scene::materials() const {
   return out;
 }
 
-int Scene::width() const { return data_->model.film.width; }
-int Scene::height() const { return data_->model.film.height; }
+int Scene::width() const { return data_->model.view.film.width; }
+int Scene::height() const { return data_->model.view.film.height; }
 
 void Scene::set_size(int width, int height) {
   check_range("width", width, 1, most_image_pixels);
@@ -109,20 +109,20 @@ void Scene::set_crop(int x0, int y0, int x1, int y1) {
   caplet::set_crop(changed().model, {x0, y0, x1, y1});
 }
 
-int Scene::samples_per_pixel() const { return data_->model.sampler.samples_per_pixel; }
+int Scene::samples_per_pixel() const { return data_->model.view.sampler.samples_per_pixel; }
 void Scene::set_samples_per_pixel(int samples) {
   check_range("samples per pixel", samples, 1, most_samples);
-  changed().model.sampler.samples_per_pixel = samples;
+  changed().model.view.sampler.samples_per_pixel = samples;
 }
 
-int Scene::max_depth() const { return data_->model.integrator.max_depth; }
+int Scene::max_depth() const { return data_->model.view.integrator.max_depth; }
 void Scene::set_max_depth(int events) {
   check_range("scattering events", events, 0, most_events);
-  changed().model.integrator.max_depth = events;
+  changed().model.view.integrator.max_depth = events;
 }
 
-std::uint32_t Scene::seed() const { return data_->model.sampler.seed; }
-void Scene::set_seed(std::uint32_t seed) { changed().model.sampler.seed = seed; }
+std::uint32_t Scene::seed() const { return data_->model.view.sampler.seed; }
+void Scene::set_seed(std::uint32_t seed) { changed().model.view.sampler.seed = seed; }
 
 std::string Scene::unit() const { return data_->model.unit; }
 
@@ -276,14 +276,15 @@ void Scene::look_at(const std::array<double, 3>& eye, const std::array<double, 3
                     const std::array<double, 3>& up) {
   // pbrt's LookAt mirrors a right-handed world; this is kept only if the present camera mirrors it
   // too.
-  const bool is_mirrored = !data_->open_camera &&
-                           glm::determinant(glm::dmat3(data_->model.camera.world_from_camera)) > 0;
+  const bool is_mirrored =
+      !data_->open_camera &&
+      glm::determinant(glm::dmat3(data_->model.view.camera.world_from_camera)) > 0;
   auto world_from_camera = camera_looking(to_vector(eye), to_vector(target), to_vector(up));
   if (!world_from_camera)
     throw InputError(
         "the camera has no direction: eye and target coincide, or up lies along the view");
   if (!is_mirrored) (*world_from_camera)[0] *= -1;
-  ViewEdit view = view_of(data_->model);
+  View view = data_->model.view;
   view.camera.world_from_camera = *world_from_camera;
   apply_edit(changed().model, view);
   changed().model.automatic_camera = false;
@@ -291,16 +292,16 @@ void Scene::look_at(const std::array<double, 3>& eye, const std::array<double, 3
 }
 
 void Scene::widen_to_least() {
-  if (!(data_->model.film.least_width > 0)) return;
+  if (!(data_->model.view.film.least_width > 0)) return;
   if (data_->open_camera) present();
   Data& data = changed();
   if (caplet::widen_to_least(data.model) > 0) data.as_a_whole_in_view();
 }
 
-double Scene::fov() const { return fov_of(data_->model.camera) * degrees_per_radian; }
+double Scene::fov() const { return fov_of(data_->model.view.camera) * degrees_per_radian; }
 void Scene::set_fov(double degrees) {
   if (data_->open_camera) present();
-  ViewEdit view = view_of(data_->model);
+  View view = data_->model.view;
   view.camera.projection = PerspectiveProjection{degrees / degrees_per_radian};
   apply_edit(changed().model, view);
   changed().model.automatic_camera = false;

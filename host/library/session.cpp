@@ -115,7 +115,7 @@ void Session::update(const Scene& scene) {
       d.live.put(edit);
       d.at = state;
     }
-    d.live.edit(view_of(now.model));
+    d.live.edit(now.model.view);
   } catch (...) {
     d.send();
     throw;

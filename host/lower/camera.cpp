@@ -13,8 +13,8 @@
 namespace caplet {
 
 void lower_camera(const Scene& scene, FlatView& out) {
-  const Camera& camera = scene.camera;
-  const FilmSettings& film = scene.film;
+  const Camera& camera = scene.view.camera;
+  const FilmSettings& film = scene.view.film;
   ViewRecord& view = out.view;
   view.width = narrow<uint>(film.width);
   view.height = narrow<uint>(film.height);
@@ -49,8 +49,8 @@ void lower_camera(const Scene& scene, FlatView& out) {
 }
 
 RayRecord ray_of_pixel(const Scene& scene, int x, int y) {
-  const CameraRay of = unproject(scene.camera, scene.film, {x + 0.5, y + 0.5});
-  const glm::dmat4& world = scene.camera.world_from_camera;
+  const CameraRay of = unproject(scene.view.camera, scene.view.film, {x + 0.5, y + 0.5});
+  const glm::dmat4& world = scene.view.camera.world_from_camera;
   const glm::dvec3 origin(world * glm::dvec4(of.origin, 1)),
       direction = glm::normalize(glm::dmat3(world) * of.direction);
   RayRecord ray{};

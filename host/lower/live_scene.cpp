@@ -208,7 +208,7 @@ struct LiveScene::State {
     return true;
   }
 
-  bool follow(const ViewEdit& edit, const ViewEdit& before) {
+  bool follow(const View& edit, const View& before) {
     return edit.film.space == before.film.space &&
            edit.film.backdrop.has_value() == before.film.backdrop.has_value();
   }

@@ -18,9 +18,9 @@
 namespace caplet {
 
 Lowering::Lowering(const Scene& scene)
-    : images(image_numbers(scene.textures)), spectra(flat, scene.film.space) {
+    : images(image_numbers(scene.textures)), spectra(flat, scene.view.film.space) {
   const auto start = std::chrono::steady_clock::now();
-  flat.sky_is_unseen = scene.film.backdrop.has_value();
+  flat.sky_is_unseen = scene.view.film.backdrop.has_value();
   lower_images(scene, images, flat);
   for (std::size_t i = 0; i < scene.materials.size(); ++i)
     flat.materials.push_back(lower_material(scene, narrow<uint>(i), images, spectra, flat));
@@ -77,13 +77,14 @@ FlatScene lower(const Scene& scene) { return std::move(Lowering(scene).flat); }
 FlatView lower_view(const Scene& scene) {
   FlatView out;
   lower_camera(scene, out);
-  lower_filter(scene.filter, out);
-  lower_sampler(scene.sampler, out.view);
-  lower_integrator(scene.integrator, out.view);
-  if (scene.film.max_component_value > 0)
-    out.view.sample_limit = static_cast<float>(scene.film.max_component_value /
-                                               (scene.film.exposure_time * scene.film.iso / 100));
-  std::ranges::transform(picture_from_xyz(scene.film), out.view.rgb_from_xyz,
+  lower_filter(scene.view.filter, out);
+  lower_sampler(scene.view.sampler, out.view);
+  lower_integrator(scene.view.integrator, out.view);
+  if (scene.view.film.max_component_value > 0)
+    out.view.sample_limit =
+        static_cast<float>(scene.view.film.max_component_value /
+                           (scene.view.film.exposure_time * scene.view.film.iso / 100));
+  std::ranges::transform(picture_from_xyz(scene.view.film), out.view.rgb_from_xyz,
                          [](double v) { return static_cast<float>(v); });
   return out;
 }

@@ -57,7 +57,7 @@ void draw_axes(Shown& picture, const Scene& scene, const std::array<float, 3>& i
     double depth;
   };
   const double size = text_size(picture), length = 3 * size, edge = margin(picture);
-  const glm::dmat3 camera(scene.camera.world_from_camera);
+  const glm::dmat3 camera(scene.view.camera.world_from_camera);
   std::vector<Arrow> arrows;
   for (int axis = 0; axis < 3; ++axis) {
     const glm::dvec3 along = scene.world_from_file[axis];

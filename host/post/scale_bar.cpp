@@ -55,8 +55,8 @@ double round_length(double most) {
 }  // namespace
 
 Sight::Sight(const Scene& of) : bounds(bounds_of(of)) {
-  scene.camera = of.camera;
-  scene.film = of.film;
+  scene.view.camera = of.view.camera;
+  scene.view.film = of.view.film;
   scene.world_from_file = of.world_from_file;
   scene.unit = of.unit;
   scene.legend = of.legend;
@@ -80,10 +80,10 @@ BarOnPicture bar_of(const ScaleBar& asked, const Sight& sight, const std::string
   const auto& [scene, bounds] = sight;
   if (bounds.empty())
     throw InputError(SourceLocation{flag}, "the scene has no shapes that a bar could measure");
-  if (is_spherical(scene.camera))
+  if (is_spherical(scene.view.camera))
     throw InputError(SourceLocation{flag}, "a spherical camera's picture has no scale");
   const glm::dvec3 middle = 0.5 * (bounds.min + bounds.max);
-  const double footprint = pixel_footprint(scene.camera, scene.film, middle);
+  const double footprint = pixel_footprint(scene.view.camera, scene.view.film, middle);
   if (!(footprint > 0))
     throw InputError(SourceLocation{flag}, "what is seen lies behind the camera");
   const auto own = unit_named(scene.unit);
@@ -99,17 +99,17 @@ BarOnPicture bar_of(const ScaleBar& asked, const Sight& sight, const std::string
     if (own) per_unit = wanted->metres / own->metres;
   }
   BarOnPicture out;
-  const double length = asked.length > 0
-                            ? asked.length
-                            : round_length(kMostOfWidth * scene.film.width * footprint / per_unit);
+  const double length =
+      asked.length > 0 ? asked.length
+                       : round_length(kMostOfWidth * scene.view.film.width * footprint / per_unit);
   out.pixels = length * per_unit / footprint;
   out.label = label.empty() ? fmt::format("{:g}", length) : fmt::format("{:g} {}", length, label);
-  if (!is_orthographic(scene.camera)) {
-    const glm::dmat4& m = scene.camera.world_from_camera;
+  if (!is_orthographic(scene.view.camera)) {
+    const glm::dmat4& m = scene.view.camera.world_from_camera;
     out.distance = glm::dot(middle - glm::dvec3(m[3]), glm::normalize(glm::dvec3(m[2])));
   }
-  const auto crop =
-      scene.film.crop.value_or(std::array<int, 4>{0, scene.film.width, 0, scene.film.height});
+  const auto crop = scene.view.film.crop.value_or(
+      std::array<int, 4>{0, scene.view.film.width, 0, scene.view.film.height});
   if (out.pixels > crop[1] - crop[0])
     throw InputError(SourceLocation{flag},
                      fmt::format("{} are {:.0f} pixels, more than the picture's {}", out.label,

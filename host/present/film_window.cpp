@@ -33,7 +33,7 @@ std::array<int, 4> rescaled(const std::array<int, 4>& crop, const FilmSettings& 
 }  // namespace
 
 void set_film_size(Scene& scene, int width, int height) {
-  FilmSettings& film = scene.film;
+  FilmSettings& film = scene.view.film;
   if (film.crop) film.crop = rescaled(*film.crop, film, width, height);
   film.width = width;
   film.height = height;
@@ -41,7 +41,7 @@ void set_film_size(Scene& scene, int width, int height) {
 }
 
 void set_crop(Scene& scene, const std::array<int, 4>& corners) {
-  FilmSettings& film = scene.film;
+  FilmSettings& film = scene.view.film;
   const auto [x0, y0, x1, y1] = corners;
   if (x0 >= x1 || y0 >= y1)
     throw InputError(

@@ -42,7 +42,7 @@ std::size_t widen(Shape& shape, const std::vector<glm::dmat4>& worlds, const Sce
     for (const Place& place : places)
       radius = std::max(radius,
                         0.5 * pixels *
-                            pixel_footprint(scene.camera, scene.film,
+                            pixel_footprint(scene.view.camera, scene.view.film,
                                             glm::dvec3(place.world_from_shape * glm::dvec4(p, 1))) /
                             place.stretch);
     return radius;
@@ -75,7 +75,7 @@ std::size_t widen(Shape& shape, const std::vector<glm::dmat4>& worlds, const Sce
 }  // namespace
 
 std::size_t widen_to_least(Scene& scene) {
-  const double pixels = scene.film.least_width;
+  const double pixels = scene.view.film.least_width;
   if (!(pixels > 0)) return 0;
   std::size_t grown = 0;
   for (Shape& shape : scene.shapes) grown += widen(shape, {glm::dmat4(1)}, scene, pixels);

@@ -164,7 +164,7 @@ void set_light(Scene& scene, const std::string& name, const std::string& flag) {
   InfiniteLight light;
   light.image = light_preset(name);
   if (light.image)
-    light.world_from_light = around(scene.camera);
+    light.world_from_light = around(scene.view.camera);
   else if (name == "flat")
     light.radiance = RgbSpectrum{glm::dvec3(1)};
   else
@@ -176,7 +176,7 @@ void set_light(Scene& scene, const std::string& name, const std::string& flag) {
 void turn_lights_to_camera(Scene& scene) {
   for (Light& light : scene.lights)
     if (is_preset(light))
-      std::get<InfiniteLight>(light.model).world_from_light = around(scene.camera);
+      std::get<InfiniteLight>(light.model).world_from_light = around(scene.view.camera);
 }
 
 }  // namespace caplet

@@ -122,13 +122,13 @@ Axes axes_of(const std::vector<Ball>& balls) {
 }
 
 /// The world is right-handed, so `right` x `up` points back at the viewer.
-struct View {
+struct ViewFrame {
   glm::dvec3 right, up, forward;
 };
 
 /// `toward_viewer` may have any length. y is up unless the view is along it; then -z is.
-View view_from(const glm::dvec3& toward_viewer) {
-  View view;
+ViewFrame view_from(const glm::dvec3& toward_viewer) {
+  ViewFrame view;
   view.forward = -glm::normalize(toward_viewer);
   const bool steep = std::abs(view.forward.y) > 0.95;
   const glm::dvec3 up = steep ? glm::dvec3(0, 0, -1) : glm::dvec3(0, 1, 0);
@@ -139,8 +139,8 @@ View view_from(const glm::dvec3& toward_viewer) {
 
 /// Returns a requested view, with y up however steep it is. From above, the front is at the bottom
 /// of the image; from below, at the top.
-View view_asked(const glm::dvec3& toward_viewer) {
-  View view;
+ViewFrame view_asked(const glm::dvec3& toward_viewer) {
+  ViewFrame view;
   view.forward = -glm::normalize(toward_viewer);
   const bool is_upright = std::abs(view.forward.y) > 1 - 1e-12;
   const glm::dvec3 up = is_upright ? glm::dvec3(0, 0, view.forward.y) : glm::dvec3(0, 1, 0);
@@ -150,7 +150,7 @@ View view_asked(const glm::dvec3& toward_viewer) {
 }
 
 /// Turns the viewer to the right by `azimuth` and up by `elevation`.
-View turned(const View& view, double azimuth, double elevation) {
+ViewFrame turned(const ViewFrame& view, double azimuth, double elevation) {
   const glm::dvec3 level = -view.forward * std::cos(azimuth) + view.right * std::sin(azimuth);
   return view_from(level * std::cos(elevation) + view.up * std::sin(elevation));
 }
@@ -159,7 +159,7 @@ bool is_flat(const Axes& axes) { return axes.extent[2] < kFlat * axes.extent[1];
 
 /// For scenes without an up axis: makes a quarter turn where the longer side then fits the image's
 /// longer side clearly better.
-View along_image(const View& view, const std::vector<Ball>& balls, double aspect) {
+ViewFrame along_image(const ViewFrame& view, const std::vector<Ball>& balls, double aspect) {
   glm::dvec2 low(1e300), high(-1e300);
   for (const Ball& ball : balls) {
     const glm::dvec2 p(glm::dot(view.right, ball.center), glm::dot(view.up, ball.center));
@@ -169,10 +169,10 @@ View along_image(const View& view, const std::vector<Ball>& balls, double aspect
   const glm::dvec2 size = high - low;
   const double upright = std::max(size.x / aspect, size.y),
                turned = std::max(size.y / aspect, size.x);
-  return turned < 0.8 * upright ? View{view.up, -view.right, view.forward} : view;
+  return turned < 0.8 * upright ? ViewFrame{view.up, -view.right, view.forward} : view;
 }
 
-View choose_view(const std::vector<Ball>& balls) {
+ViewFrame choose_view(const std::vector<Ball>& balls) {
   const Axes axes = axes_of(balls);
   const auto facing = [](glm::dvec3 n) {
     // The viewer is in front, above or at the right, whichever is nearest to the normal.
@@ -191,10 +191,10 @@ View choose_view(const std::vector<Ball>& balls) {
 }
 
 /// Returns the view of the scene's framing; the balls are in world space.
-View framed_view(const Scene& scene, const std::vector<Ball>& balls) {
+ViewFrame framed_view(const Scene& scene, const std::vector<Ball>& balls) {
   const Framing& framing = scene.framing;
-  const double aspect = static_cast<double>(scene.film.width) / scene.film.height;
-  View view;
+  const double aspect = static_cast<double>(scene.view.film.width) / scene.view.film.height;
+  ViewFrame view;
   if (!framing.up) {
     view = framing.toward_viewer ? view_asked(*framing.toward_viewer) : choose_view(balls);
   } else {
@@ -212,18 +212,19 @@ View framed_view(const Scene& scene, const std::vector<Ball>& balls) {
                                                                   : view;
 }
 
-void set_camera(Scene& scene, const View& view, const glm::dvec3& eye,
+void set_camera(Scene& scene, const ViewFrame& view, const glm::dvec3& eye,
                 const Projection& projection) {
-  scene.camera = Camera{};
-  scene.camera.world_from_camera = glm::dmat4(glm::dvec4(view.right, 0), glm::dvec4(view.up, 0),
-                                              glm::dvec4(view.forward, 0), glm::dvec4(eye, 1));
-  scene.camera.projection = projection;
+  scene.view.camera = Camera{};
+  scene.view.camera.world_from_camera =
+      glm::dmat4(glm::dvec4(view.right, 0), glm::dvec4(view.up, 0), glm::dvec4(view.forward, 0),
+                 glm::dvec4(eye, 1));
+  scene.view.camera.projection = projection;
   scene.automatic_camera = true;
 }
 
 /// The camera stands one extent before the nearest point, for the depth layer; the picture does not
 /// depend on it.
-void frame_orthographic(Scene& scene, const View& view, const std::vector<Ball>& balls) {
+void frame_orthographic(Scene& scene, const ViewFrame& view, const std::vector<Ball>& balls) {
   glm::dvec3 low(1e300), high(-1e300);
   for (const Ball& ball : balls) {
     const glm::dvec3 p(glm::dot(view.right, ball.center), glm::dot(view.up, ball.center),
@@ -232,7 +233,7 @@ void frame_orthographic(Scene& scene, const View& view, const std::vector<Ball>&
     high = glm::max(high, p + ball.radius);
   }
   const glm::dvec3 middle = 0.5 * (low + high), half = 0.5 * (high - low) / (1 - frame_margin);
-  const double width = scene.film.width, height = scene.film.height;
+  const double width = scene.view.film.width, height = scene.view.film.height;
   double per_pixel = std::max(2 * half.x / width, 2 * half.y / height);
   if (!(per_pixel > 0)) per_pixel = 1 / width;  // a single point
   const double away = 2 * std::max({half.x, half.y, half.z});
@@ -240,16 +241,16 @@ void frame_orthographic(Scene& scene, const View& view, const std::vector<Ball>&
              middle.x * view.right + middle.y * view.up + (low.z - away) * view.forward,
              OrthographicProjection{});
   const double x = 0.5 * per_pixel * width, y = 0.5 * per_pixel * height;
-  scene.camera.screen_window = {-x, x, -y, y};
+  scene.view.camera.screen_window = {-x, x, -y, y};
 }
 
 }  // namespace
 
 void frame_camera(Scene& scene) {
   const std::vector<Ball> balls = balls_of(scene);
-  const View view = framed_view(scene, balls);
+  const ViewFrame view = framed_view(scene, balls);
   if (scene.framing.is_orthographic) return frame_orthographic(scene, view, balls);
-  const double width = scene.film.width, height = scene.film.height,
+  const double width = scene.view.film.width, height = scene.view.film.height,
                shorter = std::min(width, height);
 
   // A ball is inside a side of the view pyramid when its centre is one radius behind the plane.
@@ -304,14 +305,14 @@ void add_presentation(Scene& scene) {
   frame_camera(scene);
   InfiniteLight light;
   light.image = studio_image();
-  light.world_from_light = around(scene.camera);
+  light.world_from_light = around(scene.view.camera);
   scene.lights.push_back({light, 1, {}, {}, {scene.source, 0, 0}});
 }
 
 void move_camera(Scene& scene, const Camera& to) {
-  const glm::dmat3 turn =
-      glm::dmat3(to.world_from_camera) * glm::inverse(glm::dmat3(scene.camera.world_from_camera));
-  scene.camera = to;
+  const glm::dmat3 turn = glm::dmat3(to.world_from_camera) *
+                          glm::inverse(glm::dmat3(scene.view.camera.world_from_camera));
+  scene.view.camera = to;
   for (Light& light : scene.lights)
     if (is_preset(light)) {
       auto& infinite = std::get<InfiniteLight>(light.model);

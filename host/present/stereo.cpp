@@ -9,7 +9,7 @@
 namespace caplet {
 
 Camera camera_of_eye(const Scene& scene, const Stereo& stereo, Eye eye) {
-  Camera camera = scene.camera;
+  Camera camera = scene.view.camera;
   const glm::dvec3 right(camera.world_from_camera[0]), forward(camera.world_from_camera[2]);
   const double side = eye == Eye::left ? -0.5 : 0.5;
   camera.world_from_camera[3] += glm::dvec4(side * stereo.separation * glm::normalize(right), 0);
@@ -19,7 +19,7 @@ Camera camera_of_eye(const Scene& scene, const Stereo& stereo, Eye eye) {
   const double across = side * stereo.separation / glm::length(right),
                away = *stereo.convergence / glm::length(forward);
   const double shift = across / (away * std::tan(fov_of(camera) / 2));
-  std::array<double, 4> window = screen_window_of(camera, scene.film);
+  std::array<double, 4> window = screen_window_of(camera, scene.view.film);
   window[0] -= shift;
   window[1] -= shift;
   camera.screen_window = window;

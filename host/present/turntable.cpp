@@ -57,7 +57,7 @@ struct Swept {
 }  // namespace
 
 Turntable::Turntable(const Scene& scene)
-    : camera_(scene.camera), is_automatic_(scene.automatic_camera) {
+    : camera_(scene.view.camera), is_automatic_(scene.automatic_camera) {
   const Bounds bounds = bounds_or_unit_of(scene);
   middle_ = 0.5 * (bounds.min + bounds.max);
   axis_ = glm::normalize(glm::dvec3(camera_.world_from_camera[1]));
@@ -89,7 +89,7 @@ void Turntable::step_back(const Scene& scene) {
   const glm::dvec3 across = glm::normalize(
       glm::cross(axis_, std::abs(axis_.x) < 0.5 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0)));
   const glm::dvec3 other = glm::cross(axis_, across);
-  const double width = scene.film.width, height = scene.film.height,
+  const double width = scene.view.film.width, height = scene.view.film.height,
                shorter = std::min(width, height);
   const double half = std::tan(fov_of(camera_) / 2) * (1 - frame_margin);
   const double rim = swept.radius / std::cos(std::numbers::pi / kSides);

@@ -14,7 +14,7 @@ BandedImage in_bands(const FilmLayout& layout, const Scene& scene, Layers layers
                      NotFinite& not_finite, Rows rows) {
   BandedImage out;
   out.whole = image_of(layout);
-  out.whole.space = scene.film.space;
+  out.whole.space = scene.view.film.space;
   out.rows = band_rows(out.whole.data_width, layers.channels());
   out.band = [&scene, &not_finite, layers, rows](int first, int count) {
     return develop(rows(first, count), scene, layers, not_finite);

@@ -90,9 +90,9 @@ nlohmann::ordered_json scene_summary(const Scene& scene, const FlatScene& flat) 
   out["lights"] = light_count(flat);
   out["objects"] = scene.objects.size();
   out["instances"] = scene.instances.size();
-  out["image"] = {{"width", scene.film.width}, {"height", scene.film.height}};
-  out["samples_per_pixel"] = scene.sampler.samples_per_pixel;
-  out["max_depth"] = scene.integrator.max_depth;
+  out["image"] = {{"width", scene.view.film.width}, {"height", scene.view.film.height}};
+  out["samples_per_pixel"] = scene.view.sampler.samples_per_pixel;
+  out["max_depth"] = scene.view.integrator.max_depth;
   out["bytes"] = {{"host", model_bytes(scene)}, {"device", flat.device_bytes()}};
   out["bvh"] = {{"nodes", flat.bvh_nodes}, {"depth", flat.bvh_depth}, {"sah", flat.bvh_sah}};
   return out;

@@ -131,15 +131,9 @@ void check(const Scene& scene, const LightEdit& edit) {
   check_alone(std::move(one), scene);
 }
 
-void put(Scene& scene, const ViewEdit& edit) {
-  scene.camera = edit.camera;
-  scene.filter = edit.filter;
-  scene.film = edit.film;
-  scene.sampler = edit.sampler;
-  scene.integrator = edit.integrator;
-}
+void put(Scene& scene, const View& edit) { scene.view = edit; }
 
-void check(const Scene& scene, const ViewEdit& edit) {
+void check(const Scene& scene, const View& edit) {
   Scene one;
   put(one, edit);
   check_alone(std::move(one), scene);
@@ -190,7 +184,7 @@ MaterialEdit inverse_of(const Scene& scene, const MaterialEdit& edit) {
 LightEdit inverse_of(const Scene& scene, const LightEdit& edit) {
   return {edit.light, at(scene.lights, edit.light, "light")};
 }
-ViewEdit inverse_of(const Scene& scene, const ViewEdit&) { return view_of(scene); }
+View inverse_of(const Scene& scene, const View&) { return scene.view; }
 
 }  // namespace
 
@@ -221,10 +215,6 @@ Capsule capsule_at(const Scene& scene, const ShapeAt& at, std::size_t capsule) {
   if (capsule >= capsules.p0.size()) no_such("capsule", capsule, capsules.p0.size());
   return {capsules.p0[capsule], capsules.p1[capsule], capsules.radius0[capsule],
           capsules.radius1.empty() ? capsules.radius0[capsule] : capsules.radius1[capsule]};
-}
-
-ViewEdit view_of(const Scene& scene) {
-  return {scene.camera, scene.filter, scene.film, scene.sampler, scene.integrator};
 }
 
 std::optional<glm::dmat4> camera_looking(const glm::dvec3& eye, const glm::dvec3& target,

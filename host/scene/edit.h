@@ -57,17 +57,10 @@ struct LightEdit {
   std::uint32_t light = 0;
   Light to;
 };
-/// The camera and the settings of a render.
-struct ViewEdit {
-  Camera camera;
-  PixelFilter filter;
-  FilmSettings film;
-  SamplerSettings sampler;
-  IntegratorSettings integrator;
-};
 
+/// A View changes the camera and the settings of a render.
 using SceneEdit = std::variant<CapsuleEdit, TransformEdit, EmissionEdit, InstanceEdit, MaterialEdit,
-                               LightEdit, ViewEdit>;
+                               LightEdit, View>;
 
 /// Throws InputError when the place does not exist, or when validate() would refuse the result.
 void check_edit(const Scene& scene, const SceneEdit& edit);
@@ -87,8 +80,6 @@ const Shape& shape_at(const Scene& scene, const ShapeAt& at);
 /// Returns a capsule in its present state. Throws InputError when there is none, or when the shape
 /// has no capsules.
 Capsule capsule_at(const Scene& scene, const ShapeAt& at, std::size_t capsule);
-/// Returns the present view.
-ViewEdit view_of(const Scene& scene);
 
 /// Returns Camera::world_from_camera of a camera at `eye` that looks at `target`, with `up` upward.
 /// There is no value where the points coincide or `up` is parallel to the view.

@@ -575,7 +575,7 @@ class Validator {
   }
 
   void camera(const SourceLocation& file) {
-    const Camera& c = scene_.camera;
+    const Camera& c = scene_.view.camera;
     medium(c.medium, file, "the camera");
     transform(c.world_from_camera, file);
     if (said_.empty() && !moderate(c.world_from_camera)) error(file, too_large);
@@ -594,18 +594,18 @@ class Validator {
   }
 
   void film(const SourceLocation& file) {
-    const FilmSettings& f = scene_.film;
+    const FilmSettings& f = scene_.view.film;
     if (f.width <= 0 || f.height <= 0)
       error(file, "the image size must be positive");
     else if (std::int64_t{f.width} * f.height > most_image_pixels)
       error(file, "the image of " + std::to_string(f.width) + " x " + std::to_string(f.height) +
                       " pixels is larger than 2^28 pixels");
-    if (scene_.sampler.samples_per_pixel <= 0)
+    if (scene_.view.sampler.samples_per_pixel <= 0)
       error(file, "the samples per pixel must be positive");
-    if (scene_.integrator.max_depth < 0) error(file, "the depth must not be negative");
-    if (!(scene_.integrator.max_distance > 0))
+    if (scene_.view.integrator.max_depth < 0) error(file, "the depth must not be negative");
+    if (!(scene_.view.integrator.max_distance > 0))
       error(file, "the integrator's greatest distance must be positive");
-    if (!(scene_.filter.radius_x > 0 && scene_.filter.radius_y > 0))
+    if (!(scene_.view.filter.radius_x > 0 && scene_.view.filter.radius_y > 0))
       error(file, "the pixel filter's radius must be positive");
   }
 

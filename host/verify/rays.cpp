@@ -121,7 +121,7 @@ std::optional<RaySource::Point> RaySource::rim(std::size_t index, Random& random
 }
 
 RayRecord RaySource::camera_ray(Random& random) const {
-  const FilmSettings& film = scene_.film;
+  const FilmSettings& film = scene_.view.film;
   return ray_of_pixel(scene_, static_cast<int>(random.below(static_cast<std::size_t>(film.width))),
                       static_cast<int>(random.below(static_cast<std::size_t>(film.height))));
 }

@@ -47,10 +47,10 @@ class Maker {
       for (std::size_t k = random_.below(2); k < 3; ++k)
         out.instances.push_back({i, placement(0.5), {}});
     }
-    out.camera.world_from_camera =
+    out.view.camera.world_from_camera =
         glm::inverse(glm::lookAtLH(dvec3(0, -30, 10), dvec3(0, 0, 0), dvec3(0, 0, 1)));
-    out.film.width = 320;
-    out.film.height = 180;
+    out.view.film.width = 320;
+    out.view.film.height = 180;
     return out;
   }
 

@@ -187,7 +187,7 @@ Editor::Step Editor::take(const Step& step) {
 }
 
 Editor::Step Editor::take_setting(const Setting& setting) {
-  ViewEdit to = view_;
+  View to = view_;
   if (setting.part == FormSubject::Kind::camera) to.camera = setting.to.camera;
   if (setting.part == FormSubject::Kind::film) to.film = setting.to.film;
   if (setting.part == FormSubject::Kind::filter) to.filter = setting.to.filter;

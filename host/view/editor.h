@@ -25,7 +25,7 @@ namespace caplet::view {
 class Editor {
  public:
   /// `live` must outlive this, and only this may change it (except for its view).
-  explicit Editor(LiveScene& live) : live_(live), view_(view_of(live.scene())) {}
+  explicit Editor(LiveScene& live) : live_(live), view_(live.scene().view) {}
 
   /// Throws InputError when the thing does not exist or validate() would refuse the result.
   /// `goes_on`: merges the change with the one before if both affect the same things.
@@ -58,7 +58,7 @@ class Editor {
   /// Returns the hidden things, listed as shapes, then instances.
   const Hidden& hidden() const { return *hidden_; }
   /// Returns the settings that the scene itself is rendered with, independent of the present view.
-  const ViewEdit& view() const { return view_; }
+  const View& view() const { return view_; }
   /// Makes a camera that is saved the document's. That is no change, and undoing others leaves it.
   void adopt_camera(const Camera& camera) { view_.camera = camera; }
   /// Returns the scene to save: with hidden things, and with its own view.
@@ -84,7 +84,7 @@ class Editor {
   /// Changes one part of the document's settings.
   struct Setting {
     FormSubject::Kind part = FormSubject::Kind::film;
-    ViewEdit to;
+    View to;
   };
   using Step = std::variant<InPlace, Rearrange, Setting>;
 
@@ -101,7 +101,7 @@ class Editor {
 
   LiveScene& live_;
   HiddenPointer hidden_ = std::make_shared<const Hidden>();
-  ViewEdit view_;
+  View view_;
   std::vector<std::uint32_t> made_;
   EditLog<Step> log_;
   std::uint64_t states_ = 0, rearrangements_ = 0, renumberings_ = 0, camera_changes_ = 0;

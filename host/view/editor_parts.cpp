@@ -229,12 +229,7 @@ Scene Editor::document() const {
   Scene out = live_.scene();
   add_all(hidden_->shapes, out.shapes);
   add_all(hidden_->instances, out.instances);
-  const auto& [camera, filter, film, sampler, integrator] = view_;
-  out.camera = camera;
-  out.filter = filter;
-  out.film = film;
-  out.sampler = sampler;
-  out.integrator = integrator;
+  out.view = view_;
   return out;
 }
 

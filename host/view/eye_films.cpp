@@ -40,12 +40,12 @@ EyeFilms::EyeFilms(LiveScene& live, const Editor& editor, const Device& device,
 }
 
 std::uint32_t EyeFilms::target() const {
-  return static_cast<std::uint32_t>(options_.samples > 0 ? options_.samples
-                                                         : live_.scene().sampler.samples_per_pixel);
+  return static_cast<std::uint32_t>(
+      options_.samples > 0 ? options_.samples : live_.scene().view.sampler.samples_per_pixel);
 }
 
 void EyeFilms::look_with(const ShowView& look, int scale, std::size_t eye) {
-  ViewEdit own = view_of(live_.scene());
+  View own = live_.scene().view;
   own.camera = editor_.view().camera;
   live_.edit(shown_view(own, look, scale, static_cast<int>(eye)));
   session_.update(live_.flat(), live_.take_changes(), live_.view());
@@ -92,7 +92,8 @@ void EyeFilms::step(const std::function<void(bool is_coarse)>& between_batches) 
   if (scale_ == 0 || (scale_ > 1 && both)) set_film(look_, 1);
   const std::size_t eye = eyes() == 2 && samples_[1] < samples_[0] ? 1 : 0;
   if (eye != eye_) change_eyes();
-  const double pixels = static_cast<double>(live_.scene().film.width) * live_.scene().film.height;
+  const double pixels =
+      static_cast<double>(live_.scene().view.film.width) * live_.scene().view.film.height;
   const std::uint32_t count = samples_of_step(eye, pixels);
   const bool is_coarse = scale_ > 1;
   const Clock::time_point start = Clock::now();

@@ -541,7 +541,7 @@ void visit_form(FormFields& fields, Shape& shape) {
       shape.geometry);
 }
 
-void visit_form(FormFields& fields, ViewEdit& view, FormSubject::Kind of) {
+void visit_form(FormFields& fields, View& view, FormSubject::Kind of) {
   OptionFields options(fields);
   if (of == FormSubject::Kind::camera) {
     visit_camera(fields, view.camera);

@@ -312,7 +312,7 @@ void set_one(Model& model, const Scene& scene, const Set& set, const More&... mo
 
 }  // namespace
 
-Json form_text(const Scene& scene, const ViewEdit& view, const FormSubject& part) {
+Json form_text(const Scene& scene, const View& view, const FormSubject& part) {
   using Kind = FormSubject::Kind;
   const auto has = [&](const auto& of) { return part.number < of.size(); };
   Json out{{"of", form_subject_names[static_cast<std::size_t>(part.kind)]}, {"part", part.number}};
@@ -384,7 +384,7 @@ void set_field(std::optional<AreaEmission>& emission, const Scene& scene, const 
   set_one(emission, scene, set);
 }
 void set_field(Shape& shape, const Scene& scene, const Set& set) { set_one(shape, scene, set); }
-void set_field(ViewEdit& view, const Scene& scene, const Set& set) {
+void set_field(View& view, const Scene& scene, const Set& set) {
   set_one(view, scene, set, set.part.kind);
 }
 

@@ -14,7 +14,7 @@ namespace caplet::view {
 
 /// Returns a part's fields in order, with name, type, value and range (docs/viewer.md), or null if
 /// the part does not exist.
-nlohmann::ordered_json form_text(const Scene& scene, const ViewEdit& view, const FormSubject& part);
+nlohmann::ordered_json form_text(const Scene& scene, const View& view, const FormSubject& part);
 
 /// Returns the choices: the kinds of every list, and the named spectra.
 nlohmann::ordered_json lists_text();
@@ -29,6 +29,6 @@ void set_field(Texture& texture, const Scene& scene, const Set& set);
 void set_field(Light& light, const Scene& scene, const Set& set);
 void set_field(std::optional<AreaEmission>& emission, const Scene& scene, const Set& set);
 void set_field(Shape& shape, const Scene& scene, const Set& set);
-void set_field(ViewEdit& view, const Scene& scene, const Set& set);
+void set_field(View& view, const Scene& scene, const Set& set);
 
 }  // namespace caplet::view

@@ -162,13 +162,13 @@ Json Keeping::save(const Save& save, const ShowView& look, const std::function<b
   const bool camera_is_new = save.camera || own_is_new_;
   const ShowView own = save.camera ? look : own_;
   Scene scene = editor_.document();
-  if (camera_is_new) scene.camera = camera_of(own);
+  if (camera_is_new) scene.view.camera = camera_of(own);
   Json mark = Json::object();
   if (camera_is_new) mark["camera"] = camera_text(own);
   keeper_->save(scene, target, json_dump(mark), cancelled);
   own_ = own;
   own_is_new_ = camera_is_new;
-  if (camera_is_new) editor_.adopt_camera(scene.camera);
+  if (camera_is_new) editor_.adopt_camera(scene.view.camera);
   editor_.mark_saved();
   restored_ = 0;
   log::info("wrote {}", target.string());

@@ -64,12 +64,11 @@ Text Picker::answer_to(const Form& form, const ShowView&) {
 }
 
 RayRecord Picker::ray_at(const Ask& ask, const ShowView& shown) const {
-  ViewEdit own = view_of(live_.scene());
+  View own = live_.scene().view;
   own.camera = editor_.view().camera;
-  const ViewEdit view = shown_view(own, shown, 1, ask.eye);
+  const View view = shown_view(own, shown, 1, ask.eye);
   Scene looked;
-  looked.camera = view.camera;
-  looked.film = view.film;
+  looked.view = view;
   return ray_of_pixel(looked, std::min(ask.x, shown.width - 1), std::min(ask.y, shown.height - 1));
 }
 

@@ -16,7 +16,7 @@ constexpr double usual_fov =
 
 }  // namespace
 
-ShowView look_of(const ViewEdit& own) {
+ShowView look_of(const View& own) {
   const Camera& camera = own.camera;
   ShowView out;
   out.width = own.film.width;
@@ -31,8 +31,8 @@ ShowView look_of(const ViewEdit& own) {
   return out;
 }
 
-ViewEdit shown_view(const ViewEdit& own, const ShowView& look, int scale, int eye) {
-  ViewEdit view = own;
+View shown_view(const View& own, const ShowView& look, int scale, int eye) {
+  View view = own;
   view.camera.world_from_camera = look.world_from_camera;
   view.camera.projection = PerspectiveProjection{look.fov};
   view.camera.lens_radius = look.lens_radius;
@@ -50,8 +50,8 @@ ViewEdit shown_view(const ViewEdit& own, const ShowView& look, int scale, int ey
   view.film.height = (look.height - 1) / scale + 1;
   if (!(look.separation > 0)) return view;
   Scene scene;
-  scene.camera = view.camera;
-  scene.film = view.film;
+  scene.view.camera = view.camera;
+  scene.view.film = view.film;
   const Stereo stereo{look.separation,
                       look.convergence > 0 ? std::optional(look.convergence) : std::nullopt};
   view.camera = camera_of_eye(scene, stereo, eye == 0 ? Eye::left : Eye::right);

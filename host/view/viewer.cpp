@@ -36,7 +36,7 @@ class Viewer::State {
         films_(live_, editor_, device, options),
         picker_(live_, editor_, films_.device_scene(), device.info().name),
         desk_(live_, editor_, keeping_, clients_, films_, device.info().name),
-        checked_(view_of(live_.scene())) {
+        checked_(live_.scene().view) {
     checked_.camera.medium.reset();  // looks do not set the medium
     desk_.prepare_greeting(options.read_only);
     ServerEvents events;
@@ -97,7 +97,7 @@ class Viewer::State {
   EyeFilms films_;
   Picker picker_;
   EditDesk desk_;
-  ViewEdit checked_;  // the server's thread
+  View checked_;  // the server's thread
   std::optional<Server> server_;
   std::optional<RenderLoop> loop_;
 };

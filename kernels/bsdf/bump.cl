@@ -22,12 +22,16 @@ enum {
   any_bump = any_normalmap | any_displacement
 };
 
+// BumpDerivatives holds the derivatives of a point and of its normal by u and v; only displacements
+// read the normal's.
+typedef struct {
+  float3 dpdu, dpdv, dndu, dndv;
+} BumpDerivatives;
+
 // Returns the shading normal of material number `material` at a place whose own normal is ns, of
-// unit length, on the side of the geometric normal of the place. dpdu, dpdv, dndu, dndv:
-// derivatives of the point and of ns, the latter for displacements.
+// unit length, on the side of the geometric normal of the place.
 static inline float3 bump_normal(const Materials* materials, const Spectra* spectra, uint material,
-                                 const TexturePlace* place, float3 ns, float3 dpdu, float3 dpdv,
-                                 float3 dndu, float3 dndv) {
+                                 const TexturePlace* place, float3 ns, const BumpDerivatives* of) {
   const uint bump = materials->materials[material].bump;
   if (bump == CAPLET_NONE) return ns;
   TexturePoint at = {materials, spectra, *place, (float4)(550.0f)};
@@ -36,14 +40,14 @@ static inline float3 bump_normal(const Materials* materials, const Spectra* spec
   if (any_displacement != 0)
     is_map &= materials->materials[material].bump_kind == texture_normalmap;
   if (is_map) {
-    const Frame frame = frame_from_tangent(ns, dpdu);
+    const Frame frame = frame_from_tangent(ns, of->dpdu);
     const float4 turned = texture_eval(bump, &at);
     n = to_world(&frame, turned.xyz);
   } else {
     // The derivatives are made perpendicular to the shading normal, so that even heights leave it
     // as it is.
-    dpdu -= dot(dpdu, ns) * ns;
-    dpdv -= dot(dpdv, ns) * ns;
+    const float3 dpdu = of->dpdu - dot(of->dpdu, ns) * ns;
+    const float3 dpdv = of->dpdv - dot(of->dpdv, ns) * ns;
     const float3 normal = cross(dpdu, dpdv);
     if (!(dot(normal, normal) > 0.0f)) return ns;
     // The step is half of the footprint, or a small one where the footprint is not known.
@@ -61,7 +65,8 @@ static inline float3 bump_normal(const Materials* materials, const Spectra* spec
     }
     // The slopes give the derivatives of the point that is moved by the height along the normal.
     const float2 slope = (float2)(height[1] - height[0], height[2] - height[0]) / step;
-    n = cross(dpdu + slope.x * ns + height[0] * dndu, dpdv + slope.y * ns + height[0] * dndv);
+    n = cross(dpdu + slope.x * ns + height[0] * of->dndu,
+              dpdv + slope.y * ns + height[0] * of->dndv);
   }
   const float scale = max3(fabs(n));
   if (!(scale > 0.0f && scale < INFINITY)) return ns;

@@ -8,10 +8,15 @@
 #include "bsdf/layered.cl"
 
 static inline void coatedconductor_make(const MaterialPoint* m, Bsdf* b) {
-  coat_make(m, b, coatedconductor_at_interface_eta, coatedconductor_at_interface_alpha_u,
-            coatedconductor_at_interface_alpha_v, coatedconductor_at_thickness,
-            coatedconductor_at_albedo, coatedconductor_at_g, coatedconductor_at_maxdepth,
-            coatedconductor_at_nsamples);
+  const CoatPlaces at = {coatedconductor_at_interface_eta,
+                         coatedconductor_at_interface_alpha_u,
+                         coatedconductor_at_interface_alpha_v,
+                         coatedconductor_at_thickness,
+                         coatedconductor_at_albedo,
+                         coatedconductor_at_g,
+                         coatedconductor_at_maxdepth,
+                         coatedconductor_at_nsamples};
+  coat_make(m, b, &at);
   bsdf_roughness(b, material_number(m, coatedconductor_at_conductor_alpha_u),
                  material_number(m, coatedconductor_at_conductor_alpha_v));
   // The limits are those of a metal (conductor.cl), seen from within the coat.

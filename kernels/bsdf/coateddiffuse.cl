@@ -8,9 +8,11 @@
 #include "bsdf/layered.cl"
 
 static inline void coateddiffuse_make(const MaterialPoint* m, Bsdf* b) {
-  coat_make(m, b, coateddiffuse_at_eta, coateddiffuse_at_alpha_u, coateddiffuse_at_alpha_v,
-            coateddiffuse_at_thickness, coateddiffuse_at_albedo, coateddiffuse_at_g,
-            coateddiffuse_at_maxdepth, coateddiffuse_at_nsamples);
+  const CoatPlaces at = {coateddiffuse_at_eta,      coateddiffuse_at_alpha_u,
+                         coateddiffuse_at_alpha_v,  coateddiffuse_at_thickness,
+                         coateddiffuse_at_albedo,   coateddiffuse_at_g,
+                         coateddiffuse_at_maxdepth, coateddiffuse_at_nsamples};
+  coat_make(m, b, &at);
   b->reflectance = material_albedo(m, coateddiffuse_at_reflectance);
 }
 

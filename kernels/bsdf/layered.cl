@@ -33,19 +33,21 @@ static inline float2 walk_2d(WalkNumbers* numbers) {
 
 // --- The interface ---
 
-// The parameters at_... are places in the material's data.
-static inline void coat_make(const MaterialPoint* m, Bsdf* b, int at_eta, int at_alpha_u,
-                             int at_alpha_v, int at_thickness, int at_albedo, int at_g,
-                             int at_max_depth, int at_samples) {
-  bsdf_roughness(b, material_number(m, at_alpha_u), material_number(m, at_alpha_v));
+// CoatPlaces says where the numbers of a coat are in the material's data.
+typedef struct {
+  int eta, alpha_u, alpha_v, thickness, albedo, g, max_depth, samples;
+} CoatPlaces;
+
+static inline void coat_make(const MaterialPoint* m, Bsdf* b, const CoatPlaces* at) {
+  bsdf_roughness(b, material_number(m, at->alpha_u), material_number(m, at->alpha_v));
   b->coat.alpha_u = b->alpha_u;
   b->coat.alpha_v = b->alpha_v;
-  b->coat.eta = clamp(material_spectrum(m, at_eta).x, 1e-2f, 1e2f);
-  b->coat.thickness = fmax(material_number(m, at_thickness), 1e-30f);
-  b->coat.albedo = material_albedo(m, at_albedo);
-  b->coat.g = clamp(material_signed(m, at_g), -0.99f, 0.99f);
-  b->coat.max_depth = (int)m->data[at_max_depth];
-  b->coat.samples = max((int)m->data[at_samples], 1);
+  b->coat.eta = clamp(material_spectrum(m, at->eta).x, 1e-2f, 1e2f);
+  b->coat.thickness = fmax(material_number(m, at->thickness), 1e-30f);
+  b->coat.albedo = material_albedo(m, at->albedo);
+  b->coat.g = clamp(material_signed(m, at->g), -0.99f, 0.99f);
+  b->coat.max_depth = (int)m->data[at->max_depth];
+  b->coat.samples = max((int)m->data[at->samples], 1);
 }
 
 static inline int coat_is_smooth(const BsdfCoat* coat) {

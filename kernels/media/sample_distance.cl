@@ -44,6 +44,27 @@ static inline int weights_normalised(MediumWeights* w) {
 
 enum { medium_passed, medium_scattered, medium_ended };
 
+// MediumSegment is the part of a ray that lies in one medium: o + t d from t0 to t1, which may be
+// infinite.
+typedef struct {
+  uint kind;
+  MediumView view;
+  float3 o, d;
+  float t0, t1;
+} MediumSegment;
+
+static inline MediumSegment medium_segment(const Media* media, const Spectra* spectra, uint medium,
+                                           float4 lambda, const RayRecord* ray, float t0,
+                                           float t1) {
+  const MediumSegment segment = {media->mediums[medium].kind,
+                                 medium_view(media, spectra, medium, lambda),
+                                 (float3)(ray->ox, ray->oy, ray->oz),
+                                 (float3)(ray->dx, ray->dy, ray->dz),
+                                 t0,
+                                 t1};
+  return segment;
+}
+
 // Optical lengths are limited to this, so that products stay finite.
 #define CAPLET_FARTHEST 1e30f
 
@@ -107,14 +128,13 @@ static inline int collides(float4 majorant, float most, float u, MediumWeights* 
   return 0;
 }
 
-static inline int sample_distance_varying(uint kind, const MediumView* view, float3 o, float3 d,
-                                          float t0, float t1, int scatters, float u,
+static inline int sample_distance_varying(const MediumSegment* s, int scatters, float u,
                                           MediumNumbers* numbers, MediumWeights* w, float4* emitted,
                                           float* t_scattered) {
-  const MediumBox box = medium_box(kind, view);
+  const MediumBox box = medium_box(s->kind, &s->view);
   MajorantWalk walk;
-  if (!majorants_begin(&box, o, d, t0, t1, &walk)) return medium_passed;
-  const float unit = length(d);
+  if (!majorants_begin(&box, s->o, s->d, s->t0, s->t1, &walk)) return medium_passed;
+  const float unit = length(s->d);
   float t, end, cell;
   while (majorants_next(&walk, &t, &end, &cell)) {
     const float4 majorant = cell * box.extinction;
@@ -128,7 +148,7 @@ static inline int sample_distance_varying(uint kind, const MediumView* view, flo
         break;
       }
       t += way / unit;
-      const MediumPoint at = medium_at(kind, view, box.place, o + t * d);
+      const MediumPoint at = medium_at(s->kind, &s->view, box.place, s->o + t * s->d);
       if (scatters && max4(at.le) > 0.0f) {
         const float density = mean4(w->scattering * ratio * majorant);
         if (density > 0.0f) *emitted += w->throughput * ratio * at.sigma_a * at.le / density;
@@ -156,23 +176,19 @@ static inline int sample_distance_varying(uint kind, const MediumView* view, flo
   return medium_passed;
 }
 
-// Travels from t0 to t1 (which may be infinite) along o + t d. scatters: scattered paths go on, and
-// emission counts. u: for the first length. Adds the medium's emission to *emitted; *t_scattered:
-// where a ray is scattered.
-static inline int medium_sample_distance(const Media* media, const Spectra* spectra, uint medium,
-                                         float4 lambda, float3 o, float3 d, float t0, float t1,
-                                         int scatters, float u, MediumNumbers* numbers,
-                                         MediumWeights* w, float4* emitted, float* t_scattered) {
-  const uint kind = media->mediums[medium].kind;
-  const MediumView view = medium_view(media, spectra, medium, lambda);
-  if (any_varying_medium && !medium_is_uniform(kind))
-    return sample_distance_varying(kind, &view, o, d, t0, t1, scatters, u, numbers, w, emitted,
-                                   t_scattered);
-  const float unit = length(d);
+// Samples how far a path gets in a medium. scatters: scattered paths go on, and emission counts.
+// u: for the first length. Adds the medium's emission to *emitted; *t_scattered: where a ray is
+// scattered.
+static inline int medium_sample_distance(const MediumSegment* s, int scatters, float u,
+                                         MediumNumbers* numbers, MediumWeights* w, float4* emitted,
+                                         float* t_scattered) {
+  if (any_varying_medium && !medium_is_uniform(s->kind))
+    return sample_distance_varying(s, scatters, u, numbers, w, emitted, t_scattered);
+  const float unit = length(s->d);
   float gone = 0.0f;
-  const int end = sample_distance_uniform(medium_everywhere(kind, &view), (t1 - t0) * unit,
-                                          scatters, u, w, emitted, &gone);
-  *t_scattered = t0 + gone / unit;
+  const int end = sample_distance_uniform(medium_everywhere(s->kind, &s->view),
+                                          (s->t1 - s->t0) * unit, scatters, u, w, emitted, &gone);
+  *t_scattered = s->t0 + gone / unit;
   return end;
 }
 
@@ -180,22 +196,20 @@ static inline int medium_sample_distance(const Media* media, const Spectra* spec
 // scatters it. Where the medium varies, this is ratio tracking (Novak, Selle and Jarosz, "Residual
 // ratio tracking for estimating attenuation in participating media", 2014). Returns 0 if nothing is
 // left.
-static inline int medium_dims(const Media* media, const Spectra* spectra, uint medium,
-                              float4 lambda, float3 o, float3 d, float t0, float t1,
-                              MediumNumbers* numbers, MediumWeights* w) {
-  const uint kind = media->mediums[medium].kind;
-  const MediumView view = medium_view(media, spectra, medium, lambda);
-  const float unit = length(d);
-  if (!any_varying_medium || medium_is_uniform(kind)) {
-    const MediumPoint at = medium_everywhere(kind, &view);
-    const float4 passes = exp(-(at.sigma_a + at.sigma_s) * fmin((t1 - t0) * unit, CAPLET_FARTHEST));
+static inline int medium_transmittance(const MediumSegment* s, MediumNumbers* numbers,
+                                       MediumWeights* w) {
+  const float unit = length(s->d);
+  if (!any_varying_medium || medium_is_uniform(s->kind)) {
+    const MediumPoint at = medium_everywhere(s->kind, &s->view);
+    const float way = fmin((s->t1 - s->t0) * unit, CAPLET_FARTHEST);
+    const float4 passes = exp(-(at.sigma_a + at.sigma_s) * way);
     w->throughput *= passes;
     if (max4(at.sigma_s) > 0.0f) w->scattering *= passes;
     return max4(fabs(w->throughput)) > 0.0f;
   }
-  const MediumBox box = medium_box(kind, &view);
+  const MediumBox box = medium_box(s->kind, &s->view);
   MajorantWalk walk;
-  if (!majorants_begin(&box, o, d, t0, t1, &walk)) return 1;
+  if (!majorants_begin(&box, s->o, s->d, s->t0, s->t1, &walk)) return 1;
   float t, end, cell;
   while (majorants_next(&walk, &t, &end, &cell)) {
     const float4 majorant = cell * box.extinction;
@@ -207,7 +221,7 @@ static inline int medium_dims(const Media* media, const Spectra* spectra, uint m
                     &way, &ratio))
         break;
       t += way / unit;
-      const MediumPoint at = medium_at(kind, &view, box.place, o + t * d);
+      const MediumPoint at = medium_at(s->kind, &s->view, box.place, s->o + t * s->d);
       const float4 null = fmax(majorant - at.sigma_a - at.sigma_s, 0.0f);
       w->throughput *= ratio * null;
       w->scattering *= ratio * majorant * (1.0f - scattering_share(at.sigma_s, null));

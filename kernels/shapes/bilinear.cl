@@ -98,8 +98,7 @@ static inline Span bilinear_span(const ShapeRay* ray, __global const float* bloc
        y01 = (real_load(ry + p01, lane) - axes.koy) - axes.shear_y * z01;
   real x11 = (real_load(rx + p11, lane) - axes.kox) - axes.shear_x * z11,
        y11 = (real_load(ry + p11, lane) - axes.koy) - axes.shear_y * z11;
-  const real zero = real_of(0.0f);
-  Span span = span_of(int_of(0), zero, zero);
+  Span span = span_of(int_of(0), real_of(0.0f), real_of(0.0f));
   // The ray must pass the box of the corners' images.
   const real low_x = real_min(real_min(x00, x10), real_min(x01, x11)),
              high_x = real_max(real_max(x00, x10), real_max(x01, x11));
@@ -132,7 +131,7 @@ static inline Span bilinear_span(const ShapeRay* ray, __global const float* bloc
   const real disc = edge_function(f, f, 4.0f * f0, f1);
   const real_mask meets = near & (disc >= 0.0f);
   if (mask_bits(meets) == 0) return span;
-  const real d = sqrt(real_max(disc, zero));
+  const real d = sqrt(real_max(disc, real_of(0.0f)));
   const real_mask negative = f < 0.0f;
   const real k = 0.5f * (negative ? d - f : -d - f);
 

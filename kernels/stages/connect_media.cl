@@ -15,7 +15,6 @@ static void stage_item(const Stage* g, uint item) {
   RayRecord ray = g->shadows.path_shadow[path];
   MediumStack stack = {g->medium_stacks.shadow_inside[path], g->medium_stacks.shadow_around[path]};
   const ShadowTarget target = g->shadows.path_shadow_target[path];
-  const float3 o = (float3)(ray.ox, ray.oy, ray.oz), d = (float3)(ray.dx, ray.dy, ray.dz);
   const PathSample at = path_sample(g->batch.batch, g->view.view, path);
   MediumNumbers numbers = {
       hash_combine(path_hash(at, g->carried.path_flags[path]), HASHED_SAMPLE(shadow)), 0u};
@@ -43,10 +42,11 @@ static void stage_item(const Stage* g, uint item) {
     stack = medium_stack_before(&g->tree, &g->surfaces, &g->media, &hit, isinf(ray.t_max), stack);
     const uint medium = medium_stack_medium(&g->media, &stack);
     const float to = met ? hit.t : ray.t_max;
-    if (medium != CAPLET_NONE && from < to &&
-        !medium_dims(&g->media, &g->spectra, medium, g->carried.path_wavelengths[path], o, d, from,
-                     to, &numbers, &weights))
-      return;
+    if (medium != CAPLET_NONE && from < to) {
+      const MediumSegment segment = medium_segment(
+          &g->media, &g->spectra, medium, g->carried.path_wavelengths[path], &ray, from, to);
+      if (!medium_transmittance(&segment, &numbers, &weights)) return;
+    }
     if (ends) break;
     const uint boundary =
         crosses ? boundary_of(&g->tree, &g->surfaces, &g->media, &hit) : CAPLET_NONE;

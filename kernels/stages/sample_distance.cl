@@ -96,13 +96,13 @@ static void sending_item(const Stage* g, Outbox* out, uint item) {
       hash_combine(path_hash(at, state.depth) ^ HASHED_SAMPLE(tracking), as_uint(ray.t_min)), 0u};
   const float u = ray.t_min == 0.0f ? sampler_1d(at, MEDIUM_SAMPLE(distance, state.depth))
                                     : medium_number(&numbers);
-  const float3 o = (float3)(ray.ox, ray.oy, ray.oz), d = (float3)(ray.dx, ray.dy, ray.dz);
+  const MediumSegment segment =
+      medium_segment(&g->media, &g->spectra, medium, state.wavelengths, &ray, ray.t_min, hit.t);
   weights.throughput = state.throughput;
   float4 emitted = (float4)(0.0f);
   float t;
   const int end =
-      medium_sample_distance(&g->media, &g->spectra, medium, state.wavelengths, o, d, ray.t_min,
-                             hit.t, may_scatter, u, &numbers, &weights, &emitted, &t);
+      medium_sample_distance(&segment, may_scatter, u, &numbers, &weights, &emitted, &t);
   if (max4(fabs(emitted)) > 0.0f) g->radiance.path_radiance[path] += emitted;
   state.throughput = weights.throughput;
   if (end == medium_passed) {
@@ -119,6 +119,7 @@ static void sending_item(const Stage* g, Outbox* out, uint item) {
   if (!begins)
     set_path_medium_stack(g, path, here);  // others may still ask what holds the first path
   // A point at either end may come to lie beyond the surface that is there.
+  const float3 o = segment.o, d = segment.d;
   const float ends = 0x1p-20f * (max3(fabs(o)) + t * max3(fabs(d))) / length(d);
   const ScatteringPoint point = {
       o + t * d, d,

@@ -39,31 +39,6 @@ static inline uint first_hit_object(const Stage* g, const Surface* s, uint insta
   return g->surfaces.geometries[s->geometry].object;
 }
 
-// Stores the values of layers.def.
-static inline void store_layers(const Stage* g, uint path, const HitRecord* hit, const Surface* s,
-                                const Bsdf* bsdf, float3 wo_local, float3 wo, float4 wavelengths,
-                                float4 pdfs) {
-  __global float* at = layers_of_path(g->batch.batch, path, g->layers.path_layers);
-  const uint layers = g->batch.batch->layers;
-#define RADIANCE_LAYER(name, option, channels, how, count, words, unit, value)
-#define HIT_LAYER(name, option, channels, how, count, words, unit, value) \
-  if (layers & (1u << layer_##name)) {                                    \
-    const float3 v = value;                                               \
-    at[0] = v.x;                                                          \
-    if (count == 3) {                                                     \
-      at[1] = v.y;                                                        \
-      at[2] = v.z;                                                        \
-    }                                                                     \
-    at += count;                                                          \
-  }
-#define ID_LAYER(name, option, channel, value) \
-  if (layers & (1u << layer_##name)) *at++ = as_float((uint)(value));
-#include "shared/layers.def"
-#undef RADIANCE_LAYER
-#undef HIT_LAYER
-#undef ID_LAYER
-}
-
 // Returns the side of a point with this frame and BSDF that light samples see: an opaque surface
 // takes light only on the side that wo is on.
 static inline uint receiving_side(const Frame* frame, const Bsdf* bsdf, float3 wo_local) {
@@ -100,6 +75,34 @@ typedef struct {
   uint side;       // that light samples see
   int by_shading;  // directions go by the shading normal alone
 } ShadingPoint;
+
+// Stores the values of layers.def.
+static inline void store_layers(const Stage* g, uint path, const ShadingPoint* point,
+                                float4 wavelengths, float4 pdfs) {
+  const HitRecord* hit = &point->hit;
+  const Surface* s = &point->surface;
+  const Bsdf* bsdf = &point->bsdf;
+  const float3 wo = point->wo, wo_local = point->wo_local;
+  __global float* at = layers_of_path(g->batch.batch, path, g->layers.path_layers);
+  const uint layers = g->batch.batch->layers;
+#define RADIANCE_LAYER(name, option, channels, how, count, words, unit, value)
+#define HIT_LAYER(name, option, channels, how, count, words, unit, value) \
+  if (layers & (1u << layer_##name)) {                                    \
+    const float3 v = value;                                               \
+    at[0] = v.x;                                                          \
+    if (count == 3) {                                                     \
+      at[1] = v.y;                                                        \
+      at[2] = v.z;                                                        \
+    }                                                                     \
+    at += count;                                                          \
+  }
+#define ID_LAYER(name, option, channel, value) \
+  if (layers & (1u << layer_##name)) *at++ = as_float((uint)(value));
+#include "shared/layers.def"
+#undef RADIANCE_LAYER
+#undef HIT_LAYER
+#undef ID_LAYER
+}
 
 // Takes one light sample; its unoccluded contribution waits in path_shadow_radiance for `connect`.
 static inline void sample_light(const Stage* g, Outbox* out, const Scene* scene,
@@ -262,11 +265,10 @@ static inline void make_bsdf(const Stage* g, ShadingPoint* point, const PathStat
   const uint material = point->material;
   point->bumped = any_bump != 0 && g->materials.materials[material].bump != CAPLET_NONE;
   if (point->bumped) {
-    float3 dndu = (float3)(0.0f), dndv = dndu;
+    BumpDerivatives of = {s->dpdu, s->dpdv, (float3)(0.0f), (float3)(0.0f)};
     if (any_displacement && g->materials.materials[material].bump_kind == texture_displacement)
-      normal_derivatives(&g->tree, &g->surfaces, &point->ray, &point->hit, s, &dndu, &dndv);
-    s->ns = bump_normal(&g->materials, &g->spectra, material, &point->place, s->ns, s->dpdu,
-                        s->dpdv, dndu, dndv);
+      normal_derivatives(&g->tree, &g->surfaces, &point->ray, &point->hit, s, &of.dndu, &of.dndv);
+    s->ns = bump_normal(&g->materials, &g->spectra, material, &point->place, s->ns, &of);
   }
   point->frame =
       frame_from_tangent(s->ns, bsdf_tangent(&g->materials, material, s->dpdu, s->ns, s->along_u));
@@ -354,9 +356,7 @@ static void sending_item(const Stage* g, Outbox* out, uint item) {
   if (media_passes(g, out, path, point.material, &point.ray, &point.hit)) return;
   make_bsdf(g, &point, &state);
   const float4 pdfs = g->carried.path_wavelength_pdfs[path];
-  if (state.depth == 0u)
-    store_layers(g, path, &point.hit, &point.surface, &point.bsdf, point.wo_local, point.wo,
-                 state.wavelengths, pdfs);
+  if (state.depth == 0u) store_layers(g, path, &point, state.wavelengths, pdfs);
   if (is_occlusion) {
     send_occlusion_ray(g, out, &point, &state);
     return;

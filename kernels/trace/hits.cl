@@ -57,13 +57,12 @@ static inline HitRecord hit_record(const NearestHit* nearest) {
   return hit;
 }
 
-// Keeps the nearest of the ray's hits with the lanes from `lane` on of the leaf block at `row`.
+// Keeps the nearest of the ray's hits with the primitives from `first` on, a slot of a leaf block.
 // `instance`: that the ray is in.
-static inline void keep_hits(const Tree* tree, uint row, uint lane, const ShapeRay* shape,
-                             uint instance, real_mask ok, real t, real_mask side,
-                             NearestHit* nearest) {
-  __global const float* block = tree->leaves + (size_t)row * 8;
-  ok &= lanes_filled(block, lane) & (t > shape->t_min) & (t <= nearest->t);
+static inline void keep_hits(const Tree* tree, uint first, const ShapeRay* shape, uint instance,
+                             real_mask ok, real t, real_mask side, NearestHit* nearest) {
+  const uint lane = first % 8u;
+  ok &= lanes_filled(tree->leaves + (first - lane), lane) & (t > shape->t_min) & (t <= nearest->t);
   // These are tested one by one: PoCL 6.0 aborts where the two are chosen between by the side
   // (docs/drivers.md).
   if (shape->sees_entering == 0) ok &= (side & int_of(CAPLET_LEAVING)) != 0;
@@ -77,7 +76,7 @@ static inline void keep_hits(const Tree* tree, uint row, uint lane, const ShapeR
   do {
     const uint i = lowest_bit(bits);
     bits &= bits - 1;
-    const uint slot = row * 8 + lane + i;
+    const uint slot = first + i;
     if (ts[i] < nearest->t ||
         (ts[i] == nearest->t && nearest->found &&
          tie_is_before(tree, slot, instance, nearest->slot, nearest->instance))) {
@@ -97,7 +96,7 @@ static inline void test_leaf(const Tree* tree, uint kind, uint row, uint lane,
   real t;
   real_mask side;
   const real_mask ok = shape_hit(kind, shape, tree->leaves + (size_t)row * 8, lane, &t, &side);
-  keep_hits(tree, row, lane, shape, instance, ok, t, side, nearest);
+  keep_hits(tree, row * 8 + lane, shape, instance, ok, t, side, nearest);
 }
 
 #endif

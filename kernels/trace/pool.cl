@@ -117,25 +117,46 @@ static inline void pool_leave_instance(PooledRay* r, const Stage* g, const Tree*
   pool_ray(r, tree, (float3)(ray.ox, ray.oy, ray.oz), (float3)(ray.dx, ray.dy, ray.dz));
 }
 
+// Begins with the first ray of [*next, end) that may hit something, and reports those before it as
+// misses. Returns 0 if there is none.
+static inline int pool_begin_next(PooledRay* r, const Stage* g, uint* next, uint end) {
+  const HitRecord miss = {INFINITY, CAPLET_NONE, CAPLET_NONE, 0};
+  for (; *next < end; traced_hit(g, (*next)++, &miss))
+    if (pool_begin(r, g, TRACED_TREE(g), TRACED_ROOT(g), *next)) {
+      (*next)++;
+      return 1;
+    }
+  return 0;
+}
+
+// Returns the place in the ray's stack of what it visits next, or 0 when it is done.
+static inline int pool_pop(PooledRay* r, const Stage* g, const Tree* tree) {
+  int top = r->top;
+#if TRACED_MAY_END_EARLY
+  if (r->nearest.found && r->nearest.t < r->enough) top = 1;
+#endif
+  for (;;) {
+    const int t_best = as_int(r->nearest.t);
+    do top--;
+    while (r->enter[top] > t_best);
+    if (!CAPLET_HAS_SHAPE(shape_instance) || top == 0 ||
+        r->child[top] != CAPLET_POOL_LEAVE_INSTANCE)
+      return top;
+    pool_leave_instance(r, g, tree);
+  }
+}
+
 // Traces rays [next, end).
 static void trace_pool(const Stage* g, uint next, const uint end) {
   const Tree* tree = TRACED_TREE(g);
-  const uint root = TRACED_ROOT(g);
   PooledRay pool[CAPLET_POOL_RAYS];
   // These are places in the pool; each list has one more, which is written and not kept.
   uchar at_node[CAPLET_POOL_RAYS + 1], at_leaf[CAPLET_POOL_RAYS + 1],
       going_on[CAPLET_POOL_RAYS + 1];
   int nodes = 0, leaves = 0;
-  const HitRecord miss = {INFINITY, CAPLET_NONE, CAPLET_NONE, 0};
 
   for (uint place = 0; place < CAPLET_POOL_RAYS; place++) {
-    int begun = 0;
-    while (!begun && next < end) {
-      begun = pool_begin(&pool[place], g, tree, root, next);
-      if (!begun) traced_hit(g, next, &miss);
-      next++;
-    }
-    if (begun) at_node[nodes++] = (uchar)place;
+    if (pool_begin_next(&pool[place], g, &next, end)) at_node[nodes++] = (uchar)place;
   }
   while (nodes + leaves > 0) {
     int count = 0;
@@ -174,29 +195,11 @@ static void trace_pool(const Stage* g, uint next, const uint end) {
     for (int i = 0; i < count; i++) {
       const uchar place = going_on[i];
       PooledRay* r = &pool[place];
-      int top = r->top;
-#if TRACED_MAY_END_EARLY
-      if (r->nearest.found && r->nearest.t < r->enough) top = 1;
-#endif
-      for (;;) {
-        const int t_best = as_int(r->nearest.t);
-        do top--;
-        while (r->enter[top] > t_best);
-        if (!CAPLET_HAS_SHAPE(shape_instance) || top == 0 ||
-            r->child[top] != CAPLET_POOL_LEAVE_INSTANCE)
-          break;
-        pool_leave_instance(r, g, tree);
-      }
+      const int top = pool_pop(r, g, tree);
       if (top == 0) {
         const HitRecord hit = hit_record(&r->nearest);
         traced_hit(g, r->item, &hit);
-        int begun = 0;
-        while (!begun && next < end) {
-          begun = pool_begin(r, g, tree, root, next);
-          if (!begun) traced_hit(g, next, &miss);
-          next++;
-        }
-        if (begun) at_node[nodes++] = place;
+        if (pool_begin_next(r, g, &next, end)) at_node[nodes++] = place;
         continue;
       }
       r->top = top;

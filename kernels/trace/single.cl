@@ -29,7 +29,7 @@ static inline void rare_leaf(const Tree* tree, CAPLET_RAY_SPACE const RayRecord*
     int side;
     if (rare_hit(kind, &own, block, lane, &t, &side) == 0) continue;
     NearestHit so_far = {as_float(kept[4]), kept[5], kept[6], (int)kept[7], kept[7] != CAPLET_NONE};
-    keep_hits(tree, row, lane, &own, kept[3], -1, t, side, &so_far);
+    keep_hits(tree, row * 8 + lane, &own, kept[3], -1, t, side, &so_far);
     if (!so_far.found) continue;
     kept[4] = as_uint(so_far.t);
     kept[5] = so_far.slot;

@@ -71,7 +71,8 @@ static inline void stream_ray(StreamSpace* space, uint id, const SlabRay* s, con
 #include "trace/stream_walk.cl"
 
 // Traces the n rays whose numbers begin at l->ids[at] through an instance; entries from `top` on
-// and numbers behind these are free.
+// and numbers behind these are free. The parameters are those of stream_walk.cl and the rays
+// inside.
 static void stream_instance(const Stage* g, uint first, const Tree* tree, uint instance,
                             StreamSpace* space, StreamSpace* inner, NearestHit* nearest,
                             StreamLists* l, int top, int at, int n) {

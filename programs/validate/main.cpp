@@ -47,8 +47,8 @@ void write_difference(const std::filesystem::path& path, const Picture& ours,
 std::string cornell_box_row(int samples, bool& within) {
   const auto folder = data_folder() / "scenes_pbrt" / "cornell-box";
   const Rendered ours = render_file(folder / "scene-v4.pbrt", samples, [](Scene& scene) {
-    scene.integrator.max_depth = 65;
-    scene.film.width = scene.film.height = 256;
+    scene.view.integrator.max_depth = 65;
+    scene.view.film.width = scene.view.film.height = 256;
   });
   const auto mean = [](const Picture& picture) {
     double sum = 0;

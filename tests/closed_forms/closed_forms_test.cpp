@@ -39,7 +39,7 @@ TEST_P(ClosedForms, Agrees) {
   if (!expected.reference.empty()) CAPLET_NEEDS_DATA();
   const Rendered rendered =
       render_file(source_folder() / expected.scene, expected.samples,
-                  [&](Scene& scene) { scene.integrator.max_depth = expected.max_depth; });
+                  [&](Scene& scene) { scene.view.integrator.max_depth = expected.max_depth; });
   const Picture ours = picture_of(rendered.image);
   const double pixels = static_cast<double>(ours.rgb.size()) / 3;
   if (expected.kind == "image") {

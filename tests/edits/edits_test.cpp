@@ -296,7 +296,7 @@ SceneEdit random_edit(const Scene& scene, Random& random, std::string& what) {
     }
     default: {
       what = "the camera";
-      ViewEdit to = view_of(scene);
+      View to = scene.view;
       to.camera.projection = PerspectiveProjection{random.uniform(0.4, 0.9)};
       to.sampler.seed = static_cast<std::uint32_t>(random.below(100));
       return to;
@@ -468,7 +468,7 @@ TEST_F(OneEdit, WhatDoesNotFitIsLoweredAgain) {
   edited.edit(TransformEdit{{{}, 2}, glm::rotate(dmat4(1), 0.5, dvec3(0, 0, 1))});
   EXPECT_EQ(edited.live.lowerings(), 3u);
   edited.expect_fresh("a turned box");
-  ViewEdit wide = view_of(edited.live.scene());
+  View wide = edited.live.scene().view;
   wide.film.space = ColorSpace::rec2020;
   edited.edit(wide);
   edited.expect_fresh("another colour space");
@@ -497,7 +497,7 @@ TEST_F(OneEdit, AWrongOneChangesNothing) {
   EXPECT_THROW(edited.edit(InstanceEdit{99, dmat4(1)}), InputError);
   EXPECT_THROW(edited.edit(MaterialEdit{0, DiffuseMaterial{ConstantSpectrum{-1}}}), InputError);
   EXPECT_THROW(edited.edit(EmissionEdit{{{}, 0}, {}}), InputError);
-  ViewEdit view = view_of(edited.live.scene());
+  View view = edited.live.scene().view;
   view.camera.projection = PerspectiveProjection{4};
   EXPECT_THROW(edited.edit(view), InputError);
   EXPECT_EQ(capsule_at(edited.live.scene(), capsules, 3).p0, was.p0);
@@ -571,7 +571,7 @@ TEST(EditBytes, OneCapsuleOfMany) {
   edited.send();
   EXPECT_LT(edited.device.bytes_updated() - before, 4096u);
   before = edited.device.bytes_updated();
-  ViewEdit view = view_of(edited.live.scene());
+  View view = edited.live.scene().view;
   view.camera.projection = PerspectiveProjection{1};
   edited.edit(view);
   edited.send();

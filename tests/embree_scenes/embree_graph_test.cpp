@@ -37,7 +37,7 @@ TEST(EmbreeGraph, MeshesHaveTheirOwnNames) {
 TEST(EmbreeGraph, CamerasLookFromTo) {
   const Scene scene = scene_of(
       triangle() + "<PerspectiveCamera from=\"1 2 3\" to=\"5 2 3\" up=\"0 0 2\" fov=\"60\"/>");
-  const glm::dmat4& camera = scene.camera.world_from_camera;
+  const glm::dmat4& camera = scene.view.camera.world_from_camera;
   EXPECT_EQ(glm::dvec3(camera[3]), glm::dvec3(1, 2, 3));
   EXPECT_LT(glm::length(glm::dvec3(camera[2]) - glm::dvec3(1, 0, 0)), 1e-12);
   EXPECT_LT(glm::length(glm::dvec3(camera[1]) - glm::dvec3(0, 0, 1)), 1e-12);

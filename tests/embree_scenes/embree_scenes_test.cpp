@@ -340,10 +340,10 @@ TEST(EmbreeScenes, MaterialsLightsAndCamera) {
   EXPECT_NEAR(scene.lights[1].scale, std::acos(-1.0) / 4, 1e-12);
   ASSERT_TRUE(scene.shapes.back().emission);
   EXPECT_EQ(bounds_of(scene.shapes.back()).max, dvec3(2, 2, 0));
-  EXPECT_EQ(dvec3(scene.camera.world_from_camera[3]), dvec3(0, 0, -5));
-  EXPECT_NEAR(fov_of(scene.camera), std::acos(-1.0) / 3,
+  EXPECT_EQ(dvec3(scene.view.camera.world_from_camera[3]), dvec3(0, 0, -5));
+  EXPECT_NEAR(fov_of(scene.view.camera), std::acos(-1.0) / 3,
               1e-12);  // over the height, which is the shorter side
-  EXPECT_LT(glm::length(dvec3(scene.camera.world_from_camera[0]) - dvec3(-1, 0, 0)),
+  EXPECT_LT(glm::length(dvec3(scene.view.camera.world_from_camera[0]) - dvec3(-1, 0, 0)),
             1e-12);  // right of what looks along z, y up
 }
 
@@ -421,10 +421,10 @@ TEST(EmbreeScenes, TheViewersOptions) {
       "# a comment\n-i v.xml\n--vp 0 0 -5 --vi 0 0 0\n-vu 0 1 0 -fov 90 --lefthanded --size 256 "
       "512 --shader uv\n-ambientlight 1 "
       "1 1\n");
-  EXPECT_EQ(dvec3(scene.camera.world_from_camera[3]), dvec3(0, 0, -5));
-  EXPECT_LT(glm::length(dvec3(scene.camera.world_from_camera[0]) - dvec3(1, 0, 0)), 1e-12);
-  EXPECT_EQ(scene.film.height, 512);
-  EXPECT_NEAR(std::tan(fov_of(scene.camera) / 2), 0.5,
+  EXPECT_EQ(dvec3(scene.view.camera.world_from_camera[3]), dvec3(0, 0, -5));
+  EXPECT_LT(glm::length(dvec3(scene.view.camera.world_from_camera[0]) - dvec3(1, 0, 0)), 1e-12);
+  EXPECT_EQ(scene.view.film.height, 512);
+  EXPECT_NEAR(std::tan(fov_of(scene.view.camera) / 2), 0.5,
               1e-12);  // 90 degrees over the height, half as wide
   EXPECT_EQ(scene.lights.size(), 1u);
   EXPECT_TRUE(options("-i v.xml\n").automatic_camera);

@@ -17,10 +17,10 @@ using namespace test;
 namespace fs = std::filesystem;
 
 std::vector<std::uint64_t> film_of(Scene scene) {
-  scene.film.width = 48;
-  scene.film.height = 32;
-  scene.film.crop.reset();
-  scene.integrator.max_depth = std::min(scene.integrator.max_depth, 6);
+  scene.view.film.width = 48;
+  scene.view.film.height = 32;
+  scene.view.film.crop.reset();
+  scene.view.integrator.max_depth = std::min(scene.view.integrator.max_depth, 6);
   const RenderResult result = render_model(scene, 2).result;
   return {result.film.words().begin(), result.film.words().end()};
 }

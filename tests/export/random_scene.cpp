@@ -486,27 +486,30 @@ class Maker {
   }
 
   void camera() {
-    scene_.camera.world_from_camera = glm::dmat4(random_.turn());
-    scene_.camera.world_from_camera[3] = glm::dvec4(20.0 * random_.direction(), 1);
+    scene_.view.camera.world_from_camera = glm::dmat4(random_.turn());
+    scene_.view.camera.world_from_camera[3] = glm::dvec4(20.0 * random_.direction(), 1);
     const std::size_t projection = random_.below(4);
-    if (projection < 2) scene_.camera.projection = PerspectiveProjection{random_.uniform(0.3, 1.5)};
-    if (projection == 2) scene_.camera.projection = OrthographicProjection{};
+    if (projection < 2)
+      scene_.view.camera.projection = PerspectiveProjection{random_.uniform(0.3, 1.5)};
+    if (projection == 2) scene_.view.camera.projection = OrthographicProjection{};
     if (projection == 3)
-      scene_.camera.projection =
+      scene_.view.camera.projection =
           SphericalProjection{static_cast<SphericalProjection::Mapping>(random_.below(2))};
-    scene_.camera.frame_aspect_ratio = random_.uniform(0.5, 2);
-    scene_.camera.screen_window = {-random_.uniform(0.5, 1), 0.9, -0.8, random_.uniform(0.5, 1)};
-    scene_.camera.lens_radius = random_.uniform(0.01, 0.1);
-    scene_.camera.focal_distance = random_.uniform(1, 30);
-    scene_.filter = {static_cast<PixelFilter::Kind>(random_.below(5)), random_.uniform(0.5, 2),
-                     random_.uniform(0.5, 2)};
-    if (scene_.filter.kind == PixelFilter::Kind::gaussian) scene_.filter.sigma = 0.4;
-    if (scene_.filter.kind == PixelFilter::Kind::mitchell)
-      scene_.filter.b = 0.2, scene_.filter.c = 0.4;
-    if (scene_.filter.kind == PixelFilter::Kind::sinc) scene_.filter.tau = 2.5;
-    scene_.film = {64,   48,   std::array<int, 4>{3, 50, 2, 40},         "a name.exr", 200, 0.7,
-                   12.5, 5200, static_cast<ColorSpace>(random_.below(4))};
-    SamplerSettings& sampler = scene_.sampler;
+    scene_.view.camera.frame_aspect_ratio = random_.uniform(0.5, 2);
+    scene_.view.camera.screen_window = {-random_.uniform(0.5, 1), 0.9, -0.8,
+                                        random_.uniform(0.5, 1)};
+    scene_.view.camera.lens_radius = random_.uniform(0.01, 0.1);
+    scene_.view.camera.focal_distance = random_.uniform(1, 30);
+    scene_.view.filter = {static_cast<PixelFilter::Kind>(random_.below(5)), random_.uniform(0.5, 2),
+                          random_.uniform(0.5, 2)};
+    if (scene_.view.filter.kind == PixelFilter::Kind::gaussian) scene_.view.filter.sigma = 0.4;
+    if (scene_.view.filter.kind == PixelFilter::Kind::mitchell)
+      scene_.view.filter.b = 0.2, scene_.view.filter.c = 0.4;
+    if (scene_.view.filter.kind == PixelFilter::Kind::sinc) scene_.view.filter.tau = 2.5;
+    scene_.view.film = {64,           48,   std::array<int, 4>{3, 50, 2, 40},
+                        "a name.exr", 200,  0.7,
+                        12.5,         5200, static_cast<ColorSpace>(random_.below(4))};
+    SamplerSettings& sampler = scene_.view.sampler;
     sampler.kind = static_cast<SamplerSettings::Kind>(random_.below(4));
     sampler.samples_per_pixel = 1 + static_cast<int>(random_.below(1000));
     sampler.seed = static_cast<std::uint32_t>(0xfffffff0u + random_.below(9));
@@ -516,7 +519,7 @@ class Maker {
       sampler.samples_per_pixel = sampler.x_strata * sampler.y_strata;
       sampler.jitter = random_.one_in(2);
     }
-    IntegratorSettings& integrator = scene_.integrator;
+    IntegratorSettings& integrator = scene_.view.integrator;
     integrator.kind = static_cast<IntegratorSettings::Kind>(random_.below(4));
     integrator.max_depth = static_cast<int>(random_.below(20));
     if (integrator.kind == IntegratorSettings::Kind::ambient_occlusion) {
@@ -532,11 +535,11 @@ class Maker {
     if (random_.one_in(2)) scene_.framing.toward_viewer = random_.direction();
     if (random_.one_in(2)) scene_.framing.up = random_.direction();
     if (random_.one_in(2)) scene_.unit = "\xc2\xb5m";
-    if (random_.one_in(2)) scene_.film.backdrop = Backdrop{};
+    if (random_.one_in(2)) scene_.view.film.backdrop = Backdrop{};
     if (random_.one_in(2))
-      scene_.film.backdrop =
+      scene_.view.film.backdrop =
           Backdrop{Backdrop::Kind::color, {0.25, 0.5, random_.uniform(0, 1)}, nullptr};
-    if (random_.one_in(2)) scene_.film.least_width = random_.uniform(0, 3);
+    if (random_.one_in(2)) scene_.view.film.least_width = random_.uniform(0, 3);
   }
 
   Random random_;

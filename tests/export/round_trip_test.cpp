@@ -80,24 +80,24 @@ TEST(RoundTrip, EveryRowOfEveryList) {
     EXPECT_EQ(read.framing.toward_viewer, scene.framing.toward_viewer);
     EXPECT_EQ(read.framing.up, scene.framing.up);
     EXPECT_EQ(read.unit, scene.unit);
-    EXPECT_EQ(read.film.least_width, scene.film.least_width);
-    ASSERT_EQ(read.film.backdrop.has_value(), scene.film.backdrop.has_value());
-    if (scene.film.backdrop) {
-      EXPECT_EQ(read.film.backdrop->kind, scene.film.backdrop->kind);
-      EXPECT_EQ(read.film.backdrop->color, scene.film.backdrop->color);
+    EXPECT_EQ(read.view.film.least_width, scene.view.film.least_width);
+    ASSERT_EQ(read.view.film.backdrop.has_value(), scene.view.film.backdrop.has_value());
+    if (scene.view.film.backdrop) {
+      EXPECT_EQ(read.view.film.backdrop->kind, scene.view.film.backdrop->kind);
+      EXPECT_EQ(read.view.film.backdrop->color, scene.view.film.backdrop->color);
     }
-    EXPECT_EQ(read.film.filename, scene.film.filename);
-    EXPECT_EQ(read.film.exposure_time, scene.film.exposure_time);
-    EXPECT_EQ(read.film.max_component_value, scene.film.max_component_value);
-    EXPECT_EQ(read.film.white_balance, scene.film.white_balance);
-    EXPECT_EQ(read.film.iso, scene.film.iso);
-    EXPECT_EQ(read.filter.kind, scene.filter.kind);
-    EXPECT_EQ(read.filter.tau, scene.filter.tau);
-    EXPECT_EQ(read.filter.radius_x, scene.filter.radius_x);
-    EXPECT_EQ(read.filter.sigma, scene.filter.sigma);
-    EXPECT_EQ(read.filter.c, scene.filter.c);
-    EXPECT_EQ(read.sampler.samples_per_pixel, scene.sampler.samples_per_pixel);
-    EXPECT_EQ(read.camera.world_from_camera, scene.camera.world_from_camera);
+    EXPECT_EQ(read.view.film.filename, scene.view.film.filename);
+    EXPECT_EQ(read.view.film.exposure_time, scene.view.film.exposure_time);
+    EXPECT_EQ(read.view.film.max_component_value, scene.view.film.max_component_value);
+    EXPECT_EQ(read.view.film.white_balance, scene.view.film.white_balance);
+    EXPECT_EQ(read.view.film.iso, scene.view.film.iso);
+    EXPECT_EQ(read.view.filter.kind, scene.view.filter.kind);
+    EXPECT_EQ(read.view.filter.tau, scene.view.filter.tau);
+    EXPECT_EQ(read.view.filter.radius_x, scene.view.filter.radius_x);
+    EXPECT_EQ(read.view.filter.sigma, scene.view.filter.sigma);
+    EXPECT_EQ(read.view.filter.c, scene.view.filter.c);
+    EXPECT_EQ(read.view.sampler.samples_per_pixel, scene.view.sampler.samples_per_pixel);
+    EXPECT_EQ(read.view.camera.world_from_camera, scene.view.camera.world_from_camera);
     for (std::size_t i = 0; i < scene.materials.size(); ++i)
       if (!scene.materials[i].name.empty()) {
         EXPECT_EQ(read.materials[i].name, scene.materials[i].name);
@@ -110,8 +110,8 @@ TEST(RoundTrip, EveryRowOfEveryList) {
 void expect_same(const fs::path& folder) {
   each_written_again(folder, [](const Scene& scene, const Scene& read, const fs::path& file) {
     EXPECT_EQ(text_of(read, file.parent_path()), contents(file));
-    EXPECT_EQ(read.camera.world_from_camera, scene.camera.world_from_camera);
-    EXPECT_EQ(fov_of(read.camera), fov_of(scene.camera));
+    EXPECT_EQ(read.view.camera.world_from_camera, scene.view.camera.world_from_camera);
+    EXPECT_EQ(fov_of(read.view.camera), fov_of(scene.view.camera));
     EXPECT_EQ(count_primitives(read), count_primitives(scene));
     EXPECT_EQ(read.lights.size(), scene.lights.size());
   });
@@ -161,8 +161,8 @@ TEST(RoundTrip, NeuronsAreFramedAgainWhenTheirSizeChanges) {
   EXPECT_TRUE(read.automatic_camera);
   EXPECT_TRUE(read.has_no_up);
   for (Scene* one : {&scene, &read}) {
-    one->film.width = 300;
-    one->film.height = 700;
+    one->view.film.width = 300;
+    one->view.film.height = 700;
     frame_camera(*one);
   }
   EXPECT_EQ(different_buffers(scene, read), "");
@@ -462,7 +462,7 @@ TEST(OurStatements, InverseTransformIsNotComputed) {
   const std::string matrix = "[0.6 0.8 0 0 -0.8 0.6 0 0 0 0 1 0 1 2 3 1]";
   const Scene scene = scene_of("InverseTransform " + matrix +
                                "\nCamera \"perspective\"\nWorldBegin\nShape \"sphere\"\n");
-  EXPECT_EQ(scene.camera.world_from_camera,
+  EXPECT_EQ(scene.view.camera.world_from_camera,
             glm::dmat4(0.6, 0.8, 0, 0, -0.8, 0.6, 0, 0, 0, 0, 1, 0, 1, 2, 3, 1));
   EXPECT_THROW(scene_of("InverseTransform [1 0 0 0 0 0 0 0 0 0 1 0 0 0 0 1] Camera \"perspective\" "
                         "WorldBegin Shape \"sphere\""),
@@ -470,7 +470,7 @@ TEST(OurStatements, InverseTransformIsNotComputed) {
   // A later statement of a transform takes its place.
   const Scene moved = scene_of("InverseTransform " + matrix +
                                " Identity Camera \"perspective\" WorldBegin Shape \"sphere\"");
-  EXPECT_EQ(moved.camera.world_from_camera, glm::dmat4(1));
+  EXPECT_EQ(moved.view.camera.world_from_camera, glm::dmat4(1));
 }
 
 TEST(OurStatements, ANumberIsASpectrum) {

@@ -142,8 +142,8 @@ TEST(Develop, SumsOfManySamplesLoseNothing) {
 
 TEST(Develop, ExposureScalesColorAndVariance) {
   Scene scene;
-  scene.film.exposure_time = 0.5;
-  scene.film.iso = 400;
+  scene.view.film.exposure_time = 0.5;
+  scene.view.film.iso = 400;
   const auto image =
       develop({with_samples({{1, 0, 0}, {3, 0, 0}})}, window(1, 1), scene, Layers::all());
   EXPECT_NEAR(value(image, "R"), 4, rounding);
@@ -163,8 +163,8 @@ Pixel with_white(double x, double y) {
 TEST(Develop, WhiteBalanceMakesDaylightWhite) {
   const auto balanced = [](double kelvin, double x, double y, ColorSpace space) {
     Scene scene;
-    scene.film.white_balance = kelvin;
-    scene.film.space = space;
+    scene.view.film.white_balance = kelvin;
+    scene.view.film.space = space;
     const auto image = develop({with_white(x, y)}, window(1, 1), scene, Layers::usual());
     for (const char* channel : {"R", "G", "B"})
       EXPECT_NEAR(value(image, channel), 1, 1e-3) << kelvin << channel;
@@ -180,7 +180,7 @@ TEST(Develop, WhiteBalanceMakesDaylightWhite) {
 // from XYZ by IEC 61966-2-1.
 TEST(Develop, WhiteBalanceIsBradfords) {
   Scene scene;
-  scene.film.white_balance = 5000;
+  scene.view.film.white_balance = 5000;
   const auto image = develop({with_white(0.45, 0.35)}, window(1, 1), scene, Layers::usual());
   const double x = 0.45 / 0.35, z = 0.2 / 0.35;
   const double ax = 0.9555766 * x - 0.0230393 + 0.0631636 * z,
@@ -194,7 +194,7 @@ TEST(Develop, WhiteBalanceIsBradfords) {
 // The limit is of samples: what they add up to has none.
 TEST(Develop, MaxComponentValueIsNotOfMeans) {
   Scene scene;
-  scene.film.max_component_value = 1;
+  scene.view.film.max_component_value = 1;
   const auto image = develop({with_samples({{4, 2, 1}})}, window(1, 1), scene, Layers::usual());
   EXPECT_NEAR(value(image, "R"), 4, rounding);
 }
@@ -326,7 +326,7 @@ TEST(Develop, ColorsAndAlbedoAreInTheFilmsSpace) {
   const std::array<double, 3> xyz{0.4, 0.3, 0.2};
   for (const auto& [space, m] : spaces) {
     Scene scene;
-    scene.film.space = space;
+    scene.view.film.space = space;
     Pixel record = with_hits();
     record.samples = 1;
     record.hits = 1;
@@ -350,7 +350,7 @@ TEST(Develop, VarianceIsInTheFilmsSpace) {
   const std::array<double, 3> xyz{0.4, 0.3, 0.2};
   for (const auto& [space, m] : spaces) {
     Scene scene;
-    scene.film.space = space;
+    scene.view.film.space = space;
     Pixel record;
     record.samples = 2;
     std::array<double, 3> rgb{};
@@ -377,7 +377,7 @@ TEST(Develop, NothingWrittenIsInfiniteOrNotANumber) {
   testing::internal::CaptureStdout();
   Scene scene;
   const auto image = develop({bright, spread, good}, window(3, 1), scene, Layers::all());
-  scene.film.exposure_time = 1e30;
+  scene.view.film.exposure_time = 1e30;
   const auto exposed = develop({good, bright, spread}, window(3, 1), scene, Layers::all());
   const std::string said =
       testing::internal::GetCapturedStderr() + testing::internal::GetCapturedStdout();

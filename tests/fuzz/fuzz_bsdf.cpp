@@ -105,8 +105,9 @@ void camera(const HostGroups* g, const Scene& scene, FuzzNumbers& numbers, float
   for (float& x : u) x = random_number(numbers);
   RayRecord ray;
   HostCameraSample sample;
-  host_kernels(8).camera(g, numbers.below(static_cast<unsigned>(scene.film.width)),
-                         numbers.below(static_cast<unsigned>(scene.film.height)), u, &ray, &sample);
+  host_kernels(8).camera(g, numbers.below(static_cast<unsigned>(scene.view.film.width)),
+                         numbers.below(static_cast<unsigned>(scene.view.film.height)), u, &ray,
+                         &sample);
   const float origin[3] = {ray.ox, ray.oy, ray.oz}, along[3] = {ray.dx, ray.dy, ray.dz};
   require(finite(origin) && unit(along));
   require(std::isfinite(sample.filter_weight));
@@ -125,17 +126,17 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     for (unsigned i = 1 + numbers.below(3); i > 0; --i) scene.lights.push_back(maker.light());
     scene.shapes.emplace_back();
     scene.shapes[0].geometry = SphereShape{1};
-    scene.film.width = scene.film.height = 16;
+    scene.view.film.width = scene.view.film.height = 16;
     for (int column = 0; column < 4; ++column)
       for (int row = 0; row < 3; ++row)
         if (const std::uint8_t byte = numbers.byte(); byte >= 200)
-          scene.camera.world_from_camera[column][row] = numbers.coordinate();
-    scene.camera.projection = PerspectiveProjection{3.1 * numbers.fraction()};
-    scene.camera.lens_radius = numbers.below(2) != 0 ? numbers.length() : 0;
-    scene.camera.focal_distance = numbers.length();
-    scene.filter.kind = static_cast<PixelFilter::Kind>(numbers.below(4));
-    scene.filter.radius_x = 4 * numbers.fraction();
-    scene.filter.radius_y = 4 * numbers.fraction();
+          scene.view.camera.world_from_camera[column][row] = numbers.coordinate();
+    scene.view.camera.projection = PerspectiveProjection{3.1 * numbers.fraction()};
+    scene.view.camera.lens_radius = numbers.below(2) != 0 ? numbers.length() : 0;
+    scene.view.camera.focal_distance = numbers.length();
+    scene.view.filter.kind = static_cast<PixelFilter::Kind>(numbers.below(4));
+    scene.view.filter.radius_x = 4 * numbers.fraction();
+    scene.view.filter.radius_y = 4 * numbers.fraction();
     Diagnostics diagnostics;
     validate(scene, diagnostics);
     diagnostics.finish();

@@ -113,7 +113,7 @@ inline void check_scene(const Scene& scene) {
   for (const Instance& instance : scene.instances) require(instance.object < scene.objects.size());
   for (int column = 0; column < 4; ++column)
     for (int row = 0; row < 4; ++row)
-      require(std::isfinite(scene.camera.world_from_camera[column][row]));
+      require(std::isfinite(scene.view.camera.world_from_camera[column][row]));
   bounds_of(scene);
   count_primitives(scene);
 }

@@ -317,7 +317,7 @@ Scene ModelMaker::scene(unsigned kind, unsigned count) {
   if (instanced)
     for (unsigned i = 0; i <= numbers_.below(2); ++i) out.instances.push_back({0, transform(), {}});
   for (unsigned i = numbers_.below(3); i > 0; --i) out.lights.push_back(light());
-  out.film.width = out.film.height = 16;
+  out.view.film.width = out.view.film.height = 16;
   return out;
 }
 

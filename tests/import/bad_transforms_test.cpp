@@ -44,12 +44,12 @@ TEST(Model, TransformsBeyondFloats) {
 
 TEST(Model, LensesBeyondFloats) {
   Scene scene = sphere_scene();
-  scene.camera.lens_radius = 1;
-  scene.camera.focal_distance = 1e-10;
+  scene.view.camera.lens_radius = 1;
+  scene.view.camera.focal_distance = 1e-10;
   EXPECT_EQ(complaint(scene), "");
   for (const auto& [radius, distance] : {std::pair{1.0, 1e-40}, {1e19, 1e19}, {1e10, 1e-10}}) {
-    scene.camera.lens_radius = radius;
-    scene.camera.focal_distance = distance;
+    scene.view.camera.lens_radius = radius;
+    scene.view.camera.focal_distance = distance;
     EXPECT_THAT(complaint(scene), testing::HasSubstr("where 32-bit floats end"))
         << radius << " at " << distance;
   }

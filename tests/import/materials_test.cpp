@@ -103,12 +103,12 @@ TEST(Leniency, NamesThatPbrtAccepts) {
       "Material \"coateddiffuse\" \"texture reflectance\" \"t\" \"texture roughness\" \"t\" Shape "
       "\"sphere\"\n"
       "Material \"none\" Shape \"sphere\" Material \"\" Shape \"sphere\"");
-  EXPECT_EQ(scene.integrator.max_depth, 7);
+  EXPECT_EQ(scene.view.integrator.max_depth, 7);
   ASSERT_EQ(scene.shapes.size(), 1u);
   EXPECT_EQ(rgb(model_of<CoatedDiffuseMaterial>(scene).reflectance), glm::dvec3(.1, .2, .3));
   EXPECT_EQ(model_of<CoatedDiffuseMaterial>(scene).alpha_u, .5);
   EXPECT_EQ(scene_of("Integrator \"lightpath\" \"integer maxdepth\" 3\nWorldBegin Shape \"sphere\"")
-                .integrator.max_depth,
+                .view.integrator.max_depth,
             3);
   EXPECT_THAT(complaint_of([] {
                 world_of(

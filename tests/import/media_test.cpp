@@ -39,7 +39,7 @@ TEST(Media, Homogeneous) {
       "MediumInterface \"fog\" \"air\" Shape \"sphere\"\nMediumInterface \"tea\" Shape "
       "\"sphere\"\n");
   ASSERT_EQ(scene.media.size(), 3u);
-  EXPECT_EQ(scene.media[*scene.camera.medium].name, "air");
+  EXPECT_EQ(scene.media[*scene.view.camera.medium].name, "air");
   const auto& m = medium_of<HomogeneousMedium>(scene, *scene.shapes[0].media.inside);
   EXPECT_EQ(std::get<RgbSpectrum>(m.scattering.sigma_a).rgb, glm::dvec3(1, 2, 3));
   EXPECT_TRUE(std::holds_alternative<SampledSpectrum>(m.scattering.sigma_s));
@@ -55,7 +55,7 @@ TEST(Media, Homogeneous) {
   EXPECT_EQ(std::get<RgbSpectrum>(tea.scattering.sigma_s).rgb,
             glm::dvec3(0.040224, 0.045264, 0.051081));
   // pbrt-v4's own without parameters: milk.
-  const auto& air = medium_of<HomogeneousMedium>(scene, *scene.camera.medium);
+  const auto& air = medium_of<HomogeneousMedium>(scene, *scene.view.camera.medium);
   EXPECT_EQ(std::get<RgbSpectrum>(air.scattering.sigma_s).rgb, glm::dvec3(2.55, 3.21, 3.77));
   EXPECT_FALSE(air.radiance.has_value());
 }

@@ -45,29 +45,30 @@ TEST(Camera, LookAtSeesItsTargetAhead) {
   const Scene scene = scene_of(
       "LookAt 1 2 3  1 2 10  0 1 0\nCamera \"perspective\" \"float fov\" 90\nWorldBegin\nShape "
       "\"sphere\"");
-  const glm::dmat4& m = scene.camera.world_from_camera;
+  const glm::dmat4& m = scene.view.camera.world_from_camera;
   expect_near(image_of(m, {0, 0, 0}), {1, 2, 3});
   expect_near(direction_of(m, {0, 0, 1}), {0, 0, 1});
   expect_near(direction_of(m, {0, 1, 0}), {0, 1, 0});
   expect_near(direction_of(m, {1, 0, 0}), {1, 0, 0});
-  EXPECT_DOUBLE_EQ(fov_of(scene.camera), std::acos(-1.0) / 2);
+  EXPECT_DOUBLE_EQ(fov_of(scene.view.camera), std::acos(-1.0) / 2);
 }
 
 TEST(Camera, MirroredLookAt) {
   // Along -x with z up, pbrt's right is up x forward = -y; the leading scale mirrors it to +y.
   const std::string rest =
       "LookAt 5 0 0  0 0 0  0 0 1\nCamera \"perspective\"\nWorldBegin\nShape \"sphere\"";
-  expect_near(direction_of(scene_of(rest).camera.world_from_camera, {1, 0, 0}), {0, -1, 0});
-  expect_near(direction_of(scene_of("Scale -1 1 1\n" + rest).camera.world_from_camera, {1, 0, 0}),
-              {0, 1, 0});
+  expect_near(direction_of(scene_of(rest).view.camera.world_from_camera, {1, 0, 0}), {0, -1, 0});
+  expect_near(
+      direction_of(scene_of("Scale -1 1 1\n" + rest).view.camera.world_from_camera, {1, 0, 0}),
+      {0, 1, 0});
 }
 
 TEST(Camera, TransformIsColumnMajorAndMapsWorldToCamera) {
   const Scene scene = scene_of(
       "Transform [ 1 0 0 0  0 1 0 0  0 0 -1 0  0 -1 6.8 1 ]\nCamera "
       "\"perspective\"\nWorldBegin\nShape \"sphere\"");
-  expect_near(image_of(scene.camera.world_from_camera, {0, 0, 0}), {0, 1, 6.8});
-  expect_near(direction_of(scene.camera.world_from_camera, {0, 0, 1}), {0, 0, -1});
+  expect_near(image_of(scene.view.camera.world_from_camera, {0, 0, 0}), {0, 1, 6.8});
+  expect_near(direction_of(scene.view.camera.world_from_camera, {0, 0, 1}), {0, 0, -1});
 }
 
 TEST(Camera, AllParameters) {
@@ -80,20 +81,20 @@ TEST(Camera, AllParameters) {
       " \"bool savefp16\" true \"float iso\" 200 \"string sensor\" \"cie1931\" \"float "
       "maxcomponentvalue\" 9\n"
       " \"float cropwindow\" [0 .5 .25 1]\nWorldBegin\nShape \"sphere\"");
-  EXPECT_EQ(scene.camera.frame_aspect_ratio, 1.5);
-  EXPECT_EQ(scene.camera.screen_window, (std::array<double, 4>{-1, 1, -.5, .5}));
-  EXPECT_EQ(scene.camera.lens_radius, .1);
-  EXPECT_EQ(scene.camera.focal_distance, 7);
-  EXPECT_EQ(scene.film.exposure_time, .25);
-  EXPECT_EQ(scene.film.iso, 200);
-  EXPECT_EQ(scene.film.filename, "a.exr");
-  EXPECT_EQ(scene.film.max_component_value, 9);
-  EXPECT_EQ(scene.film.crop, (std::array<int, 4>{0, 32, 8, 32}));
+  EXPECT_EQ(scene.view.camera.frame_aspect_ratio, 1.5);
+  EXPECT_EQ(scene.view.camera.screen_window, (std::array<double, 4>{-1, 1, -.5, .5}));
+  EXPECT_EQ(scene.view.camera.lens_radius, .1);
+  EXPECT_EQ(scene.view.camera.focal_distance, 7);
+  EXPECT_EQ(scene.view.film.exposure_time, .25);
+  EXPECT_EQ(scene.view.film.iso, 200);
+  EXPECT_EQ(scene.view.film.filename, "a.exr");
+  EXPECT_EQ(scene.view.film.max_component_value, 9);
+  EXPECT_EQ(scene.view.film.crop, (std::array<int, 4>{0, 32, 8, 32}));
 }
 
 TEST(Options, FiltersSamplersIntegratorsSeeds) {
   const auto filter = [](const std::string& text) {
-    return scene_of("PixelFilter " + text + "\nWorldBegin\nShape \"sphere\"").filter;
+    return scene_of("PixelFilter " + text + "\nWorldBegin\nShape \"sphere\"").view.filter;
   };
   EXPECT_EQ(filter("\"box\"").radius_x, 0.5);
   EXPECT_EQ(filter("\"triangle\"").radius_y, 2);
@@ -104,30 +105,30 @@ TEST(Options, FiltersSamplersIntegratorsSeeds) {
   for (const char* name : {"halton", "independent", "paddedsobol", "sobol", "zsobol", "pmj02bn"}) {
     const Scene scene = scene_of("Option \"seed\" 3\nSampler \"" + std::string(name) +
                                  "\" \"integer pixelsamples\" 5\nWorldBegin\nShape \"sphere\"");
-    EXPECT_EQ(scene.sampler.samples_per_pixel, 5) << name;
-    EXPECT_EQ(scene.sampler.seed, 3u);
+    EXPECT_EQ(scene.view.sampler.samples_per_pixel, 5) << name;
+    EXPECT_EQ(scene.view.sampler.seed, 3u);
   }
   EXPECT_EQ(scene_of("Sampler \"stratified\" \"integer xsamples\" 3 \"integer ysamples\" 7 "
                      "\"integer seed\" 9\nOption \"integer seed\" [4]\n"
                      "WorldBegin\nShape \"sphere\"")
-                .sampler.samples_per_pixel,
+                .view.sampler.samples_per_pixel,
             21);
   EXPECT_EQ(
       scene_of(
           "Sampler \"sobol\" \"integer seed\" 9\nOption \"seed\" 4\nWorldBegin\nShape \"sphere\"")
-          .sampler.seed,
+          .view.sampler.seed,
       9u);
   for (const char* name : {"path", "volpath", "simplepath", "simplevolpath", "bdpt", "mlt"})
     EXPECT_EQ(scene_of("Integrator \"" + std::string(name) +
                        "\" \"integer maxdepth\" 8\nWorldBegin\nShape \"sphere\"")
-                  .integrator.max_depth,
+                  .view.integrator.max_depth,
               8);
   EXPECT_EQ(scene_of("Accelerator \"kdtree\" \"integer maxprims\" 2\nTransformTimes 0 "
                      "1\nActiveTransform All\nOption "
                      "\"disablewavelengthjitter\" false\n"
                      "Option \"rendercoordsys\" \"world\"\nMediumInterface \"\" "
                      "\"\"\nWorldBegin\nShape \"sphere\"")
-                .integrator.max_depth,
+                .view.integrator.max_depth,
             5);
 }
 
@@ -489,7 +490,7 @@ TEST(Presentation, FillsInWhatTheFileDoesNotSay) {
   const Scene lit =
       scene_of("WorldBegin\nTranslate 50 0 0 Shape \"sphere\" LightSource \"infinite\"");
   EXPECT_EQ(lit.lights.size(), 1u);
-  const glm::dmat4 camera_from_world = glm::inverse(lit.camera.world_from_camera);
+  const glm::dmat4 camera_from_world = glm::inverse(lit.view.camera.world_from_camera);
   EXPECT_GT(image_of(camera_from_world, {50, 0, 0}).z, 1.0);
   EXPECT_EQ(world_of("Shape \"sphere\"").lights.size(), 0u);
 }
@@ -511,7 +512,7 @@ TEST(SharedScenes, LoadWithTheirStatements) {
                           }),
             6);
   const Scene box = import_scene(scenes / "cornell-box" / "scene-v4.pbrt", StubImages());
-  EXPECT_EQ(box.integrator.max_depth, 4);
+  EXPECT_EQ(box.view.integrator.max_depth, 4);
   EXPECT_EQ(box.shapes.size(), 8u);
   const Scene coffee = import_scene(scenes / "coffee" / "scene-v4.pbrt", StubImages());
   EXPECT_EQ(std::ranges::count_if(coffee.materials,
@@ -530,8 +531,8 @@ TEST(SharedScenes, MitsubaReferencesLoad) {
   for (const char* name :
        {"cornell", "cornell-grey", "mis-grey", "glossy-grey", "environment", "capsules-grey"}) {
     const Scene scene = import_scene(folder / (std::string(name) + ".pbrt"), AnyImage());
-    EXPECT_EQ(scene.film.width, 128) << name;
-    EXPECT_EQ(scene.filter.kind, PixelFilter::Kind::box);
+    EXPECT_EQ(scene.view.film.width, 128) << name;
+    EXPECT_EQ(scene.view.filter.kind, PixelFilter::Kind::box);
     const std::map<std::string, std::size_t> capsules = {{"capsules-grey", 198},
                                                          {"environment", 2}};
     EXPECT_EQ(count_of(scene, "capsule"), capsules.contains(name) ? capsules.at(name) : 0) << name;

@@ -27,22 +27,22 @@ std::string said_of(const std::string& text) {
 }
 
 TEST(Sensors, WhiteIsBalanced) {
-  EXPECT_EQ(scene_of(ball).film.white_balance, 0);
-  EXPECT_EQ(
-      scene_of("Film \"rgb\" \"float whitebalance\" 5000 " + std::string(ball)).film.white_balance,
-      5000);
+  EXPECT_EQ(scene_of(ball).view.film.white_balance, 0);
+  EXPECT_EQ(scene_of("Film \"rgb\" \"float whitebalance\" 5000 " + std::string(ball))
+                .view.film.white_balance,
+            5000);
   LogOf log;
   const Scene camera = scene_of("Film \"rgb\" \"string sensor\" \"nikon_d850\" \"float iso\" 90 " +
                                 std::string(ball));
-  EXPECT_EQ(camera.film.white_balance, 6500);
-  EXPECT_EQ(camera.film.iso, 90);
+  EXPECT_EQ(camera.view.film.white_balance, 6500);
+  EXPECT_EQ(camera.view.film.iso, 90);
   EXPECT_THAT(
       log.text(),
       HasSubstr("scene.pbrt:1:12: Film \"rgb\": the colours are those of the CIE 1931 observer"));
   EXPECT_EQ(
       scene_of("Film \"rgb\" \"string sensor\" \"canon_eos_5d_mkiv\" \"float whitebalance\" 4500 " +
                std::string(ball))
-          .film.white_balance,
+          .view.film.white_balance,
       4500);
 }
 
@@ -62,14 +62,14 @@ TEST(Films, OfLayersAndOfSpectraAreFilms) {
   const Scene layers = scene_of(
       "Film \"gbuffer\" \"integer xresolution\" 30 \"string coordinatesystem\" \"world\"\n" +
       std::string(ball));
-  EXPECT_EQ(layers.film.width, 30);
+  EXPECT_EQ(layers.view.film.width, 30);
   EXPECT_THAT(log.text(),
               HasSubstr("scene.pbrt:1:1: Film \"gbuffer\": the layers have names of our own"));
   const Scene spectral = scene_of(
       "Film \"spectral\" \"integer nbuckets\" 8 \"float lambdamin\" 400 \"float lambdamax\" 700 "
       "\"integer yresolution\" 20\n" +
       std::string(ball));
-  EXPECT_EQ(spectral.film.height, 20);
+  EXPECT_EQ(spectral.view.film.height, 20);
   EXPECT_THAT(log.text(), HasSubstr("Film \"spectral\": red, green and blue are written"));
   EXPECT_THAT(said_of("Film \"rgb\" \"integer nbuckets\" 8\n" + std::string(ball)),
               HasSubstr("unknown parameter \"nbuckets\""));
@@ -88,26 +88,27 @@ TEST(Filters, SayWhatTheyAreUnlessAsked) {
                              Usual{"mitchell", PixelFilter::Kind::mitchell, 2},
                              Usual{"sinc", PixelFilter::Kind::sinc, 4}}) {
     const PixelFilter filter =
-        scene_of(std::string("PixelFilter \"") + usual.type + "\"\n" + ball).filter;
+        scene_of(std::string("PixelFilter \"") + usual.type + "\"\n" + ball).view.filter;
     EXPECT_EQ(filter.kind, usual.kind) << usual.type;
     EXPECT_EQ(filter.radius_x, usual.radius) << usual.type;
     EXPECT_EQ(filter.radius_y, usual.radius) << usual.type;
   }
-  EXPECT_EQ(scene_of("PixelFilter \"gaussian\"\n" + std::string(ball)).filter.sigma, 0.5);
-  const PixelFilter mitchell = scene_of("PixelFilter \"mitchell\"\n" + std::string(ball)).filter;
+  EXPECT_EQ(scene_of("PixelFilter \"gaussian\"\n" + std::string(ball)).view.filter.sigma, 0.5);
+  const PixelFilter mitchell =
+      scene_of("PixelFilter \"mitchell\"\n" + std::string(ball)).view.filter;
   EXPECT_EQ(mitchell.b, 1.0 / 3);
   EXPECT_EQ(mitchell.c, 1.0 / 3);
 }
 
 TEST(Filters, Sinc) {
-  const PixelFilter plain = scene_of("PixelFilter \"sinc\"\n" + std::string(ball)).filter;
+  const PixelFilter plain = scene_of("PixelFilter \"sinc\"\n" + std::string(ball)).view.filter;
   EXPECT_EQ(plain.kind, PixelFilter::Kind::sinc);
   EXPECT_EQ(plain.radius_x, 4);
   EXPECT_EQ(plain.radius_y, 4);
   EXPECT_EQ(plain.tau, 3);
   EXPECT_EQ(
       scene_of("PixelFilter \"sinc\" \"float tau\" 2.5 \"float xradius\" 3\n" + std::string(ball))
-          .filter.tau,
+          .view.filter.tau,
       2.5);
   EXPECT_THAT(said_of("PixelFilter \"sinc\" \"float tau\" 0\n" + std::string(ball)),
               HasSubstr("\"tau\" must be positive"));
@@ -115,7 +116,7 @@ TEST(Filters, Sinc) {
 
 TEST(Integrators, AllThatMakePicturesAreTaken) {
   const auto depth = [](const std::string& statement) {
-    return scene_of(statement + "\n" + ball).integrator.max_depth;
+    return scene_of(statement + "\n" + ball).view.integrator.max_depth;
   };
   LogOf log;
   EXPECT_EQ(depth("Integrator \"sppm\" \"integer maxdepth\" 7 \"float radius\" .02"), 7);
@@ -133,7 +134,7 @@ TEST(Integrators, AllThatMakePicturesAreTaken) {
 TEST(Integrators, AreThoseThatAreNamed) {
   using Kind = IntegratorSettings::Kind;
   const auto of = [](const std::string& statement) {
-    return scene_of(statement + "\n" + ball).integrator;
+    return scene_of(statement + "\n" + ball).view.integrator;
   };
   EXPECT_EQ(of("").kind, Kind::path);
   const IntegratorSettings usual = of("Integrator \"ambientocclusion\"");
@@ -159,7 +160,7 @@ TEST(Integrators, AreThoseThatAreNamed) {
 TEST(Samplers, AreThoseThatAreNamed) {
   using Kind = SamplerSettings::Kind;
   const auto of = [](const std::string& statement) {
-    return scene_of(statement + "\n" + ball).sampler;
+    return scene_of(statement + "\n" + ball).view.sampler;
   };
   EXPECT_EQ(of("").kind, Kind::sobol);
   EXPECT_EQ(of("").samples_per_pixel, 16);
@@ -200,12 +201,13 @@ TEST(Cameras, OrthographicWithALens) {
         "Camera \"orthographic\" \"float screenwindow\" [-3 3 -2 2] \"float focaldistance\" 8" +
         more + "\n" + ball);
   };
-  EXPECT_TRUE(is_orthographic(of("").camera));
-  EXPECT_TRUE(is_orthographic(of(" \"float lensradius\" 0.1 \"bool parallellens\" true").camera));
+  EXPECT_TRUE(is_orthographic(of("").view.camera));
+  EXPECT_TRUE(
+      is_orthographic(of(" \"float lensradius\" 0.1 \"bool parallellens\" true").view.camera));
   LogOf log;
   const Scene scene = of(" \"float lensradius\" 0.1");
   EXPECT_THAT(log.text(), HasSubstr("makes a perspective of it, as in pbrt-v4"));
-  const std::array<double, 4> plane = image_plane_of(scene.camera, scene.film);
+  const std::array<double, 4> plane = image_plane_of(scene.view.camera, scene.view.film);
   EXPECT_NEAR(8 * plane[0], -3, 1e-12);
   EXPECT_NEAR(8 * plane[3], 2, 1e-12);
 }
@@ -213,7 +215,7 @@ TEST(Cameras, OrthographicWithALens) {
 TEST(Cameras, Spherical) {
   const auto of = [](const std::string& more) {
     return std::get<SphericalProjection>(
-               scene_of("Camera \"spherical\"" + more + "\n" + ball).camera.projection)
+               scene_of("Camera \"spherical\"" + more + "\n" + ball).view.camera.projection)
         .mapping;
   };
   EXPECT_EQ(of(""), SphericalProjection::Mapping::equal_area);
@@ -233,7 +235,7 @@ TEST(Films, CropsAreRoundedUp) {
       "Film \"rgb\" \"integer xresolution\" 10 \"integer yresolution\" 10 \"float cropwindow\" "
       "[.05 .55 .25 .75]\n" +
       std::string(ball));
-  EXPECT_THAT(scene.film.crop.value(), ElementsAre(1, 6, 3, 8));
+  EXPECT_THAT(scene.view.film.crop.value(), ElementsAre(1, 6, 3, 8));
 }
 
 TEST(Cameras, LensesHaveARadius) {
@@ -246,7 +248,7 @@ TEST(Cameras, LensesHaveARadius) {
 TEST(Cameras, HalfTheFieldOfView) {
   EXPECT_NEAR(fov_of(scene_of("Camera \"perspective\" \"float halffov\" 20 \"float fov\" 10\n" +
                               std::string(ball))
-                         .camera),
+                         .view.camera),
               40 * 3.14159265358979 / 180, 1e-12);
   EXPECT_THAT(said_of("Camera \"perspective\" \"float halffov\" 90\n" + std::string(ball)),
               HasSubstr("scene.pbrt:1:22: Camera \"perspective\": \"halffov\" must be below 90"));

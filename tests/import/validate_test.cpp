@@ -326,29 +326,31 @@ std::vector<Mistake> of_shapes() {
 
 std::vector<Mistake> of_settings() {
   return {
-      {"the camera has a medium that does not exist", [](Scene& s) { s.camera.medium = 4; }},
+      {"the camera has a medium that does not exist", [](Scene& s) { s.view.camera.medium = 4; }},
       {"the camera's field of view must lie between 0 and 180 degrees",
-       [](Scene& s) { s.camera.projection = PerspectiveProjection{0}; }},
+       [](Scene& s) { s.view.camera.projection = PerspectiveProjection{0}; }},
       {"the camera's field of view must lie between 0 and 180 degrees",
-       [](Scene& s) { s.camera.projection = PerspectiveProjection{3.15}; }},
-      {"the camera's lens radius must be from 0 up", [](Scene& s) { s.camera.lens_radius = -1; }},
+       [](Scene& s) { s.view.camera.projection = PerspectiveProjection{3.15}; }},
+      {"the camera's lens radius must be from 0 up",
+       [](Scene& s) { s.view.camera.lens_radius = -1; }},
       {"the camera's lens radius must be at most 1e18, and 1e18 times its focal distance, where "
        "32-bit floats end",
-       [](Scene& s) { s.camera.lens_radius = 2e18; }},
+       [](Scene& s) { s.view.camera.lens_radius = 2e18; }},
       {"the camera's focal distance must be positive",
-       [](Scene& s) { s.camera.focal_distance = 0; }},
-      {"the image size must be positive", [](Scene& s) { s.film.width = 0; }},
-      {"the image size must be positive", [](Scene& s) { s.film.height = -1; }},
+       [](Scene& s) { s.view.camera.focal_distance = 0; }},
+      {"the image size must be positive", [](Scene& s) { s.view.film.width = 0; }},
+      {"the image size must be positive", [](Scene& s) { s.view.film.height = -1; }},
       {"the image of 16385 x 16384 pixels is larger than 2^28 pixels",
        [](Scene& s) {
-         s.film.width = 16385;
-         s.film.height = 16384;
+         s.view.film.width = 16385;
+         s.view.film.height = 16384;
        }},
-      {"the samples per pixel must be positive", [](Scene& s) { s.sampler.samples_per_pixel = 0; }},
-      {"the depth must not be negative", [](Scene& s) { s.integrator.max_depth = -1; }},
+      {"the samples per pixel must be positive",
+       [](Scene& s) { s.view.sampler.samples_per_pixel = 0; }},
+      {"the depth must not be negative", [](Scene& s) { s.view.integrator.max_depth = -1; }},
       {"the integrator's greatest distance must be positive",
-       [](Scene& s) { s.integrator.max_distance = 0; }},
-      {"the pixel filter's radius must be positive", [](Scene& s) { s.filter.radius_y = 0; }},
+       [](Scene& s) { s.view.integrator.max_distance = 0; }},
+      {"the pixel filter's radius must be positive", [](Scene& s) { s.view.filter.radius_y = 0; }},
   };
 }
 

@@ -35,9 +35,9 @@ Device device_of(const char* profile, Encoding encoding = Encoding::automatic) {
 
 Scene scene_named(const std::string& name, int width, int height, int depth) {
   Scene scene = import_scene(source_folder() / name, FileImageReader());
-  scene.film.width = width;
-  scene.film.height = height;
-  scene.integrator.max_depth = depth;
+  scene.view.film.width = width;
+  scene.view.film.height = height;
+  scene.view.integrator.max_depth = depth;
   return scene;
 }
 

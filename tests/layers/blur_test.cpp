@@ -135,7 +135,7 @@ TEST(FilterOfPbrt, EdgesAreTheFiltersIntegral) {
                   "true\n"
                   "Shape \"trianglemesh\" \"point3 P\" [" +
                   corners + "] \"integer indices\" [0 1 2  0 2 3]\n",
-              samples, [&](Scene& scene) { scene.filter = filter; })
+              samples, [&](Scene& scene) { scene.view.filter = filter; })
               .image;
       for (int k = 0; k < length; ++k) {
         double sum = 0, squares = 0;

@@ -86,7 +86,7 @@ TEST_P(LayersAtSamples, OfAPlaneAreThoseOfThePixelsMiddle) {
             text +
             " 0 1.1\n"
             "Shape \"disk\" \"float radius\" 10\n",
-        GetParam(), [](Scene& scene) { scene.filter = point_filter(); });
+        GetParam(), [](Scene& scene) { scene.view.filter = point_filter(); });
     // Every sample hits the same place, to the rounding of a hit.
     const double slack = 8 * 0x1p-24 * (place + 3);
     for (std::size_t i = 0; i < 4; ++i) {
@@ -231,7 +231,7 @@ TEST(Layers, NormalsAreThoseOfShading) {
               "  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" 20\n"
               "Film \"rgb\" \"integer xresolution\" 6 \"integer yresolution\" 6\nWorldBegin\n" +
               placing.text,
-          1, [](Scene& scene) { scene.filter = point_filter(); });
+          1, [](Scene& scene) { scene.view.filter = point_filter(); });
       for (std::size_t i = 0; i < 36; ++i) {
         ASSERT_EQ(at(rendered.image, "A", i), 1);
         const dvec3 p = at3(rendered.image, "P", "XYZ", i);
@@ -269,7 +269,7 @@ TEST(Layers, AlbedoOfAMetalIsItsReflectance) {
           "Film \"rgb\" \"integer xresolution\" 8 \"integer yresolution\" 8\nWorldBegin\n"
           "Material \"conductor\" \"spectrum eta\" [300 0.8 900 0.8] \"spectrum k\" [300 2 900 "
           "2]\nTranslate 0 0 2\nShape \"disk\" \"float radius\" 100\n",
-      4096, [](Scene& scene) { scene.filter = point_filter(); });
+      4096, [](Scene& scene) { scene.view.filter = point_filter(); });
   for (std::size_t i = 0; i < 64; ++i) {
     const double expected = fresnel(2 / at(rendered.image, "Z", i), 0.8, 2);
     for (const char* name : {"albedo.R", "albedo.G", "albedo.B"})
@@ -286,7 +286,7 @@ LayeredImage plane_in_front(const std::string& camera, const std::string& film) 
                          "\nWorldBegin\nAreaLightSource \"diffuse\" \"rgb L\" [1 1 1] \"bool "
                          "twosided\" true\n"
                          "Translate 0 0 2\nShape \"disk\" \"float radius\" 1000\n",
-                     4, [](Scene& scene) { scene.filter = point_filter(); })
+                     4, [](Scene& scene) { scene.view.filter = point_filter(); })
       .image;
 }
 

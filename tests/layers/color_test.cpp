@@ -134,7 +134,7 @@ TEST(ColorOfFilm, VarianceIsThatOfTheFilmsColors) {
     const std::string text = film_of(film.name, side) + glowing_plane(film.name, color);
     const LayeredImage single = render_text(text, 1).image,
                        many_samples = render_text(text, n, [](Scene&scene) {
-                                        scene.film.crop = std::array<int, 4>{0, 32, 0, 32};
+                                        scene.view.film.crop = std::array<int, 4>{0, 32, 0, 32};
                                       }).image;
     for (const char* name : {"R", "G", "B"}) {
       const std::vector<float>& values = channel(single, name).floats;
@@ -162,7 +162,7 @@ std::pair<std::string, LayeredImage> rendered_aloud(const std::string& radiance,
       render_text(film_of("srgb", 2) +
                       "AreaLightSource \"diffuse\" \"bool twosided\" true \"rgb L\" [" + radiance +
                       "]\nTranslate 0 0 2\nShape \"disk\" \"float radius\" 1000\n",
-                  64, [&](Scene& scene) { scene.film.iso = iso; })
+                  64, [&](Scene& scene) { scene.view.film.iso = iso; })
           .image;
   const std::string said = testing::internal::GetCapturedStderr();
   return {said + testing::internal::GetCapturedStdout(), std::move(image)};

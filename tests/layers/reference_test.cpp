@@ -76,11 +76,11 @@ TEST_P(LayersOfScene, AreTheReferences) {
   Scene scene;
   const Rendered rendered =
       render_file(source_folder() / GetParam().file, GetParam().samples, [&](Scene& s) {
-        s.film.width = width;
-        s.film.height = height;
-        s.filter = point_filter();
-        s.camera.lens_radius = 0;
-        s.integrator.max_depth = 0;
+        s.view.film.width = width;
+        s.view.film.height = height;
+        s.view.filter = point_filter();
+        s.view.camera.lens_radius = 0;
+        s.view.integrator.max_depth = 0;
         scene = s;
       });
   const LayeredImage& image = rendered.image;

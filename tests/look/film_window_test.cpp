@@ -29,13 +29,13 @@ using Crop = std::array<int, 4>;  // x0, x1, y0, y1
 
 std::optional<Crop> crop_after(int width, int height, const Crop& crop, int wide, int tall) {
   Scene scene;
-  scene.film.width = width;
-  scene.film.height = height;
-  scene.film.crop = crop;
+  scene.view.film.width = width;
+  scene.view.film.height = height;
+  scene.view.film.crop = crop;
   set_film_size(scene, wide, tall);
-  EXPECT_EQ(scene.film.width, wide);
-  EXPECT_EQ(scene.film.height, tall);
-  return scene.film.crop;
+  EXPECT_EQ(scene.view.film.width, wide);
+  EXPECT_EQ(scene.view.film.height, tall);
+  return scene.view.film.crop;
 }
 
 // A crop keeps its place: its edges go with the width and the height of the picture, to the nearest
@@ -52,20 +52,20 @@ TEST(FilmWindow, ACropGoesWithThePicturesSize) {
 
 TEST(FilmWindow, CropsAndPixelsAreWithinThePicture) {
   Scene scene;
-  scene.film.width = 20;
-  scene.film.height = 10;
+  scene.view.film.width = 20;
+  scene.view.film.height = 10;
   const auto said = [&](const Crop& corners) {
     return complaint([&] { set_crop(scene, corners); });
   };  // x0, y0, x1, y1
   EXPECT_EQ(said({0, 0, 20, 10}), "");
   EXPECT_EQ(said({3, 4, 18, 5}), "");
-  EXPECT_EQ(scene.film.crop, (Crop{3, 18, 4, 5}));
+  EXPECT_EQ(scene.view.film.crop, (Crop{3, 18, 4, 5}));
   for (const Crop& wrong : {Crop{3, 4, 21, 5}, {3, 4, 18, 11}, {-1, 4, 18, 5}, {3, -1, 18, 5}})
     EXPECT_THAT(said(wrong), HasSubstr("not within the image of 20x10"));
   for (const Crop& empty : {Crop{3, 4, 3, 5}, {3, 4, 18, 4}, {4, 4, 3, 5}, {3, 5, 18, 4}})
     EXPECT_THAT(said(empty), HasSubstr("is empty"));
   const auto pixel = [&](int x, int y) {
-    return complaint([&] { check_pixel({x, y}, scene.film); });
+    return complaint([&] { check_pixel({x, y}, scene.view.film); });
   };
   EXPECT_EQ(pixel(3, 4), "");
   EXPECT_EQ(pixel(17, 4), "");
@@ -84,8 +84,8 @@ Scene scene_of(std::vector<Shape> shapes, std::map<std::string, std::string> loo
   Scene scene;
   scene.materials.push_back({DiffuseMaterial{}, "m", {}});
   scene.shapes = std::move(shapes);
-  scene.film.width = 300;
-  scene.film.height = 200;
+  scene.view.film.width = 300;
+  scene.view.film.height = 200;
   scene.has_no_up = has_no_up;
   add_presentation(scene);
   if (!look.empty())
@@ -130,7 +130,7 @@ double reach_of_turn(const Scene& scene, const std::vector<glm::dvec4>& balls) {
   double most = 0;
   for (std::uint32_t i = 0; i < kFrames; ++i)
     for (const glm::dvec4& ball : balls)
-      most = std::max(most, reach(table.camera(i, kFrames), scene.film, ball));
+      most = std::max(most, reach(table.camera(i, kFrames), scene.view.film, ball));
   return most;
 }
 
@@ -267,11 +267,11 @@ TEST(FramingWithoutUp, TheLongerSideGoesAlongThePicture) {
       Scene scene;
       scene.materials.push_back({DiffuseMaterial{}, "m", {}});
       scene.shapes.emplace_back().geometry = plate;
-      scene.film.width = row.width;
-      scene.film.height = row.height;
+      scene.view.film.width = row.width;
+      scene.view.film.height = row.height;
       scene.has_no_up = has_no_up;
       frame_camera(scene);
-      const glm::dvec3 right(scene.camera.world_from_camera[0]);
+      const glm::dvec3 right(scene.view.camera.world_from_camera[0]);
       SCOPED_TRACE(testing::Message() << row.x << " " << row.y << ", " << row.width << " "
                                       << row.height << " " << has_no_up);
       // 10 and 6 degrees aside.
@@ -289,7 +289,7 @@ TEST(Framing, OrthographicCamerasStandOneExtentAway) {
     Shape box;
     box.geometry = BoxShape{-glm::dvec3(half), glm::dvec3(half)};
     const Scene scene = scene_of({box}, {{"view", "front"}, {"projection", "orthographic"}});
-    const glm::dvec3 eye(scene.camera.world_from_camera[3]);
+    const glm::dvec3 eye(scene.view.camera.world_from_camera[3]);
     EXPECT_NEAR(eye.z - double{half.z}, 2 * 5 / 0.95, 1e-9) << half.x << " " << half.y;
   }
 }
@@ -304,8 +304,8 @@ TEST(Framing, TowersAreSeenAcrossTheirWiderSide) {
         for (const float z : {-1.0F, 1.0F})
           corners.emplace_back(is_wide_in_x ? 2 * x : x, y, is_wide_in_x ? z : 2 * z, 0.2F);
     const Scene scene = scene_of({capsules(corners, corners)});
-    const glm::dvec3 forward(scene.camera.world_from_camera[2]),
-        right(scene.camera.world_from_camera[0]);
+    const glm::dvec3 forward(scene.view.camera.world_from_camera[2]),
+        right(scene.view.camera.world_from_camera[0]);
     EXPECT_NEAR(forward.y, -std::sin(elevation), 1e-6);
     EXPECT_NEAR(right.y, 0, 1e-6);
     // From the front where it is wide from left to right, and from the right where it is wide from

@@ -104,12 +104,12 @@ Scene ball(int width = 400, int height = 200) {
   Shape shape;
   shape.geometry = SphereShape{5};
   scene.shapes.push_back(shape);
-  scene.film.width = width;
-  scene.film.height = height;
+  scene.view.film.width = width;
+  scene.view.film.height = height;
   scene.unit = "nm";
-  scene.camera.projection = OrthographicProjection{};
-  scene.camera.world_from_camera[3] = glm::dvec4(0, 0, -80, 1);
-  scene.camera.screen_window = {-50, 50, -25, 25};
+  scene.view.camera.projection = OrthographicProjection{};
+  scene.view.camera.world_from_camera[3] = glm::dvec4(0, 0, -80, 1);
+  scene.view.camera.screen_window = {-50, 50, -25, 25};
   return scene;
 }
 
@@ -120,12 +120,12 @@ TEST(ScaleBar, OfACropIsThatOfTheWhole) {
   EXPECT_DOUBLE_EQ(whole.pixels, 100);
   for (const std::array<int, 4>& crop :
        {std::array{0, 400, 10, 20}, {7, 107, 0, 200}, {300, 400, 199, 200}}) {
-    scene.film.crop = crop;
+    scene.view.film.crop = crop;
     const BarOnPicture bar = bar_of({25, ""}, scene, "--scale-bar");
     EXPECT_DOUBLE_EQ(bar.pixels, 100);
     EXPECT_EQ(bar.label, whole.label);
   }
-  scene.film.crop = {{7, 106, 0, 200}};
+  scene.view.film.crop = {{7, 106, 0, 200}};
   EXPECT_THAT(complaint([&] {
                 bar_of({25, ""}, scene, "--scale-bar");
               }),
@@ -214,8 +214,9 @@ struct AxesPicture {
 AxesPicture axes_of(const glm::dmat3& world_from_file) {
   AxesPicture out;
   Scene scene = ball();
-  scene.camera.world_from_camera = glm::dmat4(glm::dvec4(1, 0, 0, 0), glm::dvec4(0, 1, 0, 0),
-                                              glm::dvec4(0, 0, -1, 0), glm::dvec4(0, 0, 80, 1));
+  scene.view.camera.world_from_camera =
+      glm::dmat4(glm::dvec4(1, 0, 0, 0), glm::dvec4(0, 1, 0, 0), glm::dvec4(0, 0, -1, 0),
+                 glm::dvec4(0, 0, 80, 1));
   scene.world_from_file = world_from_file;
   draw_axes(out.picture, scene, {0, 0, 0});
   out.size = text_size(out.picture);

@@ -11,6 +11,8 @@
 #include <cmath>
 #include <cstdlib>
 #include <glm/geometric.hpp>
+#include <map>
+#include <set>
 
 #include "post/detail/canvas.h"
 #include "post/detail/parts.h"
@@ -30,16 +32,16 @@ Scene ball(double fov = 0) {
   Shape shape;
   shape.geometry = SphereShape{5};
   scene.shapes.push_back(shape);
-  scene.film.width = 400;
-  scene.film.height = 200;
+  scene.view.film.width = 400;
+  scene.view.film.height = 200;
   scene.unit = "\u00b5m";
   if (fov > 0)
-    scene.camera.projection = PerspectiveProjection{fov};
+    scene.view.camera.projection = PerspectiveProjection{fov};
   else
-    scene.camera.projection = OrthographicProjection{};
-  scene.camera.world_from_camera = glm::dmat4(1);
-  scene.camera.world_from_camera[3] = glm::dvec4(0, 0, -80, 1);
-  if (fov == 0) scene.camera.screen_window = {-50, 50, -25, 25};
+    scene.view.camera.projection = OrthographicProjection{};
+  scene.view.camera.world_from_camera = glm::dmat4(1);
+  scene.view.camera.world_from_camera[3] = glm::dvec4(0, 0, -80, 1);
+  if (fov == 0) scene.view.camera.screen_window = {-50, 50, -25, 25};
   return scene;
 }
 
@@ -103,9 +105,9 @@ TEST(ScaleBar, IsRoundWhereNoOneAsks) {
   // A quarter of the width is 25: 20 is the longest of 1, 2, 5.
   EXPECT_EQ(bar_of({}, ball(), "").label, "20 \u00b5m");
   Scene wide = ball();
-  wide.camera.screen_window = {-102, 102, -51, 51};
+  wide.view.camera.screen_window = {-102, 102, -51, 51};
   EXPECT_EQ(bar_of({}, wide, "").label, "50 \u00b5m");
-  wide.camera.screen_window = {-0.02, 0.02, -0.01, 0.01};
+  wide.view.camera.screen_window = {-0.02, 0.02, -0.01, 0.01};
   EXPECT_EQ(bar_of({}, wide, "").label, "0.01 \u00b5m");
 }
 
@@ -309,8 +311,9 @@ TEST(DepthCue, TheFarthestFadesByItsShare) {
 TEST(Axes, PointWhereTheyPoint) {
   Canvas on = empty_canvas(400, 400);
   Scene scene = ball();
-  scene.camera.world_from_camera = glm::dmat4(glm::dvec4(1, 0, 0, 0), glm::dvec4(0, 1, 0, 0),
-                                              glm::dvec4(0, 0, -1, 0), glm::dvec4(0, 0, 80, 1));
+  scene.view.camera.world_from_camera =
+      glm::dmat4(glm::dvec4(1, 0, 0, 0), glm::dvec4(0, 1, 0, 0), glm::dvec4(0, 0, -1, 0),
+                 glm::dvec4(0, 0, 80, 1));
   draw_axes(on.picture, scene, {0, 0, 0});
   const double size = text_size(on.picture), reach = 3 * size + 1.2 * size;
   const int x = static_cast<int>(margin(on.picture) + reach),
@@ -372,10 +375,24 @@ TEST(Ink, IsSeenOnWhatIsBehind) {
                                          [](int, int) { return 1.0f; });
   EXPECT_EQ(ink_for(light.picture, light.layers)[0], 0);
   EXPECT_EQ(ink_for(dark.picture, dark.layers)[0], 1);
+  // What covers the picture does not count: a light body before darkness has white ink.
+  Canvas body = canvas(
+      8, 8, {0.02f, 0.02f, 0.03f}, [](int x, int) { return x < 6 ? 1.0f : 0.0f; },
+      [](int, int) { return 1.0f; });
+  for (int y = 0; y < 8; ++y)
+    for (int x = 0; x < 6; ++x)
+      body.picture.rgb[static_cast<std::size_t>(8 * y + x)] = {0.9f, 0.9f, 0.9f};
+  EXPECT_EQ(ink_for(body.picture, body.layers)[0], 1);
   // On one pixel just above the luminance between, 0.179, the ink is black.
   Canvas grey = canvas(
       1, 1, {0.2f, 0.2f, 0.2f}, [](int, int) { return 0.0f; }, [](int, int) { return 1.0f; });
   EXPECT_EQ(ink_for(grey.picture, grey.layers)[0], 0);
+}
+
+double ink_of(const Mask& mask) {
+  double ink = 0;
+  for (const float share : mask.shares()) ink += double{share};
+  return ink;
 }
 
 TEST(Letters, EachIsThereAndNoTwoAreAlike) {
@@ -384,20 +401,47 @@ TEST(Letters, EachIsThereAndNoTwoAreAlike) {
        std::string("0123456789.,:-+=/_()[]%ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz")) {
     Mask mask(60, 60);
     text(mask, {10, 40}, std::string(1, letter), 24);
-    float ink = 0;
-    for (const float share : mask.shares()) ink += share;
-    EXPECT_GT(ink, 3) << letter;
+    EXPECT_GT(ink_of(mask), 3) << letter;
     const auto [other, fresh] = seen.try_emplace(mask.shares(), letter);
     EXPECT_TRUE(fresh) << letter << " is drawn as " << other->second;
   }
   EXPECT_GT(text_width("\u00b5m", 12), text_width("m", 12));
-  // Capitals are as high as they are asked for: of an I only what is above the baseline, 24 high
-  // and a stroke's width wide.
+  // Capitals are as high as they are asked for. DejaVu Sans's I is a stem of 202 by 1493 units, as
+  // high as an H, from 201 on; its advance is 604.
   Mask mask(60, 60);
-  text(mask, {10, 40}, "I", 24);
-  float ink = 0;
-  for (const float share : mask.shares()) ink += share;
-  EXPECT_NEAR(ink, 24 * 2.7 + std::acos(-1.0) * 1.35 * 1.35, 3);
+  text(mask, {10.25, 40.5}, "I", 24);
+  const double unit = 24.0 / 1493;
+  EXPECT_NEAR(ink_of(mask), 24 * 202 * unit, 0.3);
+  double x = 0, y = 0;
+  for (int row = 0; row < 60; ++row)
+    for (int column = 0; column < 60; ++column) {
+      x += (column + 0.5) * double{mask.at(column, row)} / ink_of(mask);
+      y += (row + 0.5) * double{mask.at(column, row)} / ink_of(mask);
+    }
+  EXPECT_NEAR(x, 10.25 + (201 + 101) * unit, 0.02);
+  EXPECT_NEAR(y, 40.5 - 12, 0.02);
+  EXPECT_NEAR(text_width("I", 24), 604 * unit, 1e-9);
+  EXPECT_NEAR(text_width("III", 24), 3 * 604 * unit, 1e-9);
+  EXPECT_LT(text_width("AV", 24), text_width("A", 24) + text_width("V", 24)) << "kerning";
+}
+
+// Letters of other scripts, and what the font lacks, which is the same box for all.
+TEST(Letters, AreOfAnyScript) {
+  const auto drawn = [](const char* letter) {
+    Mask mask(60, 60);
+    text(mask, {10, 40}, letter, 24);
+    return mask.shares();
+  };
+  std::set<std::vector<float>> seen = {drawn("\uE000")};
+  for (const char* letter :
+       {"\u03b1", "\u0416", "\u00e9", "\u20ac", "\u2192", "\u00c5", "\u00b2", "\u2206", "\u05d0"})
+    EXPECT_TRUE(seen.insert(drawn(letter)).second) << letter;
+  EXPECT_EQ(drawn("\uE000"), drawn("\U00020000"));
+  // At the picture's edges letters are cut, and nothing is drawn elsewhere.
+  Mask mask(20, 20);
+  text(mask, {-8, 4}, "MMMM", 24);
+  text(mask, {1e6, -1e6}, "M", 24);
+  EXPECT_GT(ink_of(mask), 10);
 }
 
 }  // namespace

@@ -39,8 +39,8 @@ Scene three_balls(int width = 200, int height = 100) {
   Shape shape;
   shape.geometry = capsules;
   scene.shapes.push_back(shape);
-  scene.film.width = width;
-  scene.film.height = height;
+  scene.view.film.width = width;
+  scene.view.film.height = height;
   add_presentation(scene);
   return scene;
 }
@@ -50,7 +50,7 @@ void look(Scene& scene, std::map<std::string, std::string> options, bool is_turn
 }
 
 glm::dvec3 axis_of(const Scene& scene, int column) {
-  return glm::dvec3(scene.camera.world_from_camera[column]);
+  return glm::dvec3(scene.view.camera.world_from_camera[column]);
 }
 
 void expect_near(const glm::dvec3& a, const glm::dvec3& b) {
@@ -116,16 +116,16 @@ TEST(View, UpTurnsAreRotationsThatTakeItToY) {
 /// The pixel that an orthographic camera has in the middle of its picture at a point, by hand: x to
 /// the right, y down.
 glm::dvec2 pixel_of(const Scene& scene, const glm::dvec3& p) {
-  const glm::dvec3 local(glm::inverse(scene.camera.world_from_camera) * glm::dvec4(p, 1));
-  const auto& w = scene.camera.screen_window.value();
-  return {(local.x - w[0]) / (w[1] - w[0]) * scene.film.width,
-          (w[3] - local.y) / (w[3] - w[2]) * scene.film.height};
+  const glm::dvec3 local(glm::inverse(scene.view.camera.world_from_camera) * glm::dvec4(p, 1));
+  const auto& w = scene.view.camera.screen_window.value();
+  return {(local.x - w[0]) / (w[1] - w[0]) * scene.view.film.width,
+          (w[3] - local.y) / (w[3] - w[2]) * scene.view.film.height};
 }
 
 TEST(Orthographic, PointsLieWhereTheyAreDrawn) {
   Scene scene = three_balls(200, 100);
   look(scene, {{"view", "front"}, {"projection", "orthographic"}});
-  EXPECT_EQ(fov_of(scene.camera), 0);
+  EXPECT_EQ(fov_of(scene.view.camera), 0);
   // 22 wide and 10 high with a margin of 5 % of the half image on each side: 22 / (0.95 * 200) is
   // more than 10 / (0.95 * 100).
   const double per_pixel = 22 / (0.95 * 200);
@@ -152,8 +152,8 @@ TEST(Orthographic, SidesOfOneLengthAtAllDepths) {
   EXPECT_NEAR(near, glm::length(pixel_of(scene, {1, 0, -200}) - pixel_of(scene, {0, 0, -200})),
               1e-9);
   // An axis of the three is sqrt(2/3) of its length.
-  const auto& w = scene.camera.screen_window.value();
-  EXPECT_NEAR(near, std::sqrt(2.0 / 3) * scene.film.width / (w[1] - w[0]), 1e-9);
+  const auto& w = scene.view.camera.screen_window.value();
+  EXPECT_NEAR(near, std::sqrt(2.0 / 3) * scene.view.film.width / (w[1] - w[0]), 1e-9);
 }
 
 TEST(Perspective, EverythingFitsFromEverySide) {
@@ -162,8 +162,8 @@ TEST(Perspective, EverythingFitsFromEverySide) {
       SCOPED_TRACE(std::string(view) + " " + up);
       Scene scene = three_balls(300, 200);
       look(scene, {{"view", view}, {"up", up}});
-      const glm::dmat4 camera_from_world = glm::inverse(scene.camera.world_from_camera);
-      const double tangent = std::tan(fov_of(scene.camera) / 2);
+      const glm::dmat4 camera_from_world = glm::inverse(scene.view.camera.world_from_camera);
+      const double tangent = std::tan(fov_of(scene.view.camera) / 2);
       double most = 0;
       for (const glm::vec3& p : test::capsules_of(scene).p0)
         for (int i = 0; i < 2000; ++i) {
@@ -185,14 +185,14 @@ TEST(Perspective, EverythingFitsFromEverySide) {
 TEST(Look, AFilesOwnCameraIsReplacedByAViewAlone) {
   Scene scene = three_balls();
   scene.automatic_camera = false;
-  const Camera before = scene.camera;
+  const Camera before = scene.view.camera;
   EXPECT_THAT(complaint([&] {
                 look(scene, {{"projection", "orthographic"}});
               }),
               AllOf(HasSubstr("--projection"), HasSubstr("--view")));
   EXPECT_THAT(complaint([&] { look(scene, {{"up", "z"}}); }), HasSubstr("--up"));
   look(scene, {{"light", "flat"}, {"background", "white"}});
-  EXPECT_EQ(scene.camera.world_from_camera, before.world_from_camera);
+  EXPECT_EQ(scene.view.camera.world_from_camera, before.world_from_camera);
   look(scene, {{"view", "top"}});
   expect_near(axis_of(scene, 2), {0, -1, 0});
 }

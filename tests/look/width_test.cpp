@@ -17,9 +17,9 @@ namespace {
 Scene before_camera() {
   Scene scene;
   scene.materials.push_back({DiffuseMaterial{}, "m", {}});
-  scene.film.width = 200;
-  scene.film.height = 100;
-  scene.camera.projection = PerspectiveProjection{std::acos(-1.0) / 2};
+  scene.view.film.width = 200;
+  scene.view.film.height = 100;
+  scene.view.camera.projection = PerspectiveProjection{std::acos(-1.0) / 2};
   CapsulesShape capsules;
   capsules.p0 = {{0, 0, 10}, {0, 0, 10}, {0, 0, -10}};
   capsules.p1 = {{0, 0, 20}, {0, 0, 20}, {0, 0, -10}};
@@ -36,7 +36,7 @@ Scene before_camera() {
 
 TEST(LeastWidth, ThinEndsGrowToTheirPixelsAndNoOthers) {
   Scene scene = before_camera();
-  scene.film.least_width = 3;
+  scene.view.film.least_width = 3;
   EXPECT_EQ(widen_to_least(scene), 3U);
   const CapsulesShape capsules = test::capsules_of(scene);
   EXPECT_FLOAT_EQ(capsules.radius0[0], 1.5F * 0.2F);  // a pixel covers 0.2 at 10 and 0.4 at 20
@@ -57,10 +57,10 @@ TEST(LeastWidth, NothingIsAskedNothingGrows) {
 
 TEST(LeastWidth, OrthographicPixelsAreOfOneSize) {
   Scene scene = before_camera();
-  scene.camera.projection = OrthographicProjection{};
-  scene.camera.screen_window = {-10, 10, -5, 5};
-  scene.film.least_width = 2;
-  EXPECT_DOUBLE_EQ(pixel_footprint(scene.camera, scene.film, {0, 0, 1000}), 0.1);
+  scene.view.camera.projection = OrthographicProjection{};
+  scene.view.camera.screen_window = {-10, 10, -5, 5};
+  scene.view.film.least_width = 2;
+  EXPECT_DOUBLE_EQ(pixel_footprint(scene.view.camera, scene.view.film, {0, 0, 1000}), 0.1);
   widen_to_least(scene);
   EXPECT_FLOAT_EQ(test::capsules_of(scene).radius0[0], 0.1F);
   EXPECT_FLOAT_EQ(test::capsules_of(scene).radius0[2], 0.1F);
@@ -71,18 +71,18 @@ TEST(LeastWidth, PixelsOfSphericalCamerasDivideTheSphere) {
   const double pi = std::acos(-1.0);
   Scene scene = before_camera();
   const auto footprint = [&](const glm::dvec3& p) {
-    return pixel_footprint(scene.camera, scene.film, p);
+    return pixel_footprint(scene.view.camera, scene.view.film, p);
   };
   using Mapping = SphericalProjection::Mapping;
-  scene.camera.projection = SphericalProjection{Mapping::equal_area};
+  scene.view.camera.projection = SphericalProjection{Mapping::equal_area};
   for (const glm::dvec3& p : {glm::dvec3(10, 0, 0), glm::dvec3(0, -6, -8)})
     EXPECT_NEAR(footprint(p) * footprint(p) * 200 * 100, 400 * pi, 1e-9);
-  scene.camera.projection = SphericalProjection{Mapping::equirectangular};
+  scene.view.camera.projection = SphericalProjection{Mapping::equirectangular};
   EXPECT_NEAR(footprint({6, 0, -8}), 10 * pi / 100, 1e-12) << "on the horizon";
-  scene.film.width = 100;
+  scene.view.film.width = 100;
   EXPECT_NEAR(footprint({6, 0, -8}), 10 * pi / 100, 1e-12) << "pixels are wider than high";
   EXPECT_NEAR(footprint({0, 9.6, 2.8}), 2.8 * 2 * pi / 100, 1e-12) << "a circle of radius 2.8";
-  scene.camera.world_from_camera[3] = {0, 0, 5, 1};
+  scene.view.camera.world_from_camera[3] = {0, 0, 5, 1};
   EXPECT_NEAR(footprint({0, 9.6, 7.8}), 2.8 * 2 * pi / 100, 1e-12) << "from the camera";
 }
 
@@ -94,7 +94,7 @@ TEST(LeastWidth, ObjectsGrowForTheInstanceThatNeedsMost) {
   scene.instances.push_back({0, glm::dmat4(1), {}});
   scene.instances.push_back({0, glm::translate(glm::dmat4(1), glm::dvec3(0, 0, 30)), {}});
   scene.shapes.clear();
-  scene.film.least_width = 1;
+  scene.view.film.least_width = 1;
   widen_to_least(scene);
   EXPECT_FLOAT_EQ(std::get<CapsulesShape>(scene.objects[0].shapes[0].geometry).radius0[0],
                   0.5F * 0.8F);  // at 40
@@ -103,7 +103,7 @@ TEST(LeastWidth, ObjectsGrowForTheInstanceThatNeedsMost) {
 TEST(LeastWidth, StretchesCountByTheLeast) {
   Scene scene = before_camera();
   scene.shapes[0].world_from_object = glm::scale(glm::dmat4(1), glm::dvec3(0.5, 2, 1));
-  scene.film.least_width = 1;
+  scene.view.film.least_width = 1;
   widen_to_least(scene);
   EXPECT_NEAR(test::capsules_of(scene).radius0[0], 0.5 * 0.2 / 0.5, 1e-6);
 }

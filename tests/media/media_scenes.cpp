@@ -31,7 +31,7 @@ std::string white_walls() {
 
 std::array<Mean, 3> colors_seen(const std::string& text, int samples, int size) {
   Scene scene = scene_of_text(text);
-  scene.film.width = scene.film.height = size;
+  scene.view.film.width = scene.view.film.height = size;
   const Rendered rendered = render_model(scene, samples);
   return {mean_of(rendered.image, "R"), mean_of(rendered.image, "G"), mean_of(rendered.image, "B")};
 }

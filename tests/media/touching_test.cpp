@@ -312,7 +312,7 @@ void compare_columns(const std::vector<GridBox>& boxes, const std::string& light
       "\nPixelFilter \"box\" \"float xradius\" 0.5 \"float yradius\" 0.5\nWorldBegin\n" + light;
   const auto picture = [&](const std::string& text) {
     Scene scene = scene_of_text(text);
-    scene.film.width = scene.film.height = 3 * side;
+    scene.view.film.width = scene.view.film.height = 3 * side;
     return render_model(scene, 4).image;
   };
   const std::string away = "AttributeBegin Translate 500 0 0 Shape \"sphere\" AttributeEnd\n";

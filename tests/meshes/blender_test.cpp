@@ -129,7 +129,7 @@ TEST(Blender, LampsOfGltf) {
 
 TEST(Blender, ACameraOfGltf) {
   const Json theirs = blenders().at("cameras").at("eye");
-  const Camera& camera = ours().camera;
+  const Camera& camera = ours().view.camera;
   EXPECT_NEAR(fov_of(camera), theirs.at("angle_y"), kDigits);
   const glm::dmat4& m = camera.world_from_camera;
   expect_near(glm::dvec3(m[0]), column(theirs.at("matrix"), 0), "right");

@@ -432,10 +432,10 @@ TEST(Gltf, MaterialsCamerasAndLights) {
   ASSERT_EQ(scene.lights.size(), 1u);
   EXPECT_EQ(scene.lights[0].scale, 1);
   EXPECT_EQ(std::get<PointLight>(scene.lights[0].model).position, glm::dvec3(0, 3, 0));
-  EXPECT_EQ(fov_of(scene.camera), 0.5);
+  EXPECT_EQ(fov_of(scene.view.camera), 0.5);
   EXPECT_FALSE(scene.automatic_camera);
   // It looks along -z, y up, x right.
-  EXPECT_EQ(glm::dvec3(scene.camera.world_from_camera * glm::dvec4(1, 2, 3, 1)),
+  EXPECT_EQ(glm::dvec3(scene.view.camera.world_from_camera * glm::dvec4(1, 2, 3, 1)),
             glm::dvec3(1, 2, 1));
 }
 
@@ -566,11 +566,11 @@ TEST(Gltf, OrthographicCameras) {
                                   R"("znear":0.1,"zfar":9}}])"));
   };
   const Scene scene = with(R"("xmag":4,"ymag":1,)");
-  EXPECT_EQ(fov_of(scene.camera), 0);
-  EXPECT_EQ(scene.camera.screen_window, (std::array<double, 4>{-4, 4, -1, 1}));
-  EXPECT_EQ(scene.film.height, scene.film.width / 4);
+  EXPECT_EQ(fov_of(scene.view.camera), 0);
+  EXPECT_EQ(scene.view.camera.screen_window, (std::array<double, 4>{-4, 4, -1, 1}));
+  EXPECT_EQ(scene.view.film.height, scene.view.film.width / 4);
   EXPECT_FALSE(scene.automatic_camera);
-  EXPECT_EQ(glm::dvec3(scene.camera.world_from_camera * glm::dvec4(1, 2, 3, 1)),
+  EXPECT_EQ(glm::dvec3(scene.view.camera.world_from_camera * glm::dvec4(1, 2, 3, 1)),
             glm::dvec3(1, 2, 1));
   for (const char* bad :
        {R"("xmag":0,"ymag":1,)", R"("xmag":1,"ymag":0,)", R"("xmag":1,"ymag":1e9,)"})

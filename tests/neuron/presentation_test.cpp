@@ -27,8 +27,8 @@ Scene capsules_scene(const CapsulesShape& capsules, int width, int height) {
   Shape shape;
   shape.geometry = capsules;
   scene.shapes.push_back(shape);
-  scene.film.width = width;
-  scene.film.height = height;
+  scene.view.film.width = width;
+  scene.view.film.height = height;
   add_presentation(scene);
   return scene;
 }
@@ -53,11 +53,11 @@ CapsulesShape cloud(const glm::vec3& half, int count, float radius, unsigned see
 /// all end spheres: 1 is the edge of the film. By projecting points of the spheres, where the code
 /// under test uses planes.
 glm::dvec2 reach(const Scene& scene) {
-  const glm::dmat4 camera_from_world = glm::inverse(scene.camera.world_from_camera);
-  const double shorter = std::min(scene.film.width, scene.film.height),
-               tangent = std::tan(fov_of(scene.camera) / 2);
-  const glm::dvec2 edge(tangent * scene.film.width / shorter,
-                        tangent * scene.film.height / shorter);
+  const glm::dmat4 camera_from_world = glm::inverse(scene.view.camera.world_from_camera);
+  const double shorter = std::min(scene.view.film.width, scene.view.film.height),
+               tangent = std::tan(fov_of(scene.view.camera) / 2);
+  const glm::dvec2 edge(tangent * scene.view.film.width / shorter,
+                        tangent * scene.view.film.height / shorter);
   glm::dvec2 most(0);
   const CapsulesShape capsules = test::capsules_of(scene);
   for (std::size_t i = 0; i < capsules.p0.size(); ++i)
@@ -103,16 +103,16 @@ INSTANTIATE_TEST_SUITE_P(Sizes, Framing,
 
 TEST(FramingAgain, FollowsTheFilmAlone) {
   Scene scene = capsules_scene(cloud({50, 20, 1}, 40, 0.5F, 3), 960, 540);
-  const Camera before = scene.camera;
-  scene.film.width = 540;
+  const Camera before = scene.view.camera;
+  scene.view.film.width = 540;
   frame_camera(scene);
-  EXPECT_EQ(scene.camera.world_from_camera[2], before.world_from_camera[2])
+  EXPECT_EQ(scene.view.camera.world_from_camera[2], before.world_from_camera[2])
       << "the direction depends on the shapes alone";
-  EXPECT_NE(scene.camera.world_from_camera[3], before.world_from_camera[3]);
+  EXPECT_NE(scene.view.camera.world_from_camera[3], before.world_from_camera[3]);
   EXPECT_LE(std::max(reach(scene).x, reach(scene).y), 0.951);
-  scene.film.width = 960;
+  scene.view.film.width = 960;
   frame_camera(scene);
-  EXPECT_EQ(scene.camera.world_from_camera, before.world_from_camera);
+  EXPECT_EQ(scene.view.camera.world_from_camera, before.world_from_camera);
 }
 
 TEST(FramingDirection, FlatScenesAreSeenFaceOn) {
@@ -121,7 +121,7 @@ TEST(FramingDirection, FlatScenesAreSeenFaceOn) {
   for (int thin = 0; thin < 3; ++thin) {
     const Scene scene =
         capsules_scene(cloud(halves[static_cast<std::size_t>(thin)], 200, 0.1F, 5), 960, 540);
-    EXPECT_GT(std::abs(scene.camera.world_from_camera[2][thin]),
+    EXPECT_GT(std::abs(scene.view.camera.world_from_camera[2][thin]),
               std::cos(15 * std::numbers::pi / 180))
         << thin;
   }
@@ -129,7 +129,7 @@ TEST(FramingDirection, FlatScenesAreSeenFaceOn) {
 
 TEST(FramingDirection, UpIsYAndTheWorldIsNotMirrored) {
   const Scene scene = capsules_scene(cloud({30, 40, 10}, 200, 0.1F, 5), 960, 540);
-  const glm::dmat3 axes(scene.camera.world_from_camera);
+  const glm::dmat3 axes(scene.view.camera.world_from_camera);
   EXPECT_GT(axes[1].y, 0.8);
   EXPECT_NEAR(axes[0].y, 0, 1e-12);
   // Right, up and toward the viewer are right-handed; forward is the opposite of the last.
@@ -143,9 +143,9 @@ TEST(FramingDegenerate, OneSphereAndOnePointCloudOnALine) {
   shape.geometry = SphereShape{2};
   sphere.shapes.push_back(shape);
   add_presentation(sphere);
-  const glm::dvec3 eye(sphere.camera.world_from_camera[3]);
+  const glm::dvec3 eye(sphere.view.camera.world_from_camera[3]);
   // The sphere touches the margin above and below: sin(angle) = radius / distance.
-  const double angle = std::atan(0.95 * std::tan(fov_of(sphere.camera) / 2));
+  const double angle = std::atan(0.95 * std::tan(fov_of(sphere.view.camera) / 2));
   EXPECT_NEAR(glm::length(eye), 2 / std::sin(angle), 1e-9);
 
   for (const glm::vec3& along :
@@ -181,9 +181,9 @@ glm::dvec3 radiance_from(const Scene& scene, const glm::dvec3& world) {
 TEST(Studio, BackgroundIsDimAndEvenInTheFrame) {
   for (const Size size : {Size{960, 540}, Size{540, 960}, Size{512, 512}}) {
     const Scene scene = capsules_scene(cloud({30, 40, 10}, 50, 0.1F, 5), size.width, size.height);
-    const glm::dmat3 axes(scene.camera.world_from_camera);
+    const glm::dmat3 axes(scene.view.camera.world_from_camera);
     const double shorter = std::min(size.width, size.height),
-                 tangent = std::tan(fov_of(scene.camera) / 2);
+                 tangent = std::tan(fov_of(scene.view.camera) / 2);
     const glm::dvec3 center = radiance_from(scene, axes[2]);
     EXPECT_GT(center.x, 0.005);
     EXPECT_LT(center.z, 0.1);
@@ -198,7 +198,7 @@ TEST(Studio, BackgroundIsDimAndEvenInTheFrame) {
 
 TEST(Studio, ASurfaceFacingTheKeyIsWellExposed) {
   const Scene scene = capsules_scene(cloud({30, 40, 10}, 50, 0.1F, 5), 960, 540);
-  const glm::dmat3 axes(scene.camera.world_from_camera);
+  const glm::dmat3 axes(scene.view.camera.world_from_camera);
   const double elevation = 42 * std::numbers::pi / 180, azimuth = -48 * std::numbers::pi / 180;
   const glm::dvec3 normal = axes[0] * (std::sin(azimuth) * std::cos(elevation)) +
                             axes[1] * std::sin(elevation) -
@@ -237,7 +237,7 @@ TEST_P(Framing, OfATurntable) {
   glm::dvec2 most(0);
   const Camera first = table.camera(0, count);
   for (int i = 0; i < count; ++i) {
-    scene.camera = table.camera(static_cast<std::uint32_t>(i), count);
+    scene.view.camera = table.camera(static_cast<std::uint32_t>(i), count);
     most = glm::max(most, reach(scene));
     // Around the vertical axis through the middle of the bounds, to the camera's right: seen from
     // above against the clock.
@@ -245,7 +245,7 @@ TEST_P(Framing, OfATurntable) {
     const glm::dvec3 middle(7, 7.5, 9), from = glm::dvec3(first.world_from_camera[3]) - middle;
     const glm::dvec3 to(std::cos(angle) * from.x + std::sin(angle) * from.z, from.y,
                         -std::sin(angle) * from.x + std::cos(angle) * from.z);
-    EXPECT_LT(glm::length(glm::dvec3(scene.camera.world_from_camera[3]) - middle - to),
+    EXPECT_LT(glm::length(glm::dvec3(scene.view.camera.world_from_camera[3]) - middle - to),
               1e-4 * glm::length(from))
         << i;
   }

@@ -89,7 +89,7 @@ TEST(SeveralFiles, AreFramedTogether) {
   again.materials = scene.materials;
   again.has_no_up = true;
   add_presentation(again);
-  EXPECT_EQ(again.camera.world_from_camera, scene.camera.world_from_camera);
+  EXPECT_EQ(again.view.camera.world_from_camera, scene.view.camera.world_from_camera);
   EXPECT_EQ(std::get<InfiniteLight>(again.lights[0].model).world_from_light,
             std::get<InfiniteLight>(scene.lights[0].model).world_from_light);
 }
@@ -117,8 +117,9 @@ TEST(SeveralFiles, TheCameraIsWithinItsOwnFilesMedium) {
   for (const Paths& paths : {Paths{smoke, fog}, Paths{fog, smoke}}) {
     const Scene scene = several(paths);
     ASSERT_EQ(scene.media.size(), 2U);
-    ASSERT_TRUE(scene.camera.medium);
-    EXPECT_THAT(scene.media.at(*scene.camera.medium).name, testing::EndsWith("fog")) << paths[0];
+    ASSERT_TRUE(scene.view.camera.medium);
+    EXPECT_THAT(scene.media.at(*scene.view.camera.medium).name, testing::EndsWith("fog"))
+        << paths[0];
   }
 }
 
@@ -126,8 +127,8 @@ TEST(SeveralFiles, AScenesCameraAndLightsCountForAll) {
   const Scene scene =
       several({write_file("one.swc", neuron(0)), write_file("scene.pbrt", pbrt_with_camera)});
   EXPECT_FALSE(scene.automatic_camera);
-  EXPECT_EQ(scene.film.width, 33);
-  EXPECT_EQ(scene.camera.world_from_camera[3], glm::dvec4(0, 0, 9, 1));
+  EXPECT_EQ(scene.view.film.width, 33);
+  EXPECT_EQ(scene.view.camera.world_from_camera[3], glm::dvec4(0, 0, 9, 1));
   ASSERT_EQ(scene.lights.size(), 1U);
   EXPECT_TRUE(std::holds_alternative<PointLight>(scene.lights[0].model));
 }
@@ -139,12 +140,12 @@ TEST(SeveralFiles, AreDrawnAsTheMostDemandingOfThemAsks) {
                  mesh = write_file("tri.off", triangle);
   for (const Paths& paths : {Paths{neuron_file, mesh}, Paths{mesh, neuron_file}}) {
     const Scene scene = several(paths);
-    EXPECT_EQ(scene.film.least_width, 1.5) << paths[0];
-    EXPECT_EQ(scene.sampler.samples_per_pixel, 64) << paths[0];
+    EXPECT_EQ(scene.view.film.least_width, 1.5) << paths[0];
+    EXPECT_EQ(scene.view.sampler.samples_per_pixel, 64) << paths[0];
   }
   const Scene scene = several({neuron_file, write_file("scene.pbrt", pbrt_with_camera)});
-  EXPECT_EQ(scene.film.least_width, 0);
-  EXPECT_EQ(scene.sampler.samples_per_pixel, 16);
+  EXPECT_EQ(scene.view.film.least_width, 0);
+  EXPECT_EQ(scene.view.sampler.samples_per_pixel, 16);
 }
 
 // Everything that names something by its number names the same as before.
@@ -195,7 +196,7 @@ TEST(SeveralFiles, AnAutomaticCameraIsNone) {
   const Scene scene =
       several({write_file("automatic.pbrt", automatic), write_file("one.swc", neuron(20))});
   EXPECT_TRUE(scene.automatic_camera);
-  EXPECT_NE(scene.camera.world_from_camera[3], glm::dvec4(0, 0, 9, 1));
+  EXPECT_NE(scene.view.camera.world_from_camera[3], glm::dvec4(0, 0, 9, 1));
   EXPECT_EQ(scene.lights.size(), 1U);
 }
 

@@ -57,8 +57,8 @@ std::vector<RayRecord> pixel_rays(const Scene& scene, std::size_t count, unsigne
   std::mt19937_64 random(seed);
   std::vector<RayRecord> out;
   for (std::size_t i = 0; i < count; ++i) {
-    const auto x = static_cast<int>(random() % static_cast<std::uint64_t>(scene.film.width));
-    const auto y = static_cast<int>(random() % static_cast<std::uint64_t>(scene.film.height));
+    const auto x = static_cast<int>(random() % static_cast<std::uint64_t>(scene.view.film.width));
+    const auto y = static_cast<int>(random() % static_cast<std::uint64_t>(scene.view.film.height));
     out.push_back(ray_of_pixel(scene, x, y));
   }
   return out;
@@ -335,7 +335,7 @@ TEST(Query, CsgReportsItsOwnNameAndTheOperandsSurface) {
 TEST(RayOfPixel, IsTheDevicesCameraRay) {
   for (const char* name : {"scenes/capsules.pbrt", "tests/render/everything.pbrt"}) {
     Scene scene = scene_file(name);
-    scene.film.crop = {8, 24, 5, 20};
+    scene.view.film.crop = {8, 24, 5, 20};
     const FlatView flat = lower_view(scene);
     const std::string source = flatten_kernels(R"(
 #include "camera/camera.cl"
@@ -356,7 +356,7 @@ __kernel void rays(__global const CameraRecord* camera, uint width, uint count, 
     launch(device, kernel, count, 64);
     const std::vector<RayRecord> rays = out.read();
     for (std::size_t i = 0; i < count; i += 7) {
-      const auto width = static_cast<std::size_t>(scene.film.width);
+      const auto width = static_cast<std::size_t>(scene.view.film.width);
       const RayRecord ours =
           ray_of_pixel(scene, static_cast<int>(i % width), static_cast<int>(i / width));
       EXPECT_EQ(origin_of(ours), origin_of(rays[i]));
@@ -371,10 +371,10 @@ __kernel void rays(__global const CameraRecord* camera, uint width, uint count, 
 TEST(RayOfPixel, HitsWhatTheRenderShowsThere) {
   // A filter of a thousandth of a pixel: every sample is the middle of its pixel.
   const auto through_the_middle = [](Scene& scene) {
-    scene.filter = {.kind = PixelFilter::Kind::box, .radius_x = 0.0005, .radius_y = 0.0005};
-    scene.camera.lens_radius = 0;
-    scene.film.width = 96;
-    scene.film.height = 54;
+    scene.view.filter = {.kind = PixelFilter::Kind::box, .radius_x = 0.0005, .radius_y = 0.0005};
+    scene.view.camera.lens_radius = 0;
+    scene.view.film.width = 96;
+    scene.view.film.height = 54;
   };
   for (const char* name : {"scenes/capsules.pbrt", "scenes/instances.pbrt"}) {
     Scene scene = scene_file(name);
@@ -382,8 +382,8 @@ TEST(RayOfPixel, HitsWhatTheRenderShowsThere) {
     const test::Rendered rendered = test::render_model(scene, 1);
     Query query(lower(scene), test::test_device());
     std::vector<RayRecord> rays;
-    for (int y = 0; y < scene.film.height; ++y)
-      for (int x = 0; x < scene.film.width; ++x) rays.push_back(ray_of_pixel(scene, x, y));
+    for (int y = 0; y < scene.view.film.height; ++y)
+      for (int x = 0; x < scene.view.film.width; ++x) rays.push_back(ray_of_pixel(scene, x, y));
     const std::vector<PickRecord> picks = query.closest(rays);
     const auto& objects = test::channel(rendered.image, "object.id").uints;
     const auto& primitives = test::channel(rendered.image, "primitive.id").uints;

@@ -66,14 +66,15 @@ TEST(Determinism, ThreadsDoNotChangeBits) {
 
 TEST(Determinism, SeedsDiffer) {
   const Rendered one = render_file(scene_file(), 4);
-  const Rendered other = render_file(scene_file(), 4, [](Scene& scene) { scene.sampler.seed = 1; });
+  const Rendered other =
+      render_file(scene_file(), 4, [](Scene& scene) { scene.view.sampler.seed = 1; });
   EXPECT_FALSE(same_bits(one.result.film, other.result.film));
 }
 
 TEST(Determinism, CropIsPartOfTheWhole) {
   const Rendered whole = render_file(scene_file(), 4);
   const Rendered crop = render_file(scene_file(), 4, [](Scene& scene) {
-    scene.film.crop = {{10, 40, 5, 25}};
+    scene.view.film.crop = {{10, 40, 5, 25}};
   });
   ASSERT_EQ(crop.image.data_width, 30);
   ASSERT_EQ(crop.image.data_height, 20);
@@ -114,9 +115,9 @@ TEST(Encodings, AllThatGpusDoDifferentlyRendersTheSame) {
   // that is sorted for).
   Scene scene = import_scene(source_folder() / "scenes" / "capsules.pbrt", FileImageReader());
   add_cloud(scene);
-  scene.film.width = 512;
-  scene.film.height = 512;
-  scene.integrator.max_depth = 1;
+  scene.view.film.width = 512;
+  scene.view.film.height = 512;
+  scene.view.integrator.max_depth = 1;
   const FlatScene flat = lower(scene);
   const FlatView view = lower_view(scene);
   ASSERT_GE(flat.bvh_nodes, 1024u);

@@ -35,8 +35,8 @@ LoweredScene lowered_everything(int width, int height) {
   LoweredScene out;
   out.scene =
       import_scene(source_folder() / "tests" / "render" / "everything.pbrt", FileImageReader());
-  out.scene.film.width = width;
-  out.scene.film.height = height;
+  out.scene.view.film.width = width;
+  out.scene.view.film.height = height;
   out.flat = lower(out.scene);
   out.view = lower_view(out.scene);
   return out;

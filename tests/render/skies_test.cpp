@@ -159,7 +159,7 @@ TEST(Skies, HaveACameraThatIsFramedToTheUnitBall) {
   EXPECT_TRUE(bare.automatic_camera);
   for (int c = 0; c < 4; ++c)
     for (int r = 0; r < 4; ++r)
-      EXPECT_EQ(bare.camera.world_from_camera[c][r], ball.camera.world_from_camera[c][r]);
+      EXPECT_EQ(bare.view.camera.world_from_camera[c][r], ball.view.camera.world_from_camera[c][r]);
 }
 
 }  // namespace

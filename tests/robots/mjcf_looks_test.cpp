@@ -238,14 +238,14 @@ TEST(MjcfLooks, LightsAndCamerasFollowTheirTargets) {
   const auto& spot = std::get<SpotLight>(scene.lights[0].model);
   EXPECT_NEAR(spot.direction.x, -0.30151134, 1e-8);
   EXPECT_NEAR(spot.direction.z, -0.90453403, 1e-8);
-  const glm::dmat4& camera = scene.camera.world_from_camera;
+  const glm::dmat4& camera = scene.view.camera.world_from_camera;
   EXPECT_NEAR(camera[0].x, -0.70710678, 1e-8);
   EXPECT_NEAR(camera[0].y, 0.70710678, 1e-8);
   EXPECT_NEAR(camera[1].x, -0.63960215, 1e-8);
   EXPECT_NEAR(camera[1].z, 0.42640143, 1e-8);
   EXPECT_NEAR(camera[2].z, -0.90453403, 1e-8);
   EXPECT_EQ(glm::dvec3(camera[3]), glm::dvec3(1, 2, 3));
-  EXPECT_NEAR(fov_of(scene.camera), std::acos(-1.0) / 3, 1e-12);
+  EXPECT_NEAR(fov_of(scene.view.camera), std::acos(-1.0) / 3, 1e-12);
   EXPECT_THAT(complaint([&] {
                 scene_of_text("<worldbody><geom size='1'/><camera name='a'/></worldbody>",
                               {{{"camera", "b"}}});
@@ -264,7 +264,7 @@ TEST(MjcfLooks, PlanesAreFloorsBeyondThePicture) {
   EXPECT_GT(mesh.positions[2].x, 80);
   // The camera is as near as without it.
   const Scene alone = scene_of_text("<worldbody><geom size='1' pos='3 0 0'/></worldbody>");
-  EXPECT_EQ(scene.camera.world_from_camera, alone.camera.world_from_camera);
+  EXPECT_EQ(scene.view.camera.world_from_camera, alone.view.camera.world_from_camera);
   EXPECT_EQ(scene_of_text("<worldbody><geom type='plane' size='0 0 1'/></worldbody>").shapes.size(),
             1U);
 }

@@ -95,8 +95,8 @@ struct Numbers {
 Numbers numbers(std::uint32_t pixel, std::uint32_t pair, std::uint32_t count,
                 const SamplerSettings& sampler = {}) {
   Scene scene;
-  scene.film.width = scene.film.height = 256;
-  scene.sampler = sampler;
+  scene.view.film.width = scene.view.film.height = 256;
+  scene.view.sampler = sampler;
   const FlatView flat = lower_view(scene);
   const Buffer<ViewRecord> view(bench().device, std::span(&flat.view, 1));
   Buffer<float> out(bench().device, 3 * count);
@@ -286,9 +286,9 @@ TEST(Sampler, SmoothIntegralsConvergeFasterThanAtRandom) {
 
 Scene spherical_scene(SphericalProjection::Mapping mapping) {
   Scene scene;
-  scene.film.width = 400;
-  scene.film.height = 200;
-  scene.camera.projection = SphericalProjection{mapping};
+  scene.view.film.width = 400;
+  scene.view.film.height = 200;
+  scene.view.camera.projection = SphericalProjection{mapping};
   return scene;
 }
 
@@ -323,7 +323,8 @@ TEST(SphericalCamera, LooksByTheOctahedralMap) {
   double sum = 0;
   for (int y = 0; y < 40; ++y)
     for (int x = 0; x < 40; ++x) {
-      const double z = unproject(scene.camera, scene.film, {10 * x + 5, 5 * y + 2.5}).direction.z;
+      const double z =
+          unproject(scene.view.camera, scene.view.film, {10 * x + 5, 5 * y + 2.5}).direction.z;
       sum += z * z / 1600;
     }
   EXPECT_NEAR(sum, 1.0 / 3, 1e-3);
@@ -346,29 +347,31 @@ TEST(SphericalCamera, GoesOnBeyondTheImage) {
 // The host's rays are the device's, and points project back to where their ray came from.
 TEST(Projections, UndoEachOther) {
   std::vector<Scene> scenes(4);
-  scenes[0].camera.projection = PerspectiveProjection{0.9};
-  scenes[1].camera.projection = OrthographicProjection{};
-  scenes[2].camera.projection = SphericalProjection{SphericalProjection::Mapping::equal_area};
-  scenes[3].camera.projection = SphericalProjection{SphericalProjection::Mapping::equirectangular};
+  scenes[0].view.camera.projection = PerspectiveProjection{0.9};
+  scenes[1].view.camera.projection = OrthographicProjection{};
+  scenes[2].view.camera.projection = SphericalProjection{SphericalProjection::Mapping::equal_area};
+  scenes[3].view.camera.projection =
+      SphericalProjection{SphericalProjection::Mapping::equirectangular};
   std::mt19937 random(5);
   for (Scene& scene : scenes) {
-    scene.film.width = 300;
-    scene.film.height = 200;
+    scene.view.film.width = 300;
+    scene.view.film.height = 200;
     for (int i = 0; i < 50; ++i) {
       const glm::dvec2 raster(std::uniform_real_distribution(0.0, 300.0)(random),
                               std::uniform_real_distribution(0.0, 200.0)(random));
-      const CameraRay ray = unproject(scene.camera, scene.film, raster);
+      const CameraRay ray = unproject(scene.view.camera, scene.view.film, raster);
       EXPECT_NEAR(glm::length(ray.direction), 1, 1e-14);
       const RayRecord there = camera_ray(scene, raster, {0.5f, 0.5f});
       EXPECT_LT(glm::length(direction_of(there) - ray.direction), 2e-6);
       EXPECT_LT(glm::length(glm::dvec3(there.ox, there.oy, there.oz) - ray.origin), 2e-6);
-      const auto back = project(scene.camera, scene.film, ray.origin + 7.0 * ray.direction);
+      const auto back =
+          project(scene.view.camera, scene.view.film, ray.origin + 7.0 * ray.direction);
       ASSERT_TRUE(back);
       EXPECT_LT(glm::length(*back - raster), 1e-6) << i;
     }
   }
-  EXPECT_FALSE(project(scenes[0].camera, scenes[0].film, {0, 0, -1}));
-  EXPECT_FALSE(project(scenes[2].camera, scenes[2].film, {0, 0, 0}));
+  EXPECT_FALSE(project(scenes[0].view.camera, scenes[0].view.film, {0, 0, -1}));
+  EXPECT_FALSE(project(scenes[2].view.camera, scenes[2].view.film, {0, 0, 0}));
 }
 
 // --- Other samplers ---
@@ -583,9 +586,9 @@ TEST(Filter, HistogramFollowsTheFilter) {
 
 TEST(Camera, FieldOfViewIsThatOfTheShorterSide) {
   Scene scene;
-  scene.camera.projection = PerspectiveProjection{std::numbers::pi / 2};
-  scene.film.width = 200;
-  scene.film.height = 100;
+  scene.view.camera.projection = PerspectiveProjection{std::numbers::pi / 2};
+  scene.view.film.width = 200;
+  scene.view.film.height = 100;
   const RayRecord top = camera_ray(scene, {100, 0}, {0.5f, 0.5f});
   EXPECT_NEAR(top.dy, std::sqrt(0.5), 1e-6);
   EXPECT_NEAR(top.dz, std::sqrt(0.5), 1e-6);
@@ -594,7 +597,7 @@ TEST(Camera, FieldOfViewIsThatOfTheShorterSide) {
   EXPECT_NEAR(right.dx / right.dz, 2, 1e-5);
   EXPECT_EQ(right.t_min, 0);
   EXPECT_TRUE(std::isinf(right.t_max));
-  scene.film.width = 50;
+  scene.view.film.width = 50;
   const RayRecord tall = camera_ray(scene, {50, 0}, {0.5f, 0.5f});
   EXPECT_NEAR(tall.dx / tall.dz, 1, 1e-5);
   EXPECT_NEAR(tall.dy / tall.dz, 2, 1e-5);
@@ -605,10 +608,10 @@ TEST(Camera, FieldOfViewIsThatOfTheShorterSide) {
 // gives one.
 TEST(Camera, FrameAspectRatioStretchesTheScreen) {
   Scene scene;
-  scene.camera.projection = PerspectiveProjection{2 * std::atan(0.5)};
-  scene.film.width = scene.film.height = 60;
+  scene.view.camera.projection = PerspectiveProjection{2 * std::atan(0.5)};
+  scene.view.film.width = scene.view.film.height = 60;
   for (const double aspect : {1.0, 2.5, 0.4}) {
-    scene.camera.frame_aspect_ratio = aspect;
+    scene.view.camera.frame_aspect_ratio = aspect;
     const RayRecord corner = camera_ray(scene, {0, 0}, {0.5f, 0.5f});
     EXPECT_NEAR(corner.dx / corner.dz, -0.5 * std::max(aspect, 1.0), 1e-5) << aspect;
     EXPECT_NEAR(corner.dy / corner.dz, 0.5 * std::max(1 / aspect, 1.0), 1e-5) << aspect;
@@ -617,10 +620,10 @@ TEST(Camera, FrameAspectRatioStretchesTheScreen) {
 
 TEST(Camera, ScreenWindowAndCropAreThoseOfTheFile) {
   Scene scene;
-  scene.film.width = 40;
-  scene.film.height = 20;
-  scene.film.crop = std::array<int, 4>{10, 30, 5, 20};
-  scene.camera.screen_window = std::array<double, 4>{-1, 3, -0.5, 1};
+  scene.view.film.width = 40;
+  scene.view.film.height = 20;
+  scene.view.film.crop = std::array<int, 4>{10, 30, 5, 20};
+  scene.view.camera.screen_window = std::array<double, 4>{-1, 3, -0.5, 1};
   FlatView flat;
   lower_camera(scene, flat);
   EXPECT_EQ(flat.view.crop_x, 10u);
@@ -634,9 +637,9 @@ TEST(Camera, ScreenWindowAndCropAreThoseOfTheFile) {
 
 TEST(Camera, RaysOfTheLensMeetInTheFocalPlane) {
   Scene scene;
-  scene.camera.lens_radius = 0.5;
-  scene.camera.focal_distance = 4;
-  scene.camera.world_from_camera[3] = glm::dvec4(1, 2, 3, 1);
+  scene.view.camera.lens_radius = 0.5;
+  scene.view.camera.focal_distance = 4;
+  scene.view.camera.world_from_camera[3] = glm::dvec4(1, 2, 3, 1);
   const auto at_focus = [&](glm::vec2 lens) {
     const RayRecord r = camera_ray(scene, {300, 200}, lens);
     EXPECT_LE(std::hypot(r.ox - 1, r.oy - 2), 0.5 + 1e-6);

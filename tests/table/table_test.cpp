@@ -145,6 +145,19 @@ TEST(RayFile, ReadsWholeNumbersOtherByteOrdersAndFortranOrder) {
   write_bytes(path, npy("{'descr': '<f2', 'fortran_order': False, 'shape': (1, 6)}",
                         std::string("\x00\x3c\x00\xc0\x00\x38\xff\x7b\x01\x00\x00\x00", 12)));
   EXPECT_EQ(read_all(path), (std::vector<RayNumbers>{{1, -2, 0.5F, 65504, 0x1p-24F, 0}}));
+  // A half whose exponent has all bits is infinite, or no number where other bits are set.
+  const auto with_limit = [&](const char* half) {
+    std::string bytes(14, '\0');
+    bytes[11] = '\x3c';  // dz is 1
+    write_bytes(path, npy("{'descr': '<f2', 'fortran_order': False, 'shape': (1, 8)}",
+                          bytes + std::string(half, 2)));
+  };
+  with_limit("\x00\x7c");
+  EXPECT_EQ(RayFile(path).next(1).at(0).t_max, INFINITY);
+  with_limit("\x01\x7c");
+  EXPECT_THAT(refusal(path), testing::HasSubstr("t_max, nan,"));
+  with_limit("\x00\xfc");
+  EXPECT_THAT(refusal(path), testing::HasSubstr("t_max, -inf,"));
 }
 
 TEST(RayFile, ReadsLimits) {

@@ -153,7 +153,7 @@ TEST(Footprints, LeaveTwoOctavesOfNoiseAsLargeAsPixels) {
 TEST(Footprints, DoNotDependOnTheNumberOfSamples) {
   const auto film = [](int asked_for, std::uint32_t first, std::uint32_t count) {
     Scene scene = scene_of_text(noise_as_large_as_pixels);
-    scene.sampler.samples_per_pixel = asked_for;
+    scene.view.sampler.samples_per_pixel = asked_for;
     DeviceScene on_device(test_device(), lower(scene));
     Renderer renderer(on_device, lower_view(scene));
     renderer.pass(renderer.layout().window, first, count);

@@ -75,7 +75,7 @@ TEST(TexturedPictures, OfAnAlphaLetThroughWhatItSays) {
       "reflectance\" [1 1 1]\n"
       "Shape \"bilinearmesh\" \"point3 P\" [-9 -9 0  9 -9 0  -9 9 0  9 9 0]\n";
   Scene bare = scene_of_text(head + floor), walled = scene_of_text(head + floor + wall);
-  bare.integrator.max_depth = walled.integrator.max_depth = 1;
+  bare.view.integrator.max_depth = walled.view.integrator.max_depth = 1;
   const double free = mean_of(render_model(bare, 64).image, "G").value;
   const Mean lit = mean_of(render_model(walled, 512).image, "G");
   EXPECT_NEAR(lit.value / free, 0.75 * 0.75, 4 * lit.error / free + 1e-3);
@@ -167,7 +167,7 @@ TEST(TexturedPictures, OfAFarFloorInABall) {
                            "Material \"conductor\" \"float roughness\" 0\nTranslate 0 6 0.8\nShape "
                            "\"sphere\" \"float radius\" 1\n";
   Scene scene = scene_of_text(text);
-  scene.integrator.max_depth = 2;
+  scene.view.integrator.max_depth = 2;
   const LayeredImage few = render_model(scene, 16).image, many = render_model(scene, 1024).image;
   const double error = block_error(few, many, 64, 20, 24);
   EXPECT_LT(error, ball_error);

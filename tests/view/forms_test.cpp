@@ -90,7 +90,7 @@ std::string text_of(const Scene& scene) {
   return out;
 }
 
-Json field_of(const LiveScene& live, const ViewEdit& view, const FormSubject& part,
+Json field_of(const LiveScene& live, const View& view, const FormSubject& part,
               const std::string& name) {
   const Json form = form_text(live.scene(), view, part);
   for (const Json& field : form["fields"])
@@ -350,7 +350,7 @@ Shape "cylinder" "point3 p0" [ 0 0 1 ] "point3 p1" [ 0 1 1 ] "float radius" [ 0.
 TEST(Forms, KeepTheSettingsOfTheDocumentApartFromWhatIsLookedAt) {
   LiveScene live(scene_with(plain));
   Editor editor(live);
-  ViewEdit looked = view_of(live.scene());
+  View looked = live.scene().view;
   looked.film.width = 100;
   looked.camera.projection = PerspectiveProjection{0.5};
   live.edit(looked);
@@ -363,18 +363,18 @@ TEST(Forms, KeepTheSettingsOfTheDocumentApartFromWhatIsLookedAt) {
   ASSERT_TRUE(editor.undo());
   editor.make(Set{{Kind::integrator}, "maxdepth", 9.0});
   const Scene kept = editor.document();
-  EXPECT_EQ(kept.film.width, 77);
-  EXPECT_EQ(kept.film.height, 24);
-  EXPECT_NEAR(fov_of(kept.camera), 40 * 3.14159265358979 / 180, 1e-12);
-  EXPECT_EQ(kept.film.iso, 200);
-  EXPECT_EQ(kept.filter.kind, PixelFilter::Kind::box);
-  EXPECT_EQ(kept.filter.radius_x, 0.5);
-  EXPECT_EQ(live.scene().film.iso, 200);
-  EXPECT_EQ(live.scene().integrator.max_depth, 9);
+  EXPECT_EQ(kept.view.film.width, 77);
+  EXPECT_EQ(kept.view.film.height, 24);
+  EXPECT_NEAR(fov_of(kept.view.camera), 40 * 3.14159265358979 / 180, 1e-12);
+  EXPECT_EQ(kept.view.film.iso, 200);
+  EXPECT_EQ(kept.view.filter.kind, PixelFilter::Kind::box);
+  EXPECT_EQ(kept.view.filter.radius_x, 0.5);
+  EXPECT_EQ(live.scene().view.film.iso, 200);
+  EXPECT_EQ(live.scene().view.integrator.max_depth, 9);
   while (editor.undo()) {
   }
-  EXPECT_EQ(editor.document().film.width, 32);
-  EXPECT_EQ(live.scene().integrator.max_depth, 3);
+  EXPECT_EQ(editor.document().view.film.width, 32);
+  EXPECT_EQ(live.scene().view.integrator.max_depth, 3);
 }
 
 TEST(Forms, SetTheCameraOfTheDocument) {
@@ -385,7 +385,7 @@ TEST(Forms, SetTheCameraOfTheDocument) {
   EXPECT_EQ(field_of(live, editor.view(), camera, "kind")["value"], "perspective");
   EXPECT_NEAR(field_of(live, editor.view(), camera, "fov")["value"].get<double>(), 40, 1e-9);
   editor.make(Set{camera, "fov", 60.0});
-  EXPECT_NEAR(fov_of(editor.document().camera), 3.14159265358979 / 3, 1e-12);
+  EXPECT_NEAR(fov_of(editor.document().view.camera), 3.14159265358979 / 3, 1e-12);
   editor.make(Set{{Kind::film}, "iso", 200.0});
   for (const char* kind : {"orthographic", "spherical"}) {
     editor.make(Set{camera, "kind", std::string(kind)});
@@ -397,12 +397,12 @@ TEST(Forms, SetTheCameraOfTheDocument) {
   EXPECT_EQ(editor.camera_changes(), 3u);
   EXPECT_THROW(editor.make(Set{camera, "kind", std::string("realistic")}), InputError);
   // A camera that is saved stays when other settings are undone.
-  Camera saved = editor.document().camera;
+  Camera saved = editor.document().view.camera;
   saved.world_from_camera[3].x += 2;
   editor.adopt_camera(saved);
   editor.make(Set{{Kind::film}, "iso", 300.0});
   EXPECT_TRUE(editor.undo());
-  EXPECT_EQ(editor.document().camera.world_from_camera, saved.world_from_camera);
+  EXPECT_EQ(editor.document().view.camera.world_from_camera, saved.world_from_camera);
   while (editor.undo()) {
   }
   EXPECT_EQ(text_of(editor.document()), before);

@@ -51,16 +51,16 @@ class Guest {
   void say(const nlohmann::json& message) { stream_.write(boost::asio::buffer(message.dump())); }
   void look(const Scene& scene, double by = 0, double separation = 0) {
     nlohmann::json rows = nlohmann::json::array();
-    glm::dmat4 at = scene.camera.world_from_camera;
+    glm::dmat4 at = scene.view.camera.world_from_camera;
     at[3].x += by;
     for (int i = 0; i < 16; ++i) rows.push_back(at[i % 4][i / 4]);
     say({{"type", "look"},
          {"width", width},
          {"height", height},
          {"world_from_camera", rows},
-         {"fov", fov_of(scene.camera)},
-         {"lens_radius", scene.camera.lens_radius},
-         {"focal_distance", scene.camera.focal_distance},
+         {"fov", fov_of(scene.view.camera)},
+         {"lens_radius", scene.view.camera.lens_radius},
+         {"focal_distance", scene.view.camera.focal_distance},
          {"separation", separation}});
   }
   /// The next message that is text of that type; or, for "", bytes that are no picture.

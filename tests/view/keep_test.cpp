@@ -560,25 +560,25 @@ TEST(Keeping, SavesTheViewWhereItIsAskedTo) {
     look.fov = 0.5;
     look.world_from_camera[3].x += 1;
     // The page's size and camera are not the scene's.
-    ViewEdit page = view_of(run.live.scene());
+    View page = run.live.scene().view;
     page.film.width = 123;
     page.camera.projection = PerspectiveProjection{1};
     run.live.edit(page);
     run.save();
     Scene saved = import_scene(file, FileImageReader());
-    EXPECT_EQ(saved.film.width, 40);
-    EXPECT_EQ(fov_of(saved.camera), fov_of(before.camera));
-    EXPECT_EQ(saved.camera.world_from_camera, before.camera.world_from_camera);
+    EXPECT_EQ(saved.view.film.width, 40);
+    EXPECT_EQ(fov_of(saved.view.camera), fov_of(before.view.camera));
+    EXPECT_EQ(saved.view.camera.world_from_camera, before.view.camera.world_from_camera);
     run.keeping->save({{}, true, true}, look, {});
     saved = import_scene(file, FileImageReader());
-    EXPECT_EQ(saved.film.width, 40);
-    EXPECT_EQ(fov_of(saved.camera), 0.5);
-    EXPECT_EQ(saved.camera.world_from_camera, look.world_from_camera);
+    EXPECT_EQ(saved.view.film.width, 40);
+    EXPECT_EQ(fov_of(saved.view.camera), 0.5);
+    EXPECT_EQ(saved.view.camera.world_from_camera, look.world_from_camera);
     run.say(move_line(1, 0.5));
   }
   Sitting run(file);
   run.save();
-  EXPECT_EQ(fov_of(import_scene(file, FileImageReader()).camera), 0.5);
+  EXPECT_EQ(fov_of(import_scene(file, FileImageReader()).view.camera), 0.5);
 }
 
 TEST(KeptToken, StaysForOneAddressAndScene) {

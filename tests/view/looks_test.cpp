@@ -52,9 +52,9 @@ std::vector<std::uint64_t> words_of(const Scene& scene) {
 
 Scene looked_at(const ShowView& look, int scale, int eye) {
   Scene scene = test::scene_of_text(text);
-  const ViewEdit view = shown_view(view_of(scene), look, scale, eye);
-  scene.camera = view.camera;
-  scene.film = view.film;
+  const View view = shown_view(scene.view, look, scale, eye);
+  scene.view.camera = view.camera;
+  scene.view.film = view.film;
   return scene;
 }
 
@@ -125,7 +125,7 @@ TEST(Orthographic, IsKeptInFiles) {
              [&](std::string_view piece) { written += piece; });
   EXPECT_NE(written.find("Camera \"orthographic\""), std::string::npos);
   const Scene again = test::scene_of_text(written);
-  EXPECT_EQ(fov_of(again.camera), 0);
+  EXPECT_EQ(fov_of(again.view.camera), 0);
   EXPECT_EQ(words_of(again), words_of(scene));
   const ShowView looked = look_of_scene(again);
   EXPECT_EQ(looked.orthographic, 1.5);
@@ -155,9 +155,10 @@ TEST(Pairs, AreCamerasMovedByHand) {
     // With a window that is moved so that what is 6 away stays: 0.25 / (6 tan 20 degrees).
     look.convergence = 6;
     Scene by_hand = looked_at(moved, 1, 0);
-    const double shift = (eye == 0 ? -0.25 : 0.25) / (6 * std::tan(fov_of(by_hand.camera) / 2)),
+    const double shift =
+                     (eye == 0 ? -0.25 : 0.25) / (6 * std::tan(fov_of(by_hand.view.camera) / 2)),
                  x = 64.0 / 48;
-    by_hand.camera.screen_window = {-x - shift, x - shift, -1, 1};
+    by_hand.view.camera.screen_window = {-x - shift, x - shift, -1, 1};
     const RayRecord hand = ray_of_pixel(by_hand, 3, 7),
                     ours = ray_of_pixel(looked_at(look, 1, eye), 3, 7);
     EXPECT_NEAR(hand.dx, ours.dx, 1e-6);

@@ -231,9 +231,17 @@ def cameras(program, scenes, out):
             assert asked["eye"] == eye and abs(asked["x"] - (x - eye * half)) <= 1, (asked, x, half)
         # The same by a camera that is moved by hand: parallel axes, so that its window stays.
         at.pick("convergence", "0")
-        shown.until("parallel axes", lambda: int(shown.find("stage").get_attribute("data-right") or 0) >= 2 and shown.pixels()[2] != both)
+        before = both
+
+        def eyes_are_done():
+            """Whether both eyes' pictures are new, and stay as they are."""
+            now = shown.pixels()[2]
+            rows = range(0, 4 * width * height, 4 * width)
+            changed = [any(now[r + o:r + o + 4 * half] != before[r + o:r + o + 4 * half] for r in rows) for o in (0, 4 * half)]
+            time.sleep(0.5)
+            return all(changed) and int(shown.find("stage").get_attribute("data-right") or 0) >= 2 and shown.pixels()[2] == now
+        shown.until("parallel axes", eyes_are_done)
         separation = float(shown.find("separation").get_attribute("value"))
-        time.sleep(0.2)
         width, height, both = shown.pixels()
         rows = [both[4 * width * y:4 * width * (y + 1)] for y in range(height)]
         shown.script("""const s = new WebSocket(location.href.replace(/^http/, 'ws').replace(/[^/]*$/, '') + 'socket'); window.camera = null;

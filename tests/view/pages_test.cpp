@@ -180,7 +180,7 @@ TEST(Pages, NeverSeeALookThatWasRefused) {
   // The first that the other page hears of again is a look that was taken.
   guest.look(scene, 0.5);
   EXPECT_EQ(json::parse(other.until("looked")).at("world_from_camera")[3],
-            scene.camera.world_from_camera[3].x + 0.5);
+            scene.view.camera.world_from_camera[3].x + 0.5);
   EXPECT_GT(guest.until_samples(1, view).view, view);
 }
 
@@ -191,7 +191,7 @@ TEST(Pages, PickWithTheEyeThatTheyAskFor) {
   constexpr double separation = 0.8;
   guest.look(scene, 0, separation);
   guest.until_samples(1);
-  const glm::dmat4& at = scene.camera.world_from_camera;
+  const glm::dmat4& at = scene.view.camera.world_from_camera;
   const glm::dvec3 right = glm::normalize(glm::dvec3(at[0]));
   for (const int eye : {0, 1, -1}) {  // the last says nothing of it
     json ask{{"type", "ask"}, {"number", eye + 2}, {"x", 40},

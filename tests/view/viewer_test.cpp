@@ -58,8 +58,8 @@ TEST(Viewer, ItsSnapshotIsTheRenderedPicture) {
   std::ofstream(file, std::ios::binary) << guest.until("");
   const LayeredImage shown = read_exr(file);
   Scene same = scene;
-  same.film.width = width;
-  same.film.height = height;
+  same.view.film.width = width;
+  same.view.film.height = height;
   const LayeredImage rendered = test::render_model(same, 4).image;
   EXPECT_EQ(shown.width, width);
   EXPECT_EQ(shown.height, height);

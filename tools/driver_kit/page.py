@@ -6,7 +6,7 @@ import re
 from driver_kit import exr
 
 BEGIN, END = "<!-- tables of ./run drivers: begin -->", "<!-- tables of ./run drivers: end -->"
-COLUMNS = ("driver", "encoding", "self-test", "`verify`", "nearest crossings", "`render_tests`", "`trace_tests`", "pictures")
+COLUMNS = ("driver", "encoding", "self-test", "wrong in `verify`", "crossings equal", "`render_tests`", "`trace_tests`", "pictures")
 
 
 def count(number):
@@ -40,7 +40,7 @@ def self_test_cell(facts):
 def verify_cell(facts):
     if "fails" in facts:
         return f"fails: {facts['fails'][:60]}"
-    return f"{'none' if facts['wrong'] == 0 else count(facts['wrong'])} of {count(facts['rays'])} wrong"
+    return f"{count(facts['wrong'])} of {count(facts['rays'])}"
 
 
 def hits_cell(facts):
@@ -48,9 +48,9 @@ def hits_cell(facts):
         return f"fails: {bad[0][:60]}"
     rays, same, other = (sum(each[key] for each in facts.values()) for key in ("rays", "t", "other"))
     if same == rays:
-        return f"all {count(rays)} equal"
+        return "all"
     worst = max(each["worst"] for each in facts.values())
-    parts = [f"{count(same)} of {count(rays)} equal", f"t by at most {worst:.0e} of it"]
+    parts = [f"{count(same)} of {count(rays)}", f"t by at most {worst:.0e} of it"]
     return ", ".join(parts + ([f"{other} of another primitive"] if other else []))
 
 
@@ -75,9 +75,8 @@ def pictures_cell(facts):
     if equal := sum(each is None for each in pictures):
         parts.append(f"{equal} equal" if equal < len(pictures) else f"all {equal} equal")
     if other:
-        noise = max(each["noise"] for each in other)
         within = sum(exr.within_noise(each) for each in other)
-        parts.append(f"{within} within noise (at most {noise:.0e} of it)")
+        parts.append(f"{within} within noise")
         if within < len(other):
             parts.append(f"{len(other) - within} beyond it")
     if bad:

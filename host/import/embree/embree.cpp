@@ -83,11 +83,11 @@ class EmbreeReader {
     const bool is_lit = !scene_.lights.empty() || scene_.shapes.size() > before;
     notes_.tell();
     if (viewer.size) {
-      scene_.film.width = viewer.size->x;
-      scene_.film.height = viewer.size->y;
+      scene_.view.film.width = viewer.size->x;
+      scene_.view.film.height = viewer.size->y;
     }
     if (viewer.view) see(*viewer.view, world, {scene_.source, 0, 0});
-    if (view_) scene_.camera = camera_of(*view_, scene_.film, view_at_);
+    if (view_) scene_.view.camera = camera_of(*view_, scene_.view.film, view_at_);
     Imported out(std::move(scene_));
     out.has_camera = view_.has_value();
     out.is_lit = is_lit;

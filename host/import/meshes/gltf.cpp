@@ -58,7 +58,7 @@ class GltfReader {
     place_meshes();
     if (scene_.shapes.empty() && scene_.instances.empty()) file_.fail("holds no triangles");
     const bool is_lit = !scene_.lights.empty() || (emits_ && camera_);
-    if (camera_) scene_.camera = *camera_;
+    if (camera_) scene_.view.camera = *camera_;
     Imported out(std::move(scene_));
     out.has_camera = camera_.has_value();
     out.is_lit = is_lit;
@@ -86,17 +86,17 @@ class GltfReader {
   }
 
   void add_camera(const Json& camera, const glm::dmat4& world) {
-    Camera out = scene_.camera;
+    Camera out = scene_.view.camera;
     if (file_.text(camera, "type", "") == "orthographic") {
       const Json& window = file_.object(camera, "orthographic");
       const double x = std::abs(file_.number(window, "xmag", 1)),
                    y = std::abs(file_.number(window, "ymag", 1));
-      const double height = std::round(scene_.film.width * y / x);
+      const double height = std::round(scene_.view.film.width * y / x);
       if (!(height >= 1 && height <= kHighestPicture))
         file_.fail("a camera's xmag and ymag are no window");
       out.projection = OrthographicProjection{};
       out.screen_window = {-x, x, -y, y};
-      scene_.film.height = static_cast<int>(height);
+      scene_.view.film.height = static_cast<int>(height);
     } else {
       const double fov = file_.number(file_.object(camera, "perspective"), "yfov", 0.8);
       if (!(fov > 0 && fov < 3.1)) file_.fail("a camera's yfov is not within 0 and pi");

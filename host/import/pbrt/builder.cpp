@@ -98,7 +98,8 @@ Imported Builder::finish() {
   resolve(draft);
   draft.warnings.log(draft.diagnostics);
   draft.diagnostics.finish();
-  draft.scene.sampler.seed = building_.sampler_seed.value_or(building_.option_seed.value_or(0));
+  draft.scene.view.sampler.seed =
+      building_.sampler_seed.value_or(building_.option_seed.value_or(0));
   const bool lit = is_lit(draft.scene);
   if (building_.has_camera && !lit)
     draft.diagnostics.warning({draft.main_file}, "the scene has no light: its picture is black");

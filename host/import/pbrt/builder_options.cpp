@@ -20,7 +20,7 @@ void OptionBuilder::camera(const Statement& at, const std::string& type, Paramet
   const glm::dmat4 world_from_camera = to_.state.transform.inverse();
   to_.coordinate_systems["camera"] = world_from_camera;
   if (to_.check_type(at, type)) set_camera(type, given, world_from_camera, to_.draft.scene);
-  to_.draft.scene.camera.medium = to_.state.media.outside;
+  to_.draft.scene.view.camera.medium = to_.state.media.outside;
 }
 
 void OptionBuilder::film(const Statement& at, const std::string& type, ParameterList own) {

@@ -164,7 +164,7 @@ void set_camera(const std::string& type, Parameters& parameters,
   const double open = parameters.number("shutteropen", 0),
                close = parameters.number("shutterclose", 1);
   if (close > open)
-    scene.film.exposure_time = close - open;
+    scene.view.film.exposure_time = close - open;
   else
     parameters.error("shutterclose", "must be after shutteropen");
   scene.automatic_camera = parameters.boolean("automatic", false);
@@ -172,13 +172,13 @@ void set_camera(const std::string& type, Parameters& parameters,
   scene.framing = framing_of(parameters, is_orthographic(camera) && scene.automatic_camera);
   scene.unit = parameters.text("unit", "");
   parameters.finish();
-  scene.camera = camera;
+  scene.view.camera = camera;
 }
 
 void set_film(const std::string& type, Parameters& parameters, ColorSpace space, Scene& scene,
               const ImageReader* images) {
   FilmSettings film;
-  film.exposure_time = scene.film.exposure_time;
+  film.exposure_time = scene.view.film.exposure_time;
   film.space = space;
   FilmSettings::fields(film, FieldReader{parameters});
   film.filename = parameters.text("filename", "pbrt.exr");
@@ -226,7 +226,7 @@ void set_film(const std::string& type, Parameters& parameters, ColorSpace space,
   }
   film.backdrop = backdrop_of(parameters, images);
   parameters.finish();
-  scene.film = film;
+  scene.view.film = film;
 }
 
 void set_filter(const std::string& type, Parameters& parameters, Scene& scene) {
@@ -235,7 +235,7 @@ void set_filter(const std::string& type, Parameters& parameters, Scene& scene) {
       schema::kind_of<PixelFilter::Kind>(type, filter_names).value_or(PixelFilter::Kind::gaussian));
   PixelFilter::fields(filter, FieldReader{parameters});
   parameters.finish();
-  scene.filter = filter;
+  scene.view.filter = filter;
 }
 
 std::optional<std::uint32_t> set_sampler(const std::string& type, Parameters& parameters,
@@ -256,8 +256,8 @@ std::optional<std::uint32_t> set_sampler(const std::string& type, Parameters& pa
   if (type == "halton" || type == "paddedsobol" || type == "sobol" || type == "zsobol")
     parameters.text("randomization", "");
   parameters.finish();
-  const std::uint32_t seed = std::exchange(sampler.seed, scene.sampler.seed);
-  scene.sampler = sampler;
+  const std::uint32_t seed = std::exchange(sampler.seed, scene.view.sampler.seed);
+  scene.view.sampler = sampler;
   return has_seed ? std::optional(seed) : std::nullopt;
 }
 
@@ -285,7 +285,7 @@ void set_integrator(const std::string& type, Parameters& parameters, Scene& scen
   if (type == "sppm")
     for (const char* name : {"photonsperiteration", "radius", "seed"}) parameters.ignore(name);
   parameters.finish();
-  scene.integrator = integrator;
+  scene.view.integrator = integrator;
 }
 
 void check_accelerator(const std::string& type, Parameters& parameters) {

@@ -369,7 +369,7 @@ void light_by_robot(const Robot& robot, const glm::dmat4& world, Scene& scene) {
   }
   if (robot.headlight_diffuse && *robot.headlight_diffuse != glm::dvec3(0))
     add(DistantLight{RgbSpectrum{std::numbers::pi * *robot.headlight_diffuse},
-                     glm::normalize(glm::dvec3(scene.camera.world_from_camera[2]))},
+                     glm::normalize(glm::dvec3(scene.view.camera.world_from_camera[2]))},
         whole);
   InfiniteLight sky;
   sky.radiance = RgbSpectrum{ambient + 1e-6};
@@ -401,14 +401,14 @@ void present(const Robot& robot, const glm::dmat4& world, const ImportOptions& o
     out.has_camera = true;
     scene.automatic_camera = false;
     const glm::dmat4 at = world * camera->world;
-    scene.camera = Camera{};
-    scene.camera.world_from_camera = glm::dmat4(at[0], at[1], -at[2], at[3]);
-    scene.camera.projection = PerspectiveProjection{glm::radians(camera->fovy)};
+    scene.view.camera = Camera{};
+    scene.view.camera.world_from_camera = glm::dmat4(at[0], at[1], -at[2], at[3]);
+    scene.view.camera.projection = PerspectiveProjection{glm::radians(camera->fovy)};
     if (camera->orthographic) {
-      const double aspect = static_cast<double>(scene.film.width) / scene.film.height,
+      const double aspect = static_cast<double>(scene.view.film.width) / scene.view.film.height,
                    half = camera->fovy / 2;
-      scene.camera.projection = OrthographicProjection{};
-      scene.camera.screen_window = {-half * aspect, half * aspect, -half, half};
+      scene.view.camera.projection = OrthographicProjection{};
+      scene.view.camera.screen_window = {-half * aspect, half * aspect, -half, half};
     }
   }
   if (out.is_lit) light_by_robot(robot, world, scene);

@@ -44,8 +44,8 @@ class Mask {
 /// Paints the mask in a colour, sRGB from 0 to 1, blended in sRGB.
 void paint(Shown& picture, const Mask& mask, const std::array<float, 3>& srgb);
 
-/// Letters are strokes. `size`: the height of capitals; `at` is the start of the baseline. Unknown
-/// characters become boxes.
+/// Text is in DejaVu Sans. `size`: the height of capitals; `at` is the start of the baseline.
+/// Characters that the font lacks become boxes.
 double text_width(std::string_view utf8, double size);
 void text(Mask& mask, const glm::dvec2& at, std::string_view utf8, double size);
 

@@ -57,7 +57,7 @@ void visit_form(FormFields& fields, Light& light);
 void visit_form(FormFields& fields, std::optional<AreaEmission>& emission);
 void visit_form(FormFields& fields, Shape& shape);
 /// Visits the camera (but for its place), the film, the filter, the sampler or the integrator.
-void visit_form(FormFields& fields, ViewEdit& view, FormSubject::Kind kind);
+void visit_form(FormFields& fields, View& view, FormSubject::Kind kind);
 
 /// Lists the kinds that can be made without an existing part.
 std::vector<std::string> new_kinds(FormSubject::Kind what);

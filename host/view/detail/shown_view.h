@@ -10,12 +10,12 @@
 namespace caplet::view {
 
 /// Returns the look that shows what these settings say.
-ShowView look_of(const ViewEdit& own);
+ShowView look_of(const View& own);
 /// Returns the scene's own view.
-inline ShowView look_of_scene(const Scene& scene) { return look_of(view_of(scene)); }
+inline ShowView look_of_scene(const Scene& scene) { return look_of(scene.view); }
 
 /// Returns `own` as seen by `look`, with a pixel for each square of `scale` pixels. `eye`: 0 is the
 /// left of a stereo pair.
-ViewEdit shown_view(const ViewEdit& own, const ShowView& look, int scale, int eye);
+View shown_view(const View& own, const ShowView& look, int scale, int eye);
 
 }  // namespace caplet::view

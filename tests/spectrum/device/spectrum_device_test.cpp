@@ -246,7 +246,7 @@ TEST_F(SpectrumOnDevice, MatrixIsThatOfTheFilmsSpace) {
   };
   for (const auto& [space, m] : spaces) {
     Scene scene;
-    scene.film.space = space;
+    scene.view.film.space = space;
     const FlatView flat = lower_view(scene);
     const Buffer<ViewRecord> view(*device_, std::span<const ViewRecord>(&flat.view, 1));
     const Buffer<float> out(*device_, 9);

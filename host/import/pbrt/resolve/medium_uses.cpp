@@ -93,7 +93,7 @@ class MediumUses {
 
 void resolve_media(Draft& draft) {
   MediumUses uses(draft);
-  uses.resolve(draft.scene.camera.medium);
+  uses.resolve(draft.scene.view.camera.medium);
   draft.each_shape([&](Shape& shape) { uses.resolve(shape); });
   uses.check_unused();
 }

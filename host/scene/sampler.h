@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "scene/field.h"
+
+namespace caplet {
+
+struct SamplerSettings {
+  enum class Kind {
+#define SAMPLER(name) name,
+#include "shared/samplers.def"
+#undef SAMPLER
+  } kind = Kind::sobol;
+  int samples_per_pixel = 16;
+  std::uint32_t seed = 0;
+  int x_strata = 4,
+      y_strata =
+          4;  // stratified, where their product is samples_per_pixel; else strata_of divides it
+  bool jitter = true;  // stratified
+
+  template <class Self, class Visit>
+  static void fields(Self& self, Visit&& visit) {
+    if (self.kind == Kind::stratified) {
+      visit.integer({"xsamples", "strata along x", 1, 1 << 24}, self.x_strata);
+      visit.integer({"ysamples", "strata along y", 1, 1 << 24}, self.y_strata);
+      visit.flag({"jitter", "samples lie at random in their strata, else in the middle"},
+                 self.jitter);
+    } else {
+      visit.integer({"pixelsamples", "samples of each pixel", 1, most_integer},
+                    self.samples_per_pixel);
+    }
+    visit.seed({"seed", "another one gives other noise"}, self.seed);
+  }
+};
+
+/// Lists the names in scene files, in the order of SamplerSettings::Kind.
+inline constexpr std::array sampler_names = {
+#define SAMPLER(name) #name,
+#include "shared/samplers.def"
+#undef SAMPLER
+};
+
+/// Returns strata along x and y whose product is samples_per_pixel: the sampler's own, or else
+/// those nearest to a square.
+std::array<int, 2> strata_of(const SamplerSettings& sampler);
+
+}  // namespace caplet
