@@ -70,18 +70,24 @@ static inline int csg_value(const CsgLine* line) {
 }
 
 #if CAPLET_REAL_WIDTH == 8
-// Adds the crossings of operand i: itself from `enter` to `exit`, grown from `grown_enter` to
-// `grown_exit`; `shift` is added to all t.
-static inline void csg_add(CsgLine* line, uint i, float enter, float exit, float grown_enter,
-                           float grown_exit, float shift, int surface_enter, int surface_exit) {
-  exit = fmax(exit, enter);
+// CsgSpans holds the spans of a group's lanes: operands, and from lane 4 on the same ones grown.
+typedef struct {
+  float enter[8], exit[8];
+  int surface_enter[8], surface_exit[8];
+} CsgSpans;
+
+// Adds the crossings of operand i, which is in lane `lane` and grown in lane `grown`; `shift` is
+// added to all t.
+static inline void csg_add(CsgLine* line, uint i, const CsgSpans* spans, uint lane, uint grown,
+                           float shift) {
+  const float enter = spans->enter[lane], exit = fmax(spans->exit[lane], enter);
   if (!(fabs(enter) < MAXFLOAT && fabs(exit) < MAXFLOAT)) return;
   line->t[2 * i] = shift + enter;
   line->t[2 * i + 1] = shift + exit;
-  line->slack[2 * i] = fmax(enter - grown_enter, 0.0f);
-  line->slack[2 * i + 1] = fmax(grown_exit - exit, 0.0f);
-  line->surface[2 * i] = (ushort)surface_enter;
-  line->surface[2 * i + 1] = (ushort)surface_exit;
+  line->slack[2 * i] = fmax(enter - spans->enter[grown], 0.0f);
+  line->slack[2 * i + 1] = fmax(spans->exit[grown] - exit, 0.0f);
+  line->surface[2 * i] = (ushort)spans->surface_enter[lane];
+  line->surface[2 * i + 1] = (ushort)spans->surface_exit[lane];
   line->pending |= 3ul << (2 * i);
 }
 #endif
@@ -95,17 +101,14 @@ static inline void csg_add_group(CsgLine* line, const ShapeRay* own, __global co
   const Span span = solid_span(kind, own, block, 0);
   const uint bits = mask_bits(span.enter & span.exit);
   if ((bits & 15u) == 0) return;
-  float enter[8], exit[8];
-  int surface_enter[8], surface_exit[8];
-  real_store(span.t_enter, enter);
-  real_store(span.t_exit, exit);
-  mask_store(span.surface_enter, surface_enter);
-  mask_store(span.surface_exit, surface_exit);
+  CsgSpans spans;
+  real_store(span.t_enter, spans.enter);
+  real_store(span.t_exit, spans.exit);
+  mask_store(span.surface_enter, spans.surface_enter);
+  mask_store(span.surface_exit, spans.surface_exit);
   for (uint i = 0; i < count; i++) {
     if ((bits >> i & 1u) == 0) continue;
-    const uint grown = (bits >> (i + 4) & 1u) != 0 ? i + 4 : i;
-    csg_add(line, first + i, enter[i], exit[i], enter[grown], exit[grown], shift, surface_enter[i],
-            surface_exit[i]);
+    csg_add(line, first + i, &spans, i, (bits >> (i + 4) & 1u) != 0 ? i + 4 : i, shift);
   }
 #else
   // The group is read again for each operand.

@@ -4,6 +4,9 @@
 // This is part of stream.cl, which includes it twice: it traces rays of a stream in one space
 // through one tree, without instances (WALK_MEETS_INSTANCES 0) or with them (1).
 //
+// Its parameters say where in the arrays of one work-item its rays are; a struct of them would be
+// filled for each instance.
+//
 // It begins at node `root`, with the `begun` rays whose numbers begin at `l->ids[begin]`; their
 // directions fall in the octant `flip`. Entries from `base` on are free. `instance`: that the rays
 // are in.

@@ -437,10 +437,13 @@ TEST(Letters, AreOfAnyScript) {
        {"\u03b1", "\u0416", "\u00e9", "\u20ac", "\u2192", "\u00c5", "\u00b2", "\u2206", "\u05d0"})
     EXPECT_TRUE(seen.insert(drawn(letter)).second) << letter;
   EXPECT_EQ(drawn("\uE000"), drawn("\U00020000"));
-  // At the picture's edges letters are cut, and nothing is drawn elsewhere.
-  Mask mask(20, 20);
+  // At a picture's edges letters are cut: it has what a wider one has there.
+  Mask mask(20, 20), wide(60, 60);
   text(mask, {-8, 4}, "MMMM", 24);
   text(mask, {1e6, -1e6}, "M", 24);
+  text(wide, {12, 24}, "MMMM", 24);
+  for (int y = 0; y < 20; ++y)
+    for (int x = 0; x < 20; ++x) ASSERT_EQ(mask.at(x, y), wide.at(x + 20, y + 20)) << x << ' ' << y;
   EXPECT_GT(ink_of(mask), 10);
 }
 
