@@ -43,9 +43,10 @@ const Font& font() {
 /// Calls draw(glyph, x) for each letter, x in units of the font from the first one's start. Returns
 /// where the last one ends.
 template <class Draw>
-int for_each_glyph(std::string_view utf8, const Draw& draw) {
+double for_each_glyph(std::string_view utf8, const Draw& draw) {
   const stbtt_fontinfo* info = &font().info;
-  int x = 0, last = 0;
+  double x = 0;
+  int last = 0;
   for (bool is_first = true; !utf8.empty(); is_first = false) {
     const int glyph = stbtt_FindGlyphIndex(info, static_cast<int>(take_character(utf8)));
     if (!is_first) x += stbtt_GetGlyphKernAdvance(info, last, glyph);
@@ -61,14 +62,14 @@ int for_each_glyph(std::string_view utf8, const Draw& draw) {
 }  // namespace
 
 double text_width(std::string_view utf8, double size) {
-  return for_each_glyph(utf8, [](int, int) {}) * size / font().capital;
+  return for_each_glyph(utf8, [](int, double) {}) * size / font().capital;
 }
 
 void text(Mask& mask, const glm::dvec2& at, std::string_view utf8, double size) {
   const double scale = size / font().capital, whole_y = std::floor(at.y);
   const auto scale_of_font = static_cast<float>(scale);
   std::vector<unsigned char> shares;
-  for_each_glyph(utf8, [&](int glyph, int x_in_font) {
+  for_each_glyph(utf8, [&](int glyph, double x_in_font) {
     const double x = at.x + scale * x_in_font, whole_x = std::floor(x);
     const auto shift_x = static_cast<float>(x - whole_x),
                shift_y = static_cast<float>(at.y - whole_y);
