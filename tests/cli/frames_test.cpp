@@ -56,6 +56,31 @@ bool differ(const fs::path& a, const fs::path& b) {
   return read_exr(a).find("R")->floats != read_exr(b).find("R")->floats;
 }
 
+// What one file says of the picture is said of all, whichever comes first.
+TEST(SeveralScenes, AreSeenAsTheOneWithACameraSays) {
+  const fs::path folder = folder_of(
+      {{"seen.pbrt",
+        "LookAt 0 0 -9 0 0 0 0 1 0\nCamera \"perspective\" \"float fov\" 31\n"
+        "Film \"rgb\" \"integer xresolution\" 40 \"integer yresolution\" 30\n"
+        "PixelFilter \"triangle\"\nSampler \"independent\" \"integer pixelsamples\" 7\n"
+        "Integrator \"path\" \"integer maxdepth\" 3\nWorldBegin\nLightSource \"infinite\"\n"
+        "Shape \"sphere\"\n"},
+       {"other.pbrt", "WorldBegin\nShape \"disk\"\n"}});
+  const auto head = [&](std::vector<std::string> files) {
+    files.insert(files.begin(), "convert");
+    files.emplace_back("-");
+    const Result result = run_program(files, folder);
+    EXPECT_EQ(result.code, 0) << result.err;
+    return result.out.substr(0, result.out.find("WorldBegin"));
+  };
+  const std::string alone = head({"seen.pbrt"});
+  for (const char* said :
+       {"\"float fov\"", "\"triangle\"", "\"independent\"", "\"integer maxdepth\" 3"})
+    EXPECT_THAT(alone, HasSubstr(said));
+  EXPECT_EQ(head({"seen.pbrt", "other.pbrt"}), alone);
+  EXPECT_EQ(head({"other.pbrt", "seen.pbrt"}), alone);
+}
+
 TEST(SeveralScenes, AreInOnePicture) {
   const fs::path folder =
       folder_of({{"a.swc", neuron}, {"b.swc", "1 2 0 9 0 1 -1\n2 2 4 9 0 1 1\n"}});
