@@ -211,6 +211,8 @@ class Program {
   double build_seconds() const { return build_seconds_; }
   /// Returns whether it came from Caplet's own cache.
   bool from_cache() const { return from_cache_; }
+  /// Returns whether it was built for PoCL with kernels/math/builtins.cl in place of PoCL's header.
+  bool own_declarations() const { return own_declarations_; }
 
  private:
   Program() = default;
@@ -219,6 +221,7 @@ class Program {
   cl::Program program_;
   double build_seconds_ = 0;
   bool from_cache_ = false;
+  bool own_declarations_ = false;
 };
 
 namespace detail {

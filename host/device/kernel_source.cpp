@@ -44,6 +44,12 @@ std::string flatten_kernels(const std::string& text, const RowMasks& rows) {
   return flatten(text, "text", kernel_reader(), rows);
 }
 
+std::string builtin_declarations() {
+  constexpr const char* path = "math/builtins.cl";
+  const std::optional<std::string> text = kernel_reader()(path);
+  return text ? *text : read_embedded(path).value();
+}
+
 std::string kernel_source(std::string_view name) {
   const std::string path = name.find('/') == std::string_view::npos
                                ? fmt::format("stages/{}.cl", name)

@@ -11,6 +11,7 @@
 #include "base/log.h"
 #include "device/cache.h"
 #include "device/cl_error.h"
+#include "device/detail/embedded.h"
 #include "device/detail/programs.h"
 #include "device/device.h"
 
@@ -45,23 +46,34 @@ std::optional<cl::Program> from_binary(const Device& device, const Binary& binar
   }
 }
 
-cl::Program from_text(const Device& device, const std::string& name, const std::string& source,
-                      const std::string& options) {
+/// Builds `source`, which `out` becomes. Returns the driver's log where it is an error, else
+/// nothing.
+std::optional<std::string> build(const Device& device, const std::string& name,
+                                 const std::string& source, const std::string& options,
+                                 cl::Program& out) {
   const std::string& device_name = device.info().name;
-  cl::Program program = cl_call(fmt::format("program '{}'", name), device_name,
-                                [&] { return cl::Program(device.context(), source); });
+  out = cl_call(fmt::format("program '{}'", name), device_name,
+                [&] { return cl::Program(device.context(), source); });
   try {
-    program.build({device.handle()}, options.c_str());
+    out.build({device.handle()}, options.c_str());
   } catch (const cl::BuildError& error) {
     std::string log;
     for (const auto& [of, text] : error.getBuildLog()) log += text;
-    throw RunError(
-        fmt::format("program '{}': {}: {} (device '{}', options '{}'); the build log says:\n{}",
-                    name, error.what(), cl_error_name(error.err()), device_name, options, log));
+    return fmt::format("program '{}': {}: {} (device '{}', options '{}'); the build log says:\n{}",
+                       name, error.what(), cl_error_name(error.err()), device_name, options, log);
   } catch (const cl::Error& error) {
     throw_cl_error(error, fmt::format("program '{}'", name), device_name);
   }
-  return program;
+  return std::nullopt;
+}
+
+/// Builds `source` for PoCL with the declarations of kernels/math/builtins.cl in place of those of
+/// PoCL's own header, which this macro leaves out. Returns whether it was built.
+bool build_with_own_declarations(const Device& device, const std::string& name,
+                                 const std::string& source, const std::string& options,
+                                 cl::Program& out) {
+  const std::string declared = builtin_declarations() + "\n#line 1\n" + source;
+  return !build(device, name, declared, options + " -D_OPENCL_H_", out);
 }
 
 /// Returns the device's binary; it is empty when the driver returns none.
@@ -117,7 +129,8 @@ Program Program::from_source(const Device& device, const std::string& name,
     const std::lock_guard lock(device.programs_->mutex);
     const auto found = device.programs_->compiled.find(shared_key);
     if (found != device.programs_->compiled.end()) {
-      out.program_ = found->second;
+      out.program_ = found->second.program;
+      out.own_declarations_ = found->second.own_declarations;
       out.build_seconds_ = seconds_since(start);
       return out;
     }
@@ -130,14 +143,19 @@ Program Program::from_source(const Device& device, const std::string& name,
     }
   }
   if (!out.from_cache_) {
-    out.program_ = from_text(device, name, source, all_options);
+    out.own_declarations_ =
+        device.is_pocl() &&
+        build_with_own_declarations(device, name, source, all_options, out.program_);
+    if (!out.own_declarations_)
+      if (const auto error = build(device, name, source, all_options, out.program_))
+        throw RunError(*error);
     if (keeps_binary)
       if (const Binary binary = binary_of(out.program_); !binary.empty())
         cache_store(key, "program", binary);
   }
   if (shares) {
     const std::lock_guard lock(device.programs_->mutex);
-    device.programs_->compiled.emplace(shared_key, out.program_);
+    device.programs_->compiled.try_emplace(shared_key, out.program_, out.own_declarations_);
   }
   out.build_seconds_ = seconds_since(start);
   if (!out.from_cache_ && out.build_seconds_ >= noticeable_seconds)

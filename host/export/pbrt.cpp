@@ -15,7 +15,6 @@
 #include "base/atomic_file.h"
 #include "export/detail/families.h"
 #include "export/export.h"
-#include "scene/camera_fields.h"
 #include "scene/transform.h"
 
 namespace caplet {
@@ -155,14 +154,9 @@ class SceneWriter {
     stream_.text << inverse_text(world_from_camera);
     if (medium)
       stream_.text << "MediumInterface \"\" " << quoted(names_.media[*medium], where) << "\n";
-    const auto* perspective = std::get_if<PerspectiveProjection>(&projection);
-    const auto* spherical = std::get_if<SphericalProjection>(&projection);
     Statement out(std::string("Camera \"") + projection_names.at(projection.index()) + "\"",
                   nullptr, where);
-    if (perspective) out.number(fov_field.name, degrees_of(perspective->fov));
-    if (spherical)
-      out.text(SphericalProjection::mapping_field.name,
-               SphericalProjection::mapping_names[static_cast<std::size_t>(spherical->mapping)]);
+    std::visit([&](const auto& of) { of.fields(of, OptionWriter{out}); }, projection);
     if (frame_aspect_ratio) out.number(frame_aspect_ratio_field.name, *frame_aspect_ratio);
     if (screen_window) {
       const auto& w = *screen_window;
@@ -213,6 +207,11 @@ class SceneWriter {
     }
     void integer(const Field& field, int value) { to.whole(field.name, value); }
     void flag(const Field& field, bool value) { to.boolean(field.name, value); }
+    template <class Names>
+    void choice(const Field& field, int value, const Names& names) {
+      to.text(field.name, names[static_cast<std::size_t>(value)]);
+    }
+    void field_of_view(double radians) { to.number(fov_field.name, degrees_of(radians)); }
     void seed(const Field& field, std::uint32_t value) {
       if (value != 0) to.whole(field.name, static_cast<std::int32_t>(value));
     }

@@ -30,13 +30,10 @@ void lower_camera(const Scene& scene, FlatView& out) {
   for (int r = 0; r < 3; ++r)
     for (int c = 0; c < 4; ++c)
       record.world_from_camera[r * 4 + c] = static_cast<float>(camera.world_from_camera[c][r]);
-  std::array<double, 4> plane{0, 1, 1, 0};  // of spherical cameras: the unit square, y down
-  if (const auto* spherical = std::get_if<SphericalProjection>(&camera.projection)) {
-    const bool is_equal_area = spherical->mapping == SphericalProjection::Mapping::equal_area;
-    record.kind = is_equal_area ? camera_equal_area : camera_equirectangular;
-  } else {
-    plane = image_plane_of(camera, film);
-    record.kind = is_orthographic(camera) ? camera_orthographic : camera_perspective;
+  const std::array<double, 4> plane = image_plane_of(camera, film);
+  record.kind = narrow<uint>(camera.projection.index());  // cameras.def lists both
+  record.mapping = std::visit([](const auto& of) { return of.mapping(); }, camera.projection);
+  if (has_image_plane(camera)) {
     record.lens_radius = static_cast<float>(camera.lens_radius);
     record.focal_distance = static_cast<float>(camera.focal_distance);
   }
@@ -45,7 +42,9 @@ void lower_camera(const Scene& scene, FlatView& out) {
   record.per_pixel_x = static_cast<float>((plane[1] - plane[0]) / film.width);
   record.per_pixel_y = static_cast<float>((plane[2] - plane[3]) / film.height);
   record.medium = camera.medium.value_or(CAPLET_NONE);
-  record.origins = is_orthographic(camera) || record.lens_radius > 0 ? 1 : 0;
+  const bool is_parallel =
+      std::visit([](const auto& of) { return of.is_parallel; }, camera.projection);
+  record.origins = is_parallel || record.lens_radius > 0 ? 1 : 0;
 }
 
 RayRecord ray_of_pixel(const Scene& scene, int x, int y) {

@@ -80,7 +80,7 @@ BarOnPicture bar_of(const ScaleBar& asked, const Sight& sight, const std::string
   const auto& [scene, bounds] = sight;
   if (bounds.empty())
     throw InputError(SourceLocation{flag}, "the scene has no shapes that a bar could measure");
-  if (is_spherical(scene.view.camera))
+  if (!has_image_plane(scene.view.camera))
     throw InputError(SourceLocation{flag}, "a spherical camera's picture has no scale");
   const glm::dvec3 middle = 0.5 * (bounds.min + bounds.max);
   const double footprint = pixel_footprint(scene.view.camera, scene.view.film, middle);

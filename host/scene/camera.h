@@ -13,32 +13,49 @@
 #include <optional>
 #include <variant>
 
+#include "scene/all_cameras.h"
+#include "scene/camera_ray.h"
 #include "scene/field.h"
 
 namespace caplet {
 
 struct FilmSettings;
 
-struct PerspectiveProjection {
-  double fov = 1.5707963267948966;  // radians, of the shorter image side, full angle
+template <class, class... Types>
+using ProjectionVariant = std::variant<Types...>;
+
+#define CAMERA(name, Type) , Type
+using Projection = ProjectionVariant<void
+#include "shared/cameras.def"
+                                     >;
+#undef CAMERA
+
+/// Lists the names of Projection's alternatives in scene files, in their order.
+inline constexpr std::array projection_names = {
+#define CAMERA(name, Type) #name,
+#include "shared/cameras.def"
+#undef CAMERA
 };
-/// Rays are parallel; the screen window is in camera units.
-struct OrthographicProjection {};
-/// Rays leave one point in all directions, which the whole image covers.
-struct SphericalProjection {
-  enum class Mapping { equal_area, equirectangular } mapping = Mapping::equal_area;
-  static constexpr Field mapping_field = {"mapping", "how directions lie in the picture"};
-  static constexpr std::array mapping_names = {"equalarea", "equirectangular"};
-};
-using Projection = std::variant<PerspectiveProjection, OrthographicProjection, SphericalProjection>;
+
+inline constexpr Field fov_field = {
+    "fov", "field of view of the picture's shorter side", 0, 180, "degrees", true};
+inline constexpr Field half_fov_field = {"halffov", "half of it; above 0 it counts", -no_limit, 90,
+                                         "degrees"};
+inline constexpr Field frame_aspect_ratio_field = {
+    "frameaspectratio",
+    "width over height of what the camera sees; else that of the picture",
+    0,
+    no_limit,
+    "",
+    true};
 
 struct Camera {
   glm::dmat4 world_from_camera{1};
   Projection projection;
-  std::optional<double> frame_aspect_ratio;  // perspective and orthographic
+  std::optional<double> frame_aspect_ratio;  // where there is a screen window
   std::optional<std::array<double, 4>>
-      screen_window;            // perspective and orthographic: x min, x max, y min, y max
-  double lens_radius = 0;       // perspective and orthographic, camera units
+      screen_window;            // where there is one: x min, x max, y min, y max
+  double lens_radius = 0;       // where there is an image plane, camera units
   double focal_distance = 1e6;  // along z, camera units
   std::optional<std::uint32_t> medium =
       {};  // the medium at a camera outside all solids: index into Scene::media
@@ -56,8 +73,13 @@ struct Camera {
   }
 };
 
-inline bool is_spherical(const Camera& camera) {
-  return std::holds_alternative<SphericalProjection>(camera.projection);
+/// Returns whether the camera has an image plane, and so a lens and lengths in the picture.
+inline bool has_image_plane(const Camera& camera) {
+  return std::visit([](const auto& of) { return of.has_plane; }, camera.projection);
+}
+/// Returns whether the screen window says what the camera sees.
+inline bool has_screen_window(const Camera& camera) {
+  return std::visit([](const auto& of) { return of.has_window; }, camera.projection);
 }
 inline bool is_orthographic(const Camera& camera) {
   return std::holds_alternative<OrthographicProjection>(camera.projection);
@@ -66,17 +88,12 @@ inline bool is_orthographic(const Camera& camera) {
 /// Returns the field of view in radians; 0 where the projection has none.
 double fov_of(const Camera& camera);
 
-/// Returns the part of the image plane that is shown: z = 1 (perspective, in units of tan(fov / 2))
-/// or z = 0 (orthographic).
+/// Returns the screen window: its shorter side is -1 to 1 unless a file says else.
 std::array<double, 4> screen_window_of(const Camera& camera, const FilmSettings& film);
 
-/// Returns the same part in camera units: {x min, x max, y min, y max}.
+/// Returns what is shown as places (shared/cameras.def): {x min, x max, y min, y max}, in camera
+/// units of the image plane where there is one; {0, 1, 1, 0} without a screen window.
 std::array<double, 4> image_plane_of(const Camera& camera, const FilmSettings& film);
-
-struct CameraRay {
-  glm::dvec3 origin{0},
-      direction{0, 0, 1};  // camera space; the direction is a unit vector of camera space
-};
 
 /// Returns the ray from the centre of the lens through `raster`.
 CameraRay unproject(const Camera& camera, const FilmSettings& film, const glm::dvec2& raster);
@@ -90,10 +107,5 @@ std::optional<glm::dvec2> project(const Camera& camera, const FilmSettings& film
 /// Returns the world length of a pixel's shorter side at a world point; 0 where the camera does not
 /// see the point.
 double pixel_footprint(const Camera& camera, const FilmSettings& film, const glm::dvec3& point);
-
-/// Maps a unit direction to [0, 1]^2 by the equal-area octahedral map, and back (Clarberg, "Fast
-/// equal-area mapping of the (hemi)sphere using SIMD", 2008). The centre of the square is +z.
-glm::dvec2 square_from_sphere(const glm::dvec3& direction);
-glm::dvec3 sphere_from_square(const glm::dvec2& uv);
 
 }  // namespace caplet

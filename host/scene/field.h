@@ -6,7 +6,10 @@
 // forms and lists of parameters all use these calls.
 #pragma once
 
+#include <cstddef>
 #include <limits>
+#include <utility>
+#include <variant>
 
 namespace caplet {
 
@@ -23,6 +26,15 @@ struct Field {
   const char* unit = "";
   bool above_low = false;
 };
+
+/// Returns a variant's alternative of this index as it is by default; the first where there is
+/// none.
+template <class Model, std::size_t index = 0>
+Model model_of(std::size_t which) {
+  if (which == index) return Model(std::in_place_index<index>);
+  if constexpr (index + 1 < std::variant_size_v<Model>) return model_of<Model, index + 1>(which);
+  return Model();
+}
 
 /// The names of GGX's two roughnesses in scene files, before any remapping.
 struct RoughnessFields {
@@ -86,6 +98,7 @@ struct IgnoresFields {
   void mapping(const Value&) const {}
   template <class Value>
   void board(const Value&) const {}
+  void field_of_view(const double&) const {}
   template <class... Values>
   void place(const Values&...) const {}
   void only(bool) const {}

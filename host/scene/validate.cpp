@@ -574,14 +574,21 @@ class Validator {
                l.model);
   }
 
+  struct CameraFields : Checks {
+    using Checks::Checks;
+
+    void field_of_view(double radians) {
+      if (!(radians > 0 && radians < 3.14159265358979))
+        error("the camera's field of view must lie between 0 and 180 degrees");
+    }
+  };
+
   void camera(const SourceLocation& file) {
     const Camera& c = scene_.view.camera;
     medium(c.medium, file, "the camera");
     transform(c.world_from_camera, file);
     if (said_.empty() && !moderate(c.world_from_camera)) error(file, too_large);
-    const auto* perspective = std::get_if<PerspectiveProjection>(&c.projection);
-    if (perspective && !(perspective->fov > 0 && perspective->fov < 3.14159265358979))
-      error(file, "the camera's field of view must lie between 0 and 180 degrees");
+    std::visit([&](const auto& of) { of.fields(of, CameraFields(*this, file)); }, c.projection);
     if (!(c.lens_radius >= 0 && std::isfinite(c.lens_radius)))
       error(file, "the camera's lens radius must be from 0 up");
     if (!(c.focal_distance > 0 && std::isfinite(c.focal_distance)))

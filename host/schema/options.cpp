@@ -7,7 +7,6 @@
 #include <initializer_list>
 #include <string>
 
-#include "scene/camera_fields.h"
 #include "schema/detail/describe.h"
 #include "schema/detail/rows.h"
 #include "schema/kind_of.h"
@@ -20,9 +19,6 @@ bool is_one_of(const std::string& type, std::initializer_list<const char*> names
   return std::ranges::find(names, type) != names.end();
 }
 
-constexpr std::array fov_rows = {
-    Row{fov_field, "float", "90"},
-    Row{{"halffov", "half of it; above 0 it counts", -no_limit, 90, "degrees"}, "float", "-1"}};
 constexpr std::array window_rows = {Row{frame_aspect_ratio_field, "float"},
                                     Row{{"screenwindow",
                                          "x min, x max, y min, y max of the picture on the plane z "
@@ -71,12 +67,12 @@ void add_ignored_names(std::initializer_list<const char*> names, const char* typ
 }
 
 void add_camera(const std::string& type, std::vector<Parameter>& out) {
-  if (type == "perspective") add_rows(fov_rows, out);
-  if (type == "spherical")
-    Describe(out).choice(SphericalProjection::mapping_field, 0, SphericalProjection::mapping_names);
-  add_rows(window_rows, out);
-  const Camera camera;
+  const auto kind = kind_of<std::size_t>(type, projection_names);
+  Camera camera;
+  camera.projection = model_of<Projection>(kind.value_or(0));
   Describe all(out);
+  std::visit([&](const auto& of) { of.fields(of, all); }, camera.projection);
+  add_rows(window_rows, out);
   Camera::fields(camera, all);
   if (type == "orthographic") all.flag(Camera::parallel_lens_field, false);
   add_rows(camera_rows, out);

@@ -19,7 +19,6 @@
 
 #include "base/error.h"
 #include "base/spelling.h"
-#include "scene/camera_fields.h"
 #include "scene/field.h"
 
 namespace caplet::view {
@@ -46,13 +45,6 @@ const std::vector<std::string> texture_kinds = {
 using MaterialModel = decltype(Material::model);
 using LightModel = decltype(Light::model);
 using TextureModel = decltype(Texture::model);
-
-template <class Model, std::size_t index = 0>
-Model model_of(std::size_t which) {
-  if (which == index) return Model(std::in_place_index<index>);
-  if constexpr (index + 1 < std::variant_size_v<Model>) return model_of<Model, index + 1>(which);
-  return Model();
-}
 
 void whole(FormFields& to, const Field& field, int& value) {
   to.whole(field.name, value, static_cast<int>(field.low), static_cast<int>(field.high));
@@ -277,6 +269,11 @@ class OptionFields {
     to_.whole(field.name, seed, std::numeric_limits<int>::min(), std::numeric_limits<int>::max());
     value = static_cast<std::uint32_t>(seed);
   }
+  template <class Names>
+  void choice(const Field& field, int& value, const Names& names) {
+    value = kind(field.name, value, names);
+  }
+  void field_of_view(double& radians) { angle(to_, fov_field, radians); }
   template <class Kind, class Names>
   Kind kind(const char* name, Kind now, const Names& names) {
     int number = static_cast<int>(now);
@@ -297,15 +294,10 @@ void visit_camera(FormFields& fields, Camera& camera) {
     camera.screen_window.reset();  // its unit belongs to the projection
     return;
   }
-  if (auto* perspective = std::get_if<PerspectiveProjection>(&camera.projection))
-    angle(fields, fov_field, perspective->fov);
-  if (auto* spherical = std::get_if<SphericalProjection>(&camera.projection)) {
-    const char* name = SphericalProjection::mapping_field.name;
-    spherical->mapping = options.kind(name, spherical->mapping, SphericalProjection::mapping_names);
-    return;
-  }
+  std::visit([&](auto& of) { of.fields(of, options); }, camera.projection);
+  if (!has_screen_window(camera)) return;
   fields.option(frame_aspect_ratio_field.name, camera.frame_aspect_ratio);
-  Camera::fields(camera, options);
+  if (has_image_plane(camera)) Camera::fields(camera, options);
 }
 
 /// Properties that lights of different kinds share.

@@ -22,7 +22,7 @@ static inline RayRecord camera_ray(__global const CameraRecord* camera, float2 r
                                    float2 u_lens) {
   float3 origin = (float3)(0.0f), direction = (float3)(0.0f, 0.0f, 1.0f);
   switch (camera->kind) {
-#define CAMERA(name)                                         \
+#define CAMERA(name, Type)                                   \
   case camera_##name:                                        \
     name##_ray(camera, raster, u_lens, &origin, &direction); \
     break;
@@ -46,8 +46,8 @@ static inline RayRecord camera_ray(__global const CameraRecord* camera, float2 r
 
 static inline float2 camera_spread(__global const CameraRecord* camera, float2 raster) {
   switch (camera->kind) {
-#define CAMERA(name)  \
-  case camera_##name: \
+#define CAMERA(name, Type) \
+  case camera_##name:      \
     return name##_spread(camera, raster);
 #include "rows/cameras.def"
 #undef CAMERA

@@ -49,7 +49,7 @@ enum {
 };
 
 enum {
-#define CAMERA(name) camera_##name,
+#define CAMERA(name, Type) camera_##name,
 #include "shared/cameras.def"
 #undef CAMERA
   camera_count

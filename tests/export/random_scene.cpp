@@ -488,13 +488,15 @@ class Maker {
   void camera() {
     scene_.view.camera.world_from_camera = glm::dmat4(random_.turn());
     scene_.view.camera.world_from_camera[3] = glm::dvec4(20.0 * random_.direction(), 1);
-    const std::size_t projection = random_.below(4);
+    const std::size_t projection = random_.below(5);
     if (projection < 2)
       scene_.view.camera.projection = PerspectiveProjection{random_.uniform(0.3, 1.5)};
     if (projection == 2) scene_.view.camera.projection = OrthographicProjection{};
     if (projection == 3)
+      scene_.view.camera.projection = SphericalProjection{static_cast<int>(random_.below(2))};
+    if (projection == 4)
       scene_.view.camera.projection =
-          SphericalProjection{static_cast<SphericalProjection::Mapping>(random_.below(2))};
+          FisheyeProjection{static_cast<int>(random_.below(2)), random_.uniform(20, 360)};
     scene_.view.camera.frame_aspect_ratio = random_.uniform(0.5, 2);
     scene_.view.camera.screen_window = {-random_.uniform(0.5, 1), 0.9, -0.8,
                                         random_.uniform(0.5, 1)};

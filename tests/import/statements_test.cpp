@@ -212,17 +212,30 @@ TEST(Cameras, OrthographicWithALens) {
   EXPECT_NEAR(8 * plane[3], 2, 1e-12);
 }
 
+TEST(Cameras, Fisheye) {
+  const auto of = [](const std::string& more) {
+    return std::get<FisheyeProjection>(
+        scene_of("Camera \"fisheye\"" + more + "\n" + ball).view.camera.projection);
+  };
+  EXPECT_EQ(of("").mapping_kind, FisheyeProjection::equidistant);
+  EXPECT_EQ(of("").fov, 180);
+  EXPECT_EQ(of(" \"string mapping\" \"equisolid\" \"float fov\" 220").mapping_kind,
+            FisheyeProjection::equisolid);
+  EXPECT_EQ(of(" \"string mapping\" \"equisolid\" \"float fov\" 220").fov, 220);
+  EXPECT_THAT(said_of("Camera \"fisheye\" \"float fov\" 361\n" + std::string(ball)),
+              HasSubstr("\"fov\" must be above 0 and at most 360"));
+}
+
 TEST(Cameras, Spherical) {
   const auto of = [](const std::string& more) {
     return std::get<SphericalProjection>(
                scene_of("Camera \"spherical\"" + more + "\n" + ball).view.camera.projection)
-        .mapping;
+        .mapping_kind;
   };
-  EXPECT_EQ(of(""), SphericalProjection::Mapping::equal_area);
+  EXPECT_EQ(of(""), SphericalProjection::equal_area);
   EXPECT_EQ(of(" \"string mapping\" \"equalarea\" \"float lensradius\" 1"),
-            SphericalProjection::Mapping::equal_area);
-  EXPECT_EQ(of(" \"string mapping\" \"equirectangular\""),
-            SphericalProjection::Mapping::equirectangular);
+            SphericalProjection::equal_area);
+  EXPECT_EQ(of(" \"string mapping\" \"equirectangular\""), SphericalProjection::equirectangular);
   EXPECT_THAT(said_of("Camera \"spherical\" \"string mapping\" \"mercator\"\n" + std::string(ball)),
               HasSubstr("\"mapping\" is \"mercator\"; the nearest known name is \"equalarea\""));
   EXPECT_THAT(said_of("Camera \"spherical\" \"float fov\" 40\n" + std::string(ball)),

@@ -4,17 +4,21 @@
 // The stages' kernels and the buffers that they take.
 #include "render/kernels.h"
 
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 #include <array>
 #include <cstdio>
 #include <stdexcept>
+#include <string>
 #include <utility>
 
 #include "support/test_device.h"
 
 namespace caplet::test {
 namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
 
 constexpr std::pair<Stage, const char*> stages[] = {
 #define STAGE(name, launch, is_used, groups) {Stage::name, #name},
@@ -43,6 +47,11 @@ TEST(Kernels, TakeWhatTheyUse) {
   EXPECT_EQ(buffer_count(Stage::sort_prefix), 3u);  // the batch, keys and bins
 }
 
+std::string log_of(const Program& program, const char* kernel) {
+  return program.kernel(kernel).getInfo<CL_KERNEL_PROGRAM>().getBuildInfo<CL_PROGRAM_BUILD_LOG>(
+      test_device().handle());
+}
+
 // The driver's count of a kernel's arguments is the list's, and two: the number of items, and the
 // counter of those there are.
 TEST(Kernels, HaveTheArgumentsOfTheirGroups) {
@@ -50,6 +59,19 @@ TEST(Kernels, HaveTheArgumentsOfTheirGroups) {
     const Program program =
         Program::from_source(test_device(), name, stage_source(stage), "-DCAPLET_REAL_WIDTH=1");
     EXPECT_EQ(program.kernel(name).getInfo<CL_KERNEL_NUM_ARGS>(), buffer_count(stage) + 2) << name;
+    EXPECT_EQ(program.own_declarations(), test_device().is_pocl())
+        << name << " calls what kernels/math/builtins.cl does not declare";
+    if (test_device().is_pocl()) {
+      EXPECT_THAT(log_of(program, name), Not(HasSubstr("warning")));
+    }
+  }
+}
+
+TEST(Kernels, OfAllLanesCallWhatIsDeclared) {
+  for (const Stage stage : {Stage::extend, Stage::connect}) {
+    const Program program =
+        Program::from_source(test_device(), "lanes", stage_source(stage), "-DCAPLET_REAL_WIDTH=8");
+    EXPECT_EQ(program.own_declarations(), test_device().is_pocl());
   }
 }
 

@@ -344,14 +344,82 @@ TEST(SphericalCamera, GoesOnBeyondTheImage) {
   EXPECT_LT(glm::length(at(around, -3, 40) - at(around, 397, 40)), 1e-6);
 }
 
+// Its rays leave one point, whatever lens a file gives it.
+TEST(SphericalCamera, HasNoLens) {
+  Scene scene = spherical_scene(SphericalProjection::equirectangular);
+  scene.view.camera.lens_radius = 2;
+  FlatView out;
+  lower_camera(scene, out);
+  EXPECT_EQ(out.camera.lens_radius, 0);
+  EXPECT_EQ(out.camera.origins, 0u);
+  const RayRecord ray = camera_ray(scene, {100, 100}, {0.9f, 0.2f});
+  EXPECT_EQ(glm::dvec3(ray.ox, ray.oy, ray.oz), glm::dvec3(0));
+}
+
+Scene fisheye_scene(FisheyeProjection::Mapping mapping, double fov) {
+  Scene scene;
+  scene.view.film.width = 400;
+  scene.view.film.height = 200;
+  scene.view.camera.projection = FisheyeProjection{mapping, fov};
+  return scene;
+}
+
+// The field of view is that of the shorter side; by the equidistant map, angles are proportional to
+// distances from the middle, to straight behind.
+TEST(Fisheye, AnglesAreDistances) {
+  const Scene scene = fisheye_scene(FisheyeProjection::equidistant, 180);
+  const double half = std::sqrt(0.5);
+  const std::pair<glm::vec2, glm::dvec3> all[] = {
+      {{200, 100}, {0, 0, 1}},        {{200, 0}, {0, 1, 0}},         {{300, 100}, {1, 0, 0}},
+      {{100, 100}, {-1, 0, 0}},       {{250, 100}, {half, 0, half}}, {{200, 150}, {0, -half, half}},
+      {{350, 100}, {half, 0, -half}}, {{400, 100}, {0, 0, -1}},      {{400, 0}, {0, 0, -1}}};
+  for (const auto& [raster, direction] : all)
+    EXPECT_LT(glm::length(direction_of(camera_ray(scene, raster, {0.5f, 0.5f})) - direction), 1e-6)
+        << raster.x << ' ' << raster.y;
+}
+
+// A disk of the picture whose edge is at the angle a has the solid angle 2 pi (1 - cos a), which is
+// in proportion to its area.
+TEST(Fisheye, EquisolidAreasAreSolidAngles) {
+  const Scene scene = fisheye_scene(FisheyeProjection::equisolid, 240);
+  const double at_edge = 1 - std::cos(glm::radians(120.0));
+  for (const float radius : {20.0f, 50.0f, 80.0f, 100.0f}) {
+    const glm::dvec3 d =
+        direction_of(camera_ray(scene, {200 + 0.6f * radius, 100 + 0.8f * radius}, {0.5f, 0.5f}));
+    EXPECT_NEAR(1 - d.z, at_edge * radius * radius / 1e4, 1e-5) << radius;
+    EXPECT_NEAR(d.x * 0.8 + d.y * 0.6, 0, 1e-6) << radius;
+  }
+}
+
+// Those of two rays half a pixel apart, outward and around, as far as the pixel is small.
+TEST(Fisheye, FootprintsAreDistancesOfRays) {
+  for (const auto mapping : {FisheyeProjection::equidistant, FisheyeProjection::equisolid}) {
+    const Scene scene = fisheye_scene(mapping, 200);
+    const Camera& camera = scene.view.camera;
+    for (const glm::dvec2& raster : {glm::dvec2(200.5, 100.5), {260, 40}, {120, 180}, {330, 100}}) {
+      const glm::dvec2 from_middle = raster - glm::dvec2(200, 100);
+      const glm::dvec2 out = 0.5 * glm::normalize(from_middle), around(-out.y, out.x);
+      const auto apart = [&](const glm::dvec2& step) {
+        return glm::length(unproject(camera, scene.view.film, raster + step).direction -
+                           unproject(camera, scene.view.film, raster - step).direction);
+      };
+      const glm::dvec3 point = 5.0 * unproject(camera, scene.view.film, raster).direction;
+      EXPECT_NEAR(pixel_footprint(camera, scene.view.film, point) / 5,
+                  std::min(apart(out), apart(around)), 1e-5);
+    }
+  }
+}
+
 // The host's rays are the device's, and points project back to where their ray came from.
 TEST(Projections, UndoEachOther) {
-  std::vector<Scene> scenes(4);
+  std::vector<Scene> scenes(6);
   scenes[0].view.camera.projection = PerspectiveProjection{0.9};
   scenes[1].view.camera.projection = OrthographicProjection{};
   scenes[2].view.camera.projection = SphericalProjection{SphericalProjection::Mapping::equal_area};
   scenes[3].view.camera.projection =
       SphericalProjection{SphericalProjection::Mapping::equirectangular};
+  scenes[4].view.camera.projection = FisheyeProjection{FisheyeProjection::equidistant, 150};
+  scenes[5].view.camera.projection = FisheyeProjection{FisheyeProjection::equisolid, 120};
   std::mt19937 random(5);
   for (Scene& scene : scenes) {
     scene.view.film.width = 300;

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <span>
+#include <string>
 
 #include "base/embedded_file.h"
 
@@ -12,5 +13,8 @@ namespace caplet {
 
 /// Returns the files. Their paths are from kernels/, as #include names them.
 std::span<const EmbeddedFile> embedded_kernels();
+
+/// Returns the text of kernels/math/builtins.cl, from $CAPLET_KERNELS where that folder has it.
+std::string builtin_declarations();
 
 }  // namespace caplet

@@ -14,8 +14,12 @@
 namespace caplet {
 
 struct Device::Programs {
+  struct Compiled {
+    cl::Program program;
+    bool own_declarations;  // as Program::own_declarations
+  };
   std::mutex mutex;
-  std::map<std::pair<std::string, std::string>, cl::Program> compiled;  // by options and source
+  std::map<std::pair<std::string, std::string>, Compiled> compiled;  // by options and source
 };
 
 }  // namespace caplet

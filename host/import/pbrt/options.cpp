@@ -117,20 +117,27 @@ std::optional<Backdrop> backdrop_of(Parameters& parameters, const ImageReader* i
   return out;
 }
 
-Projection projection_of(const std::string& type, Parameters& parameters) {
-  if (type == "orthographic") return OrthographicProjection{};
-  if (type == "spherical") {
-    int mapping = 0;
-    FieldReader{parameters}.choice(SphericalProjection::mapping_field, mapping,
-                                   SphericalProjection::mapping_names);
-    return SphericalProjection{static_cast<SphericalProjection::Mapping>(mapping)};
+/// Reads the parameters that cameras of one projection have.
+struct ProjectionReader : FieldReader {
+  /// "fov", or "halffov" where it is above 0.
+  void field_of_view(double& radians) const {
+    const double given = parameters.number(fov_field.name, 90),
+                 half = parameters.number(half_fov_field.name, -1);
+    const double degrees = half > 0 ? 2 * half : given;
+    if (degrees > 0 && degrees < 180)
+      radians = degrees * glm::pi<double>() / 180;
+    else if (half > 0)
+      parameters.error(half_fov_field.name, "must be below 90 degrees");
+    else
+      parameters.error(fov_field.name, "must be above 0 and below 180 degrees");
   }
-  const double given = parameters.number("fov", 90), half = parameters.number("halffov", -1);
-  const double degrees = half > 0 ? 2 * half : given;
-  if (degrees > 0 && degrees < 180) return PerspectiveProjection{degrees * glm::pi<double>() / 180};
-  parameters.error(half > 0 ? "halffov" : "fov",
-                   half > 0 ? "must be below 90 degrees" : "must be above 0 and below 180 degrees");
-  return PerspectiveProjection{};
+};
+
+Projection projection_of(const std::string& type, Parameters& parameters) {
+  const auto kind = schema::kind_of<std::size_t>(type, projection_names);
+  Projection out = model_of<Projection>(kind.value_or(0));
+  std::visit([&](auto& of) { of.fields(of, ProjectionReader{parameters}); }, out);
+  return out;
 }
 
 }  // namespace
@@ -140,8 +147,8 @@ void set_camera(const std::string& type, Parameters& parameters,
   Camera camera;
   camera.world_from_camera = world_from_camera;
   camera.projection = projection_of(type, parameters);
-  if (parameters.has("frameaspectratio"))
-    camera.frame_aspect_ratio = positive(parameters, "frameaspectratio", 1);
+  if (parameters.has(frame_aspect_ratio_field.name))
+    camera.frame_aspect_ratio = positive(parameters, frame_aspect_ratio_field.name, 1);
   if (const Parameter* window = parameters.values("screenwindow", {"float"})) {
     const auto& v = window->numbers;
     if (v.size() != 4)

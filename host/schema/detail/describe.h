@@ -69,6 +69,10 @@ class Describe {
     add(field, {"string"}, names[static_cast<std::size_t>(value)]).choices = {names.begin(),
                                                                               names.end()};
   }
+  void field_of_view(double) {
+    add(fov_field, {"float"}, "90");
+    add(half_fov_field, {"float"}, "-1");
+  }
   void position(const Field& field, const glm::dvec3& value) {
     add(field, {"point3"}, text_of(value));
   }
