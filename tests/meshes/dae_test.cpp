@@ -255,6 +255,95 @@ TEST(Collada, ArraysOfTwoGeometriesMayHaveTheSameIds) {
   EXPECT_EQ(parts[1].positions.at(0), glm::vec3(5, 0, 0));
 }
 
+/// Reads each image as a texel, and tells which.
+class OneTexel : public test::NoImages {
+ public:
+  TextureImage read_texture(const std::filesystem::path& path,
+                            const ImageEncoding& encoding) const override {
+    TextureImage image;
+    image.width = image.height = image.channels = 1;
+    image.bytes = {10};
+    image.file = path.string();
+    image.encoding = encoding;
+    return image;
+  }
+};
+
+// COLLADA 1.5 names the image within the sampler; a texture may also name the image itself.
+TEST(Collada, ATextureNamesAnImageInThreeWays) {
+  const auto with = [](const std::string& parameters, const std::string& name) {
+    return dae(kTwo,
+               "<node><instance_geometry url='#g'><bind_material><technique_common>"
+               "<instance_material symbol='m' target='#m'/></technique_common></bind_material>"
+               "</instance_geometry></node>",
+               "<library_images><image id='i'><init_from><ref>file://a%20b.png</ref></init_from>"
+               "</image></library_images><library_materials><material id='m'><instance_effect "
+               "url='#e'/></material></library_materials><library_effects><effect id='e'>"
+               "<profile_COMMON>" +
+                   parameters + "<technique><lambert>\n<diffuse><texture texture='" + name +
+                   "' texcoord='u'/></diffuse></lambert></technique></profile_COMMON></effect>"
+                   "</library_effects>");
+  };
+  const std::filesystem::path folder = test::temporary_folder();
+  std::ofstream(folder / "a b.png") << "no picture";
+  const auto read = [&](const std::string& text) {
+    std::ofstream(folder / "a.dae") << text;
+    return import_scene(folder / "a.dae", OneTexel());
+  };
+  const std::pair<const char*, const char*> ways[] = {
+      {"<newparam sid='su'><surface type='2D'><init_from> i </init_from></surface></newparam>"
+       "<newparam sid='sa'><sampler2D><source> su </source></sampler2D></newparam>",
+       "sa"},
+      {"<newparam sid='sa'><sampler2D><instance_image url='#i'/></sampler2D></newparam>", "sa"},
+      {"<newparam sid='sa'><sampler2D><instance_image url='i'/></sampler2D></newparam>", "sa"},
+      {"", "i"}};
+  for (const auto& [parameters, name] : ways) {
+    const Scene scene = read(with(parameters, name));
+    ASSERT_EQ(scene.textures.size(), 1U) << parameters;
+    EXPECT_EQ(std::get<ImagemapTexture>(scene.textures[0].model).image->file,
+              (folder / "a b.png").string());
+    const Material& material = scene.materials.at(scene.shapes.at(0).material);
+    EXPECT_EQ(std::get<RgbSpectrum>(std::get<DiffuseMaterial>(material.model).reflectance).rgb,
+              glm::dvec3(1));
+  }
+  test::LogOf log;
+  EXPECT_TRUE(read(with("", "nowhere")).textures.empty());
+  EXPECT_TRUE(read(with("", "m")).textures.empty());  // which is a material
+  EXPECT_THAT(log.text(),
+              AllOf(HasSubstr("a.dae:11:2: the texture 'nowhere' has no image: it is left out"),
+                    HasSubstr("a.dae:11:2: the texture 'm' has no image: it is left out")));
+}
+
+// Without <scene> the first visual scene is drawn, and without that every geometry.
+TEST(Collada, WithoutASceneAllIsDrawn) {
+  std::string text = dae(kTwo,
+                         "<node name='placed'><translate>5 0 0</translate><instance_geometry "
+                         "url='#g'/></node>");
+  const std::size_t scene = text.find("<scene>");
+  text.erase(scene, text.find("</scene>") + 8 - scene);
+  const Scene placed = scene_of(text);
+  ASSERT_EQ(placed.shapes.size(), 1U);
+  EXPECT_EQ(placed.shapes[0].name, "placed");
+  EXPECT_EQ(glm::dvec3(placed.shapes[0].world_from_object[3]), glm::dvec3(5, 0, 0));
+  const std::size_t library = text.find("<library_visual_scenes>");
+  text.erase(library, text.find("</library_visual_scenes>") + 24 - library);
+  const Scene all = scene_of(text);
+  ASSERT_EQ(all.shapes.size(), 1U);
+  EXPECT_EQ(all.shapes[0].name, "it");
+  EXPECT_EQ(all.shapes[0].world_from_object, glm::dmat4(1));
+  EXPECT_EQ(std::get<TriangleMeshShape>(all.shapes[0].geometry).triangles.size(), 2U);
+}
+
+// Its numbers are rows of as many as are needed.
+TEST(Collada, ASourceMayHaveNoAccessor) {
+  std::string text = dae(kTwo);
+  const std::string accessor =
+      "<technique_common><accessor source='#pa' count='4' stride='3'/></technique_common>";
+  text.erase(text.find(accessor), accessor.size());
+  EXPECT_EQ(meshes(text).at(0).positions,
+            (std::vector<glm::vec3>{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}));
+}
+
 // If two elements have one id, which is not allowed, the first is used, as in a browser
 // (getElementById).
 TEST(Collada, OfTwoOfOneIdTheFirstIsMeant) {
@@ -274,6 +363,16 @@ TEST(Collada, WhatIsLeftOutIsSaid) {
   meshes(dae(kTwo + "\n<lines count='1'>" + kVertex + "<p>0 1</p></lines>\n<linestrips count='1'>" +
              kVertex + "<p>0 1 2</p></linestrips>"));
   EXPECT_THAT(log.text(), HasSubstr("a.dae:9:2: 2 lines, splines and skews of nodes are left out"));
+  const std::vector<TriangleMeshShape> all =
+      meshes(dae(kTwo,
+                 "\n<node><skew>1 2 3 4 5 6 7</skew><instance_geometry url='#g'/>"
+                 "<instance_controller url='#c'/></node>",
+                 "<library_controllers><controller id='c'><morph source='#g'/></controller>"
+                 "</library_controllers>"));
+  EXPECT_EQ(all.size(), 1U);
+  EXPECT_EQ(all.at(0).positions.at(2), glm::vec3(1, 1, 0));
+  EXPECT_THAT(log.text(),
+              HasSubstr("a.dae:11:8: 2 lines, splines and skews of nodes are left out"));
 }
 
 struct Bad {
@@ -321,10 +420,46 @@ TEST(Collada, BadInput) {
       {dae(kTwo, deep), "too many within each other"},
       {dae(kTwo, "<node><instance_node url='#k0'/></node>", many), "more than 1000000 nodes"},
       {dae(kTwo, instance, "", "<unit meter='0'/>"), "meter is not positive"},
+      {dae(kTwo, "\n<node><matrix>1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 2</matrix></node>"),
+       "a.dae:11:8: the last row of a matrix is not 0 0 0 1"},
+      {dae(kTwo, "<node><matrix>1 0 0 0 0 1 0 0 0 0 1 0 0 1 0 1</matrix></node>"),
+       "the last row of a matrix is not 0 0 0 1"},
+      {dae("<triangles count='two'>" + kVertex + "<p>0 1 2</p></triangles>"),
+       "a.dae:8:2: count=\"two\" is no count"},
+      {dae("<triangles count='1'>\n<input semantic='VERTEX' source='#v' offset='-1'/><p>0 1 2</p>"
+           "</triangles>"),
+       "a.dae:9:2: offset=\"-1\" is no count"},
+      {dae("<source id='r'>\n<float_array id='ra'>0 0 z</float_array></source><triangles count='1'>"
+           "<input semantic='POSITION' source='#r' offset='0'/><p>0 0 0</p></triangles>"),
+       "a.dae:9:2: <float_array>: "},
+      {dae("<source id='r'/><triangles count='1'>"
+           "<input semantic='POSITION' source='#r' offset='0'/><p>0 0 0</p></triangles>"),
+       "a.dae:8:2: <source> without an array of floats"},
+      {dae(kTwo, "<node><translate>1e16 0 0</translate><instance_geometry url='#g'/></node>", "",
+           "<unit meter='1000'/>"),
+       "a.dae:8:2: a vertex is not finite or out of range"},
   };
   for (const Bad& one : bad)
     EXPECT_THAT(complaint([&] { meshes(one.text); }),
                 AllOf(HasSubstr("a.dae"), HasSubstr(one.said)));
+  // 2^16 times a thousand vertices are 65 million.
+  std::string row, corners, doubled = "<library_nodes>";
+  for (int i = 0; i < 1000; ++i) row += "0 0 0 ";
+  for (int i = 0; i < 999; ++i) corners += std::to_string(i) + " ";
+  for (int i = 0; i < 16; ++i)
+    doubled += "<node id='k" + std::to_string(i) + "'><instance_node url='#k" +
+               std::to_string(i + 1) + "'/><instance_node url='#k" + std::to_string(i + 1) +
+               "'/></node>";
+  doubled += "<node id='k16'><instance_geometry url='#g'/></node></library_nodes>";
+  EXPECT_THAT(
+      complaint([&] {
+        meshes(dae("<source id='r'><float_array id='ra'>" + row +
+                       "</float_array></source><triangles count='1'><input semantic='POSITION' "
+                       "source='#r' offset='0'/><p>" +
+                       corners + "</p></triangles>",
+                   "<node><instance_node url='#k0'/></node>", doubled));
+      }),
+      HasSubstr("a.dae:3:22: more than 50000000 vertices with those of instances"));
   std::string announced = dae(kTwo);
   announced.replace(announced.find("count='4' stride='3'"), 20, "count='5' stride='3'");
   EXPECT_THAT(complaint([&] { meshes(announced); }),
