@@ -97,11 +97,12 @@ double alpha_from_roughness(Parameters& parameters, const char* name, double rou
   return remap ? std::sqrt(roughness) : roughness;
 }
 
-/// Adds the square root of a texture of floats.
+/// Adds the square root of a texture of floats, which need not be of this scene.
 std::uint32_t root_of(std::uint32_t texture, const SourceLocation& where, Scene& scene) {
   RootTexture root;
   root.tex.texture = texture;
-  scene.textures.push_back({root, true, scene.textures[texture].name, where});
+  std::string name = texture < scene.textures.size() ? scene.textures[texture].name : std::string();
+  scene.textures.push_back({root, true, std::move(name), where});
   return static_cast<std::uint32_t>(scene.textures.size() - 1);
 }
 
