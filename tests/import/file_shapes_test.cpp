@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "import_text.h"
+#include "support/log_of.h"
 
 namespace caplet {
 namespace {
@@ -133,6 +134,22 @@ TEST_F(FileShapes, OfInstancesAreInstances) {
   EXPECT_EQ(bounds_of(scene).max.x, 6);
   EXPECT_THAT(said("ObjectBegin \"o\"\n" + statement + "ObjectEnd\nShape \"sphere\"\n"),
               HasSubstr("holds instances, which cannot be within ObjectBegin"));
+}
+
+TEST_F(FileShapes, CamerasAndLightsOfTheirsAreNotTaken) {
+  write_file(
+      folder_ / "lit.gltf",
+      R"({"asset":{"version":"2.0"},"nodes":[{"mesh":0},{"extensions":{"KHR_lights_punctual":{"light":0}}}],
+"extensions":{"KHR_lights_punctual":{"lights":[{"type":"point"}]}},"meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],
+"accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3"}],"bufferViews":[{"buffer":0,"byteLength":36}],
+"buffers":[{"byteLength":36,"uri":"data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}]})");
+  test::LogOf log;
+  const Scene scene = world("\n Shape \"file\" \"string filename\" \"lit.gltf\"\n");
+  EXPECT_EQ(scene.shapes.size(), 1U);
+  EXPECT_EQ(scene.lights.size(), 1U);  // the scene's own
+  EXPECT_THAT(log.text(), testing::ContainsRegex("scene\\.pbrt:5:2: the shapes alone of "
+                                                 ".*lit\\.gltf are taken: not its camera and "
+                                                 "lights"));
 }
 
 TEST_F(FileShapes, SayWhatIsWrong) {

@@ -70,6 +70,12 @@ TEST(Names, EveryDirectiveHasAHandler) {
       EXPECT_THAT(message, testing::Not(testing::HasSubstr("unknown directive"))) << name;
 }
 
+TEST(Names, OfNoDirectiveAreUnknown) {
+  const pbrt::Refusal refusal = pbrt::refusal_of("Shap", "sphere");
+  EXPECT_FALSE(refusal.is_known);
+  EXPECT_EQ(refusal.text, "unknown directive \"Shap\"");
+}
+
 TEST(Names, NearestIsByEditDistance) {
   EXPECT_EQ(nearest_name("spehre", {"disk", "sphere", "cone"}), "sphere");
   EXPECT_EQ(nearest_name("x", {}), "");

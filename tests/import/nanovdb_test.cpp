@@ -13,6 +13,7 @@
 #include <cmath>
 #include <cstring>
 #include <fstream>
+#include <limits>
 
 #include "import_text.h"
 
@@ -151,6 +152,21 @@ TEST(Nanovdb, WhatIsBrokenIsSaid) {
   EXPECT_THAT(said(changed(632, 1)),
               HasSubstr("has a level set (distances from a surface) where densities are wanted"));
   EXPECT_THAT(said(changed(root + 28, 0x3f800000)), HasSubstr("background is not 0"));
+  Memory tile = grid();
+  tile.put<std::int64_t>(root + 72, 0);
+  EXPECT_EQ(said(file_of("c.nvdb", tile, false)), "");  // it is 0, and nothing is there
+  tile.put<float>(root + 64 + 20, 0.5f);
+  EXPECT_THAT(said(file_of("c.nvdb", tile, false)),
+              HasSubstr("has a constant tile of 4096^3 voxels"));
+  for (const float bad : {-1.0f, std::numeric_limits<float>::infinity()}) {
+    Memory dark = grid();
+    dark.put<float>(upper + 8256, bad);  // a constant tile of the upper node
+    EXPECT_THAT(said(file_of("c.nvdb", dark, false)),
+                HasSubstr("has values that are negative or not finite"));
+  }
+  const std::string other = file_of("c.nvdb", grid(), false);
+  std::fstream(other, std::ios::in | std::ios::out | std::ios::binary).put('M');
+  EXPECT_THAT(said(other), HasSubstr("is no NanoVDB file"));
   for (const std::uint32_t version : {31u, 33u})
     EXPECT_THAT(said(file_of("c.nvdb", grid(), false, "density", version)),
                 HasSubstr("is of NanoVDB version " + std::to_string(version)));

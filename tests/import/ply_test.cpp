@@ -146,6 +146,30 @@ TEST_P(PlyEncodings, TruncationAtEveryByte) {
         << size << " bytes of " << whole.size();
 }
 
+TEST_P(PlyEncodings, NumbersOfEachType) {
+  Writer ply(GetParam());
+  ply.header("element vertex 3\nproperty char x\nproperty short y\nproperty ushort z\n")
+      .header("property uint nx\nproperty int ny\nproperty uchar nz\n")
+      .header("element face 1\nproperty list char short vertex_indices\n");
+  for (int i = 0; i < 3; ++i)
+    ply.value(static_cast<std::int8_t>(-128 + i))
+        .value(static_cast<std::int16_t>(-32768 + i))
+        .value(static_cast<std::uint16_t>(65535 - i))
+        .value(std::uint32_t{4'000'000'000})
+        .value(std::int32_t{-2'000'000'000})
+        .value(std::uint8_t{255})
+        .line();
+  ply.value(std::int8_t{3});
+  for (int k : {2, 1, 0}) ply.value(static_cast<std::int16_t>(k));
+  const TriangleMeshShape mesh = parse_ply("test.ply", ply.line().bytes());
+  EXPECT_THAT(mesh.positions,
+              testing::ElementsAre(glm::vec3(-128, -32768, 65535), glm::vec3(-127, -32767, 65534),
+                                   glm::vec3(-126, -32766, 65533)));
+  EXPECT_EQ(mesh.normals.at(0), glm::vec3(4e9F, -2e9F, 255));
+  using T = std::array<std::uint32_t, 3>;
+  EXPECT_THAT(mesh.triangles, testing::ElementsAre(T{2, 1, 0}));
+}
+
 INSTANTIATE_TEST_SUITE_P(Import, PlyEncodings,
                          testing::Values("ascii", "binary_little_endian", "binary_big_endian"));
 
@@ -197,6 +221,63 @@ TEST(Ply, BrokenFiles) {
   EXPECT_EQ(complaint(ascii + vertex + "end_header\n" + points), "m.ply: the PLY file has no face");
   EXPECT_EQ(complaint("ply\nformat ascii 2.0\n"),
             "m.ply:2: the PLY format line must be \"format\", an encoding and \"1.0\"");
+}
+
+TEST(Ply, BrokenHeaders) {
+  const std::string vertex = std::string("element vertex 3\n") + xyz;
+  const std::string face = "element face 1\nproperty list uchar int vertex_indices\n";
+  const std::string ascii = "ply\nformat ascii 1.0\n", points = "0 0 0\n1 0 0\n0 1 0\n";
+  std::string many = ascii + "element vertex 3\n";
+  for (int i = 0; i < 1025; ++i) many += "property float p" + std::to_string(i) + "\n";
+  const std::pair<std::string, std::string> cases[] = {
+      {"plie\nformat ascii 1.0\n", "m.ply:1: this is no PLY file (it does not start with \"ply\")"},
+      {"ply\nmaterial red\n", "m.ply:2: unknown PLY header line"},
+      {"ply\nformat binary_middle_endian 1.0\n",
+       "m.ply:2: unknown PLY encoding \"binary_middle_endian\""},
+      {"ply\nelement vertex 3\nend_header\n", "m.ply:3: the PLY header has no format line"},
+      {ascii + "element vertex\n",
+       "m.ply:3: a PLY element line must be \"element\", a name and a count"},
+      {ascii + "element vertex 3x\n", "m.ply:3: \"3x\" is no element count"},
+      {ascii + "element vertex -3\n", "m.ply:3: \"-3\" is no element count"},
+      {ascii + vertex + "element vertex 3\n", "m.ply:7: the element \"vertex\" is declared twice"},
+      {ascii + "property float x\n", "m.ply:3: a PLY property before any element"},
+      {ascii + "element face 1\nproperty list uchar vertex_indices\n",
+       "m.ply:4: a PLY property line must be \"property\" [list type] type name"},
+      {ascii + "element face 1\nproperty int\n",
+       "m.ply:4: a PLY property line must be \"property\" [list type] type name"},
+      {ascii + "element face 1\nproperty half x\n", "m.ply:4: unknown PLY type \"half\""},
+      {ascii + "element face 1\nproperty list float int vertex_indices\n",
+       "m.ply:4: the length of a PLY list must be an integer"},
+      {ascii + vertex + "property float y\n", "m.ply:7: the property \"y\" is declared twice"},
+      {many, "m.ply:1028: more than 1024 properties"},
+      {ascii + "element vertex 3\n" + face + "end_header\n" + points,
+       "m.ply: the PLY element \"vertex\" has no properties"},
+      {ascii + "element vertex 1\nproperty float x\nproperty float z\n" + face +
+           "end_header\n0 0\n3 0 0 0\n",
+       "m.ply: the PLY file's vertices have no \"y\""},
+      {ascii + vertex + "element face 1\nproperty list uchar float vertex_indices\nend_header\n" +
+           points + "3 0 1 2\n",
+       "m.ply: the PLY file's faces have no list \"vertex_indices\""},
+      {ascii + vertex + face + "end_header\n" + points + "2 0 1\n",
+       "m.ply: the PLY file has no face with three corners"},
+      {ascii + vertex + face + "end_header\n" + points + "256 0 1 2\n",
+       "m.ply:13: \"256\" is no integer of the declared type"},
+      {ascii + vertex + face + "end_header\n" + points + "-1 0 1 2\n",
+       "m.ply:13: \"-1\" is no integer of the declared type"},
+      {ascii + vertex + face + "end_header\n" + points + "3 0 1.5 2\n",
+       "m.ply:13: \"1.5\" is no integer of the declared type"}};
+  for (const auto& [bytes, said] : cases)
+    EXPECT_EQ(complaint_of([&, &bytes = bytes] { parse_ply("m.ply", bytes); }), said);
+  // What no double has is 0, or as large as nothing.
+  EXPECT_EQ(parse_ply("m.ply", ascii + vertex + face +
+                                   "end_header\n1e-400 -1e-400 7\n1 0 0\n0 1 0\n3 0 1 2\n")
+                .positions.at(0),
+            glm::vec3(0, 0, 7));
+  EXPECT_EQ(complaint_of([&] {
+              parse_ply("m.ply",
+                        ascii + vertex + face + "end_header\n1e400 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
+            }),
+            "m.ply:10: a vertex position is not finite (\"x\")");
 }
 
 TEST(Ply, NormalsThatAreNoneAreLeftOut) {
