@@ -10,6 +10,7 @@
 #include "import/import.h"
 #include "support/data.h"
 #include "support/import_files.h"
+#include "support/log_of.h"
 #include "support/zip_text.h"
 
 namespace caplet {
@@ -112,6 +113,39 @@ TEST(Lattice, BallsStandWhereTheModeSays) {
   EXPECT_EQ(radii("ballmode=\"mixed\" ballradius=\"1\""), (std::vector<float>{0.5F, 0.5F, 2}));
   // Vertex 3 has no beam.
   EXPECT_EQ(radii("ballmode=\"all\" ballradius=\"1\""), (std::vector<float>{0.5F, 0.5F, 2, 1, 1}));
+}
+
+/// As `lattice`, with the last vertex where the first is.
+Scene folded_lattice(const std::string& attributes, const std::string& inside) {
+  std::string text = lattice_model(attributes, inside);
+  text.replace(text.find("z=\"2\""), 5, "z=\"0\"");
+  return scene_of(test::package_3mf(text), {{{"up", "y"}}});
+}
+
+TEST(Lattice, BeamsWithoutLengthAreBallsOrNothing) {
+  const std::string beams =
+      "<b:beams><b:beam v1=\"0\" v2=\"1\"/><b:beam v1=\"0\" v2=\"3\" r1=\"0.25\" "
+      "r2=\"0.75\" cap1=\"hemisphere\"/></b:beams>";
+  const CapsulesShape round = test::capsules_of(folded_lattice("radius=\"0.5\"", beams));
+  EXPECT_EQ(round.p0, (std::vector<glm::vec3>{{0, 0, 0}, {0, 0, 0}}));
+  EXPECT_EQ(round.p1, (std::vector<glm::vec3>{{4, 0, 0}, {0, 0, 0}}));
+  EXPECT_EQ(round.radius0, (std::vector<float>{0.5F, 0.75F}));
+  test::LogOf log;
+  const Scene flat = folded_lattice("radius=\"0.5\" cap=\"butt\"", beams);
+  EXPECT_EQ(flat.shapes.size(), 1U);
+  EXPECT_TRUE(std::holds_alternative<CylinderShape>(flat.shapes[0].geometry));
+  EXPECT_THAT(log.text(), HasSubstr("a.3mf/3D/a.model:4:2: 1 beams without length and without "
+                                    "round ends are left out"));
+}
+
+TEST(Lattice, ClippingIsToldOf) {
+  test::LogOf log;
+  const std::string beam = "<b:beams><b:beam v1=\"0\" v2=\"1\"/></b:beams>";
+  EXPECT_EQ(lattice("radius=\"1\" clippingmode=\"none\"", beam).shapes.size(), 1U);
+  EXPECT_EQ(log.text(), "");
+  EXPECT_EQ(lattice("radius=\"1\" clippingmode=\"inside\"", beam).shapes.size(), 1U);
+  EXPECT_THAT(log.text(), HasSubstr("a.3mf/3D/a.model:4:2: the lattice is not clipped: "
+                                    "clippingmode 'inside' is not read"));
 }
 
 TEST(Model3mf, UnitsTransformsAndColours) {
@@ -246,6 +280,72 @@ TEST(Bad3mf, LatticesAreRefusedWithTheirPlace) {
   EXPECT_THAT(said("radius=\"1\" ballmode=\"mixed\"", "<b:balls><b:ball vindex=\"0\"/></b:balls>"),
               HasSubstr("without a radius"));
   EXPECT_THAT(said("radius=\"1\"", ""), HasSubstr("nothing to draw"));
+}
+
+/// Two triangles of three vertices with these attributes, after a group of two colours (7) and one
+/// of textures (9).
+std::string triangles_model(const std::string& first, const std::string& second = "") {
+  const auto triangle = [](const std::string& with) {
+    return "<triangle " +
+           (with.find("v3") == std::string::npos ? "v1=\"0\" v2=\"1\" v3=\"2\" " + with : with) +
+           "/>\n";
+  };
+  return test::package_3mf(
+      "<model><resources><m:colorgroup xmlns:m=\"x\" id=\"7\"><m:color color=\"#FF0000\"/>"
+      "<m:color color=\"#00FF00\"/></m:colorgroup><m:texture2dgroup xmlns:m=\"x\" id=\"9\"/>"
+      "<object id=\"1\"><mesh><vertices><vertex x=\"0\" y=\"0\" z=\"0\"/><vertex x=\"1\" y=\"0\" "
+      "z=\"0\"/><vertex x=\"0\" y=\"1\" z=\"0\"/></vertices><triangles>\n" +
+      triangle(first) + triangle(second) +
+      "</triangles></mesh></object></resources><build><item objectid=\"1\"/></build></model>");
+}
+
+TEST(Model3mf, OtherPropertiesAreGrey) {
+  test::LogOf log;
+  const Scene scene = scene_of(triangles_model("pid=\"9\" p1=\"3\"", "pid=\"9\" p1=\"4\""));
+  ASSERT_EQ(scene.shapes.size(), 1U);
+  EXPECT_EQ(scene.materials.at(scene.shapes[0].material).name, "default");
+  EXPECT_EQ(std::get<TriangleMeshShape>(scene.shapes[0].geometry).triangles.size(), 2U);
+  const std::string said =
+      "a.3mf/3D/a.model:2:2: properties of texture2dgroup are not read: what has them is grey";
+  EXPECT_THAT(log.text(), HasSubstr(said));
+  EXPECT_EQ(log.text().find("texture2dgroup"), log.text().rfind("texture2dgroup"));  // once
+}
+
+TEST(Bad3mf, TrianglesAreRefusedWithTheirPlace) {
+  const auto said = [](const std::string& second) {
+    return refusal(triangles_model("pid=\"7\" p1=\"1\"", second));
+  };
+  EXPECT_EQ(said(""), "");
+  const std::string at = "a.3mf/3D/a.model:3:2: ";
+  EXPECT_THAT(said("pid=\"7\" p1=\"2\""), HasSubstr(at + "property 2 of group 7: it has 2"));
+  EXPECT_THAT(said("pid=\"red\""), HasSubstr(at + "pid: 'red' is no index"));
+  EXPECT_THAT(said("pid=\"-7\""), HasSubstr(at + "pid: '-7' is no index"));
+  EXPECT_THAT(said("pid=\"8\""), HasSubstr(at + "there is no property group 8"));
+  EXPECT_THAT(said("v1=\"0\" v2=\"1\" v3=\"3\""), HasSubstr(at + "v3 is vertex 3: there are 3"));
+}
+
+// Each object holds the one before twice: the 21st is two million of the first.
+TEST(Bad3mf, ObjectsWithoutEndAreRefused) {
+  std::string text = "<model><resources><object id=\"1\"/>\n";
+  for (int i = 2; i <= 22; ++i) {
+    const std::string component = "<component objectid=\"" + std::to_string(i - 1) + "\"/>";
+    text += "<object id=\"" + std::to_string(i) + "\"><components>" + component + component +
+            "</components></object>\n";
+  }
+  EXPECT_THAT(
+      refusal(test::package_3mf(text + "</resources><build><item objectid=\"22\"/></build>"
+                                       "</model>")),
+      AllOf(HasSubstr("a.3mf/3D/a.model:"), HasSubstr("more than 2000000 objects are placed")));
+}
+
+// 64 bytes an element: 3 GiB hold 50,331,648.
+TEST(Bad3mf, PartsOfTooManyElementsAreRefused) {
+  const auto said = [](std::size_t elements) {
+    return refusal(test::zip_of({{"_rels/.rels", std::string(elements, '<')}}, true));
+  };
+  EXPECT_THAT(said(50'331'648), HasSubstr("no XML"));
+  EXPECT_THAT(said(50'331'649),
+              HasSubstr("a.3mf: _rels/.rels: has more elements than 3 GiB of memory hold"));
 }
 
 TEST(Bad3mf, PackagesAreRefused) {
