@@ -196,6 +196,19 @@ TEST(EmbreeNotes, AreToldWithTheirPlace) {
   EXPECT_THAT(log.text(), HasSubstr("e.xml:4:2: a material is defined nowhere: it is grey"));
 }
 
+TEST(EmbreeNotes, AreOfNothingElse) {
+  const std::string points = "<positions>0 0 0 1 0 4 0 2</positions>";
+  test::LogOf log;
+  scene_of("<Points type=\"sphere\">" + points +
+           "</Points><Curves type=\"round\" basis=\"linear\">" + points +
+           "<indices>0</indices></Curves><RoundLineSegments>" + points +
+           "<indices>0</indices></RoundLineSegments><ConeSegments>" + points +
+           "<indices>0</indices></ConeSegments><Transform><AffineSpace translate=\"1 0 0\"/>" +
+           kTriangle +
+           "</Transform><PerspectiveCamera from=\"0 0 0\" to=\"0 0 1\" up=\"0 1 0\" fov=\"60\"/>");
+  EXPECT_EQ(log.text(), "");
+}
+
 // What the notes above tell is drawn all the same, or not.
 TEST(EmbreeNotes, AreOfWhatIsDrawn) {
   const std::string points = "<positions>1 2 3 .5 4 5 6 .25</positions>";

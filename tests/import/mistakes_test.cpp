@@ -310,6 +310,14 @@ TEST(ProgramStatements, OfMaterials) {
       material_of({"Material", "diffuse", {{"reflectance", "", {.25, .5, .75}}}}, scene);
   EXPECT_EQ(std::get<RgbSpectrum>(std::get<DiffuseMaterial>(plain.model).reflectance).rgb,
             glm::dvec3(.25, .5, .75));
+  // A texture says that it is one.
+  EXPECT_THAT(complaint_of([&] {
+                material_of({"Material",
+                             "dielectric",
+                             {{"alpha_u", "texture", {}, {"0"}}, {"alpha_v", "", {}, {"0"}}}},
+                            scene);
+              }),
+              HasSubstr("\"alpha_v\" takes no texture other than constants here"));
   // The root of the texture would be another texture.
   EXPECT_THAT(
       complaint_of([&] {
