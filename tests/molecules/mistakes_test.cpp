@@ -170,6 +170,17 @@ TEST(Molecules, PlacesAreFinite) {
       HasSubstr("f.sdf:5:1: the place is not finite or out of range"));
 }
 
+TEST(Sdf, RecordsEndAtTheirMark) {
+  const std::string one = "x\n\n\n  1  0\n    0.0       0.0       0.0    C\nM  END\n";
+  const auto said = [](const std::string& text, const std::string& model) {
+    return complaint([&] { read_sdf(text, "r.sdf", {{{"model", model}}}); });
+  };
+  EXPECT_THAT(said(one, "2"), HasSubstr("--model: 2: the file has 1 records"));
+  EXPECT_THAT(said(one + "$$$$\n" + one, "3"), HasSubstr("--model: 3: the file has 2 records"));
+  EXPECT_THAT(said(one + "$$$$\n\n", "2"), HasSubstr("--model: 2: the file has 1 records"));
+  EXPECT_EQ(said(one + "$$$$\n" + one, "2"), "");
+}
+
 TEST(Molecules, BondsAreOfAtomsThatThereAre) {
   const auto said = [](const std::string& bond) {
     return complaint([&] {
