@@ -179,6 +179,8 @@ TEST(Sdf, RecordsEndAtTheirMark) {
   EXPECT_THAT(said(one + "$$$$\n" + one, "3"), HasSubstr("--model: 3: the file has 2 records"));
   EXPECT_THAT(said(one + "$$$$\n\n", "2"), HasSubstr("--model: 2: the file has 1 records"));
   EXPECT_EQ(said(one + "$$$$\n" + one, "2"), "");
+  EXPECT_EQ(read_sdf(one + "$$$$\n\n", "r.sdf", {}).frames, 1U);
+  EXPECT_EQ(read_sdf(one + "$$$$\n" + one + "$$$$\r\n \n", "r.sdf", {}).frames, 2U);
 }
 
 TEST(Molecules, BondsAreOfAtomsThatThereAre) {

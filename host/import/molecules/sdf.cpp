@@ -45,13 +45,18 @@ class SdfReader : MoleculeLines {
   }
 
  private:
+  /// Empty lines behind the last record are none.
+  static bool is_empty(std::string_view rest) {
+    return rest.find_first_not_of(" \t\r\n") == std::string_view::npos;
+  }
+
   void skip_records(std::uint32_t number) {
     for (std::uint32_t record = 1; record < number; ++record) {
       do {
         if (text_.empty())
           throw InputError({"--model"}, fmt::format("{}: the file has {} records", number, record));
       } while (line() != "$$$$");
-      if (trimmed(text_).empty())
+      if (is_empty(text_))
         throw InputError({"--model"}, fmt::format("{}: the file has {} records", number, record));
     }
   }
@@ -59,7 +64,7 @@ class SdfReader : MoleculeLines {
   std::uint32_t records_behind() const {
     std::uint32_t records = 0;
     for (std::string_view rest = text_; !rest.empty();)
-      if (take_line(rest) == "$$$$" && !trimmed(rest).empty()) ++records;
+      if (take_line(rest) == "$$$$" && !is_empty(rest)) ++records;
     return records;
   }
 
