@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # Copyright Caplet authors
-"""Threads, forked processes, and the interpreter's end: each script in an interpreter of its own, 3 times; 100 times under sanitizers."""
+"""Threads, forked processes, and the interpreter's end: each script in an interpreter of its own, once; three times by `./run test --all`, and
+100 times under sanitizers."""
 import os
 import subprocess
 import sys
@@ -8,7 +9,7 @@ import time
 
 import pytest
 
-TIMES = 100 if os.environ.get("CAPLET_SANITIZED") else 3
+TIMES = 100 if os.environ.get("CAPLET_SANITIZED") else 3 if os.environ.get("CAPLET_THOROUGH") else 1
 SECONDS = 300  # that a script may take: it takes one or two, and more where others work beside it
 
 BEGIN = """
@@ -93,7 +94,7 @@ def often(script, *arguments, times=TIMES, **given):
 
 def delay(i):
     """Seconds after which a script is over: all of the first 0.3 s of a render in their turn."""
-    return 0.3 * (i * 0.618034 % 1)
+    return 0.3 * ((i + 1) * 0.618034 % 1)
 
 
 # --- Threads ---
