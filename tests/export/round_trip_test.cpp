@@ -368,6 +368,90 @@ TEST(WriteScene, WhatNoTextSaysIsRefusedAtItsPlace) {
   EXPECT_THAT(refusal_of(scene), HasSubstr("seen by nothing"));
 }
 
+using TextureModel = decltype(Texture::model);
+
+TEST(WriteScene, TexturesThatNoTextSaysAreRefused) {
+  const auto refusal_with = [&](TextureModel model) {
+    Scene scene = scene_of(world + "Shape \"sphere\"\n");
+    scene.textures.push_back({CheckerboardTexture{}, false, "board", {}});
+    scene.textures.push_back({std::move(model), false, "t", {"scene.pbrt", 9, 1}});
+    scene.materials.at(0).textures.push_back({"reflectance", 1});
+    return refusal_of(scene);
+  };
+  EXPECT_EQ(refusal_with(CheckerboardTexture{}), "");
+  EXPECT_THAT(refusal_with(ScaleTexture{}),
+              HasSubstr("scene.pbrt:9:1: the texture is made of constants alone"));
+  DirectionmixTexture mix;
+  mix.tex2.texture = 0;
+  EXPECT_EQ(refusal_with(mix), "");
+  mix.dir = {0, 2, 0};
+  EXPECT_THAT(refusal_with(mix), HasSubstr("dir is no direction of unit length"));
+}
+
+TEST(WriteScene, LightsThatNoTextSaysAreRefused) {
+  const auto refusal_with = [&](auto model) {
+    Scene scene = scene_of(world + "Shape \"sphere\"\n");
+    scene.lights.emplace_back();
+    scene.lights.back().model = std::move(model);
+    return refusal_of(scene);
+  };
+  auto image = std::make_shared<EnvironmentImage>();
+  image->width = image->height = 1;
+  image->rgb = {1, 1, 1};
+  image->file = "lamp.exr";
+  GoniometricLight turned;
+  turned.image = image;
+  EXPECT_EQ(refusal_with(turned), "");
+  turned.world_from_light = 2.0 * glm::dmat3(1);
+  EXPECT_THAT(refusal_with(turned), HasSubstr("the light's rotation is not of unit length"));
+  SpotLight spot;
+  spot.direction = {0, 0, 0.5};
+  EXPECT_THAT(refusal_with(spot), HasSubstr("the light's direction is not of unit length"));
+}
+
+// The camera's medium, the background, and colours of a capsule are written and read again.
+TEST(WriteScene, KeepsWhatTheCameraIsIn) {
+  const Scene scene = scene_of(
+      "MakeNamedMedium \"fog\" \"string type\" \"homogeneous\" \"float g\" 0.25\n"
+      "MediumInterface \"\" \"fog\"\nCamera \"perspective\"\nMediumInterface \"\" \"\"\n"
+      "WorldBegin\nShape \"sphere\"\n");
+  ASSERT_TRUE(scene.view.camera.medium);
+  const Scene read = scene_of(text_of(scene, "/tmp"));
+  ASSERT_TRUE(read.view.camera.medium);
+  const Medium& medium = read.media.at(*read.view.camera.medium);
+  EXPECT_EQ(medium.name, "fog");
+  EXPECT_EQ(std::get<HomogeneousMedium>(medium.model).scattering.g, 0.25);
+  EXPECT_FALSE(read.shapes.at(0).media.outside);
+}
+
+// A mix is written after the materials that it mixes, in any order of the scene.
+TEST(WriteScene, MixesComeAfterTheirParts) {
+  Scene scene = scene_of(world +
+                         "Material \"diffuse\" \"rgb reflectance\" [0.1 0.2 0.3]\n"
+                         "Shape \"sphere\"\n");
+  const auto first = static_cast<std::uint32_t>(scene.materials.size());
+  for (int i = 0; i < 3; ++i)
+    scene.materials.push_back(scene.materials.at(scene.shapes[0].material));
+  scene.materials[first].name = "top";
+  scene.materials[first].model = MixMaterial{{first + 1, first + 2}, 0.25};
+  scene.materials[first + 1].name = "lower";
+  scene.materials[first + 1].model = MixMaterial{{first + 2, first + 2}, 0.5};
+  scene.materials[first + 2].name = "base";
+  scene.shapes[0].material = first;
+  const std::string text = text_of(scene, "/tmp");
+  const auto place = [&](const char* name) {
+    return text.find("MakeNamedMaterial \"" + std::string(name) + "\"");
+  };
+  EXPECT_LT(place("base"), place("lower"));
+  EXPECT_LT(place("lower"), place("top"));
+  EXPECT_LT(place("top"), std::string::npos);
+  const Scene read = scene_of(text);
+  const Material& top = read.materials.at(read.shapes.at(0).material);
+  ASSERT_TRUE(std::holds_alternative<MixMaterial>(top.model));
+  EXPECT_EQ(read.materials.at(std::get<MixMaterial>(top.model).materials[0]).name, "lower");
+  EXPECT_EQ(read.materials.at(std::get<MixMaterial>(top.model).materials[1]).name, "base");
+}
+
 TEST(WriteScene, AFileIsReplacedAsAWholeOrNotAtAll) {
   const fs::path folder = temporary_folder(), file = folder / "scene.pbrt";
   std::ofstream(file) << "old";
