@@ -81,7 +81,9 @@ BarOnPicture bar_of(const ScaleBar& asked, const Sight& sight, const std::string
   if (bounds.empty())
     throw InputError(SourceLocation{flag}, "the scene has no shapes that a bar could measure");
   if (!has_image_plane(scene.view.camera))
-    throw InputError(SourceLocation{flag}, "a spherical camera's picture has no scale");
+    throw InputError(SourceLocation{flag},
+                     fmt::format("the picture of a {} camera has no scale",
+                                 projection_names.at(scene.view.camera.projection.index())));
   const glm::dvec3 middle = 0.5 * (bounds.min + bounds.max);
   const double footprint = pixel_footprint(scene.view.camera, scene.view.film, middle);
   if (!(footprint > 0))

@@ -126,6 +126,17 @@ TEST(ScaleBar, WrongOnesAreRefused) {
               AllOf(HasSubstr("--scale-bar"), HasSubstr("'cells'")));
   EXPECT_THAT(complaint([&] { bar_of(parse_scale_bar("1 mm", ""), ball(), "--scale-bar"); }),
               HasSubstr("4000 pixels"));
+  Scene behind = ball(1);
+  behind.view.camera.world_from_camera[3] = glm::dvec4(0, 0, 80, 1);
+  EXPECT_THAT(complaint([&] { bar_of({}, behind, "--scale-bar"); }),
+              AllOf(HasSubstr("--scale-bar"), HasSubstr("lies behind the camera")));
+  Scene around = ball();
+  around.view.camera.projection = SphericalProjection{};
+  EXPECT_THAT(complaint([&] { bar_of({}, around, "--scale-bar"); }),
+              HasSubstr("the picture of a spherical camera has no scale"));
+  around.view.camera.projection = FisheyeProjection{};
+  EXPECT_THAT(complaint([&] { bar_of({}, around, "--scale-bar"); }),
+              HasSubstr("the picture of a fisheye camera has no scale"));
   Overlays overlays;
   overlays.color_bar = true;
   EXPECT_THAT(complaint([&] { check(overlays, ball(), "--"); }), HasSubstr("--color-bar"));
@@ -308,6 +319,41 @@ TEST(DepthCue, TheFarthestFadesByItsShare) {
   EXPECT_EQ(red(on.picture, 10, 1), 1);
 }
 
+// There is nothing behind: what is far lets more of the paper through, and keeps its colour.
+TEST(DepthCue, OfTransparentPicturesIsTheirAlpha) {
+  Canvas on = canvas(
+      5, 1, {0.2f, 0.2f, 0.2f}, [](int x, int) { return x < 4 ? 1.0f : 0.0f; },
+      [](int x, int) { return x < 4 ? 10.0f + static_cast<float>(x) : 1e10f; });
+  on.picture.alpha = {1, 1, 0.5f, 1, 0};
+  draw_depth_cue(on.picture, on.layers, 0.6);
+  const std::array<double, 5> left = {1, 1 - 0.2, 0.5 * (1 - 0.4), 1 - 0.6, 0};
+  for (std::size_t x = 0; x < 5; ++x) {
+    EXPECT_NEAR(on.picture.alpha[x], left[x], 1e-6) << x;
+    EXPECT_EQ(on.picture.rgb[x][0], 0.2f) << x;
+  }
+}
+
+// Where three objects meet, their lines end in one point; where four do, they cross in it.
+TEST(Outline, LinesOfSeveralObjectsMeet) {
+  const auto all = [](int, int) { return 1.0f; };
+  const auto near = [](int, int) { return 10.0f; };
+  for (const bool is_four : {false, true}) {
+    Canvas on = canvas(20, 20, {1, 1, 1}, all, near);
+    for (int y = 0; y < 20; ++y)
+      for (int x = 0; x < 20; ++x)
+        on.layers.channels[2].uints[static_cast<std::size_t>(20 * y + x)] =
+            y < 10 ? (x < 10 ? 1 : 2) : (is_four && x >= 10 ? 4 : 3);
+    draw_outline(on.picture, on.layers, 2);
+    EXPECT_LT(red(on.picture, 9, 9), 0.05) << is_four;
+    EXPECT_LT(red(on.picture, 10, 10), 0.05) << is_four;
+    EXPECT_LT(red(on.picture, 9, 4), 0.01) << is_four;    // between 1 and 2
+    EXPECT_LT(red(on.picture, 3, 10), 0.01) << is_four;   // between 1 and 3
+    EXPECT_LT(red(on.picture, 16, 10), 0.01) << is_four;  // between 2 and 3, or 4
+    EXPECT_EQ(red(on.picture, 9, 15) < 0.5f, is_four);    // between 3 and 4
+    EXPECT_EQ(red(on.picture, 3, 3), 1) << is_four;
+  }
+}
+
 TEST(Axes, PointWhereTheyPoint) {
   Canvas on = empty_canvas(400, 400);
   Scene scene = ball();
@@ -375,6 +421,10 @@ TEST(Ink, IsSeenOnWhatIsBehind) {
                                          [](int, int) { return 1.0f; });
   EXPECT_EQ(ink_for(light.picture, light.layers)[0], 0);
   EXPECT_EQ(ink_for(dark.picture, dark.layers)[0], 1);
+  // A transparent picture is taken to lie on white paper, whatever its colours are.
+  dark.picture.alpha.assign(64, 0);
+  EXPECT_EQ(ink_for(dark.picture, dark.layers)[0], 0);
+  dark.picture.alpha.clear();
   // What covers the picture does not count: a light body before darkness has white ink.
   Canvas body = canvas(
       8, 8, {0.02f, 0.02f, 0.03f}, [](int x, int) { return x < 6 ? 1.0f : 0.0f; },
