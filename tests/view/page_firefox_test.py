@@ -15,7 +15,7 @@ import sys
 import tempfile
 import time
 
-from page_test import PATIENCE, SKIPPED, editable, main, mean_difference, viewer
+from page_test import PATIENCE, PIXELS, SKIPPED, decoded, editable, main, mean_difference, viewer
 
 try:
     import websocket
@@ -85,7 +85,7 @@ class Page:
 
     def pixels(self):
         """(width, height, RGBA) of what is shown."""
-        return self.script("const c = document.getElementById('picture'); return [c.width, c.height, Array.from(c.getContext('2d').getImageData(0, 0, c.width, c.height).data)]")
+        return decoded(*self.script(f"return {PIXELS}"))
 
     def apart(self, other, count):
         """The mean difference to another picture as soon as there are so many samples of every pixel; before that, -1."""

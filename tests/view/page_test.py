@@ -6,6 +6,7 @@
 usage: page_test.py PROGRAM SCENES FOLDER [NAME...]   pictures of the page go to FOLDER. Exit status 77: no browser here.
 """
 import atexit
+import base64
 import contextlib
 import csv
 import http.client
@@ -36,6 +37,17 @@ try:
 except ImportError:
     print("SKIPPED: no Selenium for Python (python3-selenium)")
     sys.exit(77)
+
+# The picture as [width, height, RGBA in base64]: a list of its bytes would take seconds on its way.
+PIXELS = """(() => { const c = document.getElementById('picture'), d = c.getContext('2d').getImageData(0, 0, c.width, c.height).data, parts = [];
+    for (let i = 0; i < d.length; i += 32768) parts.push(String.fromCharCode.apply(null, d.subarray(i, i + 32768)));
+    return [c.width, c.height, btoa(parts.join(''))]; })()"""
+
+
+def decoded(width, height, data):
+    """A picture of PIXELS with its bytes, four a pixel."""
+    return width, height, base64.b64decode(data)
+
 
 SKIPPED = 77
 PATIENCE = 60  # seconds, for what takes one
@@ -122,14 +134,12 @@ class Page:
 
     def pixels(self):
         """(width, height, RGBA) of what is shown."""
-        return self.driver.execute_script(
-            "const c = document.getElementById('picture'); return [c.width, c.height, Array.from(c.getContext('2d').getImageData(0, 0, c.width, c.height).data)]")
+        return decoded(*self.script(f"return {PIXELS}"))
 
     def apart(self, other, count):
         """The mean difference to another picture as soon as there are so many samples of every pixel; before that, -1."""
-        samples, *now = self.driver.execute_script(
-            "const c = document.getElementById('picture'); return [+document.getElementById('stage').dataset.samples || 0, c.width, c.height, Array.from(c.getContext('2d').getImageData(0, 0, c.width, c.height).data)]")
-        return mean_difference(other, now) if samples >= count else -1
+        samples, now = self.script(f"return [+document.getElementById('stage').dataset.samples || 0, {PIXELS}]")
+        return mean_difference(other, decoded(*now)) if samples >= count else -1
 
     def words(self, which):
         """The texts of all elements of a selector, of one moment: lists of the page are made anew at any time."""
@@ -229,6 +239,8 @@ def status_of(address, **headers):
 
 def mean_difference(a, b):
     assert a[:2] == b[:2], (a[:2], b[:2])
+    if a[2] == b[2]:
+        return 0
     return sum(abs(x - y) for x, y in zip(a[2], b[2])) / len(a[2])
 
 
