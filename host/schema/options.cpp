@@ -21,8 +21,8 @@ bool is_one_of(const std::string& type, std::initializer_list<const char*> names
 
 constexpr std::array window_rows = {Row{frame_aspect_ratio_field, "float"},
                                     Row{{"screenwindow",
-                                         "x min, x max, y min, y max of the picture on the plane z "
-                                         "= 1; else the shorter side is -1 to 1"},
+                                         "x min, x max, y min, y max of what is seen; else the "
+                                         "shorter side is -1 to 1"},
                                         "float"}};
 constexpr std::array camera_rows = {
     Row{{"shutteropen", "start of the exposure", -no_limit, no_limit, "seconds"}, "float", "0"},
@@ -72,8 +72,13 @@ void add_camera(const std::string& type, std::vector<Parameter>& out) {
   camera.projection = model_of<Projection>(kind.value_or(0));
   Describe all(out);
   std::visit([&](const auto& of) { of.fields(of, all); }, camera.projection);
+  const std::size_t own = out.size();
   add_rows(window_rows, out);
+  const std::size_t windows = out.size();
   Camera::fields(camera, all);
+  // They are read for every camera, as in pbrt-v4.
+  for (std::size_t i = own; i < out.size(); ++i)
+    out[i].has_effect = i < windows ? has_screen_window(camera) : has_image_plane(camera);
   if (type == "orthographic") all.flag(Camera::parallel_lens_field, false);
   add_rows(camera_rows, out);
 }

@@ -271,6 +271,12 @@ TEST(Schema, ModelsSayWhatTheyAreMadeOf) {
   EXPECT_TRUE(find("Integrator", "ambientocclusion", "maxdistance").above_low);
   EXPECT_EQ(find("Integrator", "ambientocclusion", "maxdistance").fallback, "");
   EXPECT_FALSE(find("Integrator", "bdpt", "visualizeweights").has_effect);
+  EXPECT_TRUE(find("Camera", "orthographic", "lensradius").has_effect);
+  EXPECT_TRUE(find("Camera", "fisheye", "screenwindow").has_effect);
+  EXPECT_FALSE(find("Camera", "fisheye", "lensradius").has_effect);
+  EXPECT_FALSE(find("Camera", "spherical", "screenwindow").has_effect);
+  EXPECT_FALSE(find("Camera", "spherical", "focaldistance").has_effect);
+  EXPECT_TRUE(find("Camera", "spherical", "shutterclose").has_effect);
   EXPECT_THAT(find("Camera", "spherical", "mapping").choices,
               ElementsAre("equalarea", "equirectangular"));
   EXPECT_EQ(find("MakeNamedMedium", "uniformgrid", "temperature").unit, "kelvin");
