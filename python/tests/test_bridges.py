@@ -9,15 +9,7 @@ import numpy as np
 import pytest
 
 import caplet
-
-DATA = pathlib.Path(os.environ["CAPLET_DATA"]) if "CAPLET_DATA" in os.environ else None
-
-
-def data(*parts):
-    if DATA is None or not DATA.joinpath(*parts).exists():
-        pytest.skip("needs the shared data folder (CAPLET_DATA)")
-    return str(DATA.joinpath(*parts))
-
+from shared_data import data
 
 EVERY_GEOM = """<mujoco><asset>
 <hfield name="hills" nrow="7" ncol="9" size="2 3 0.7 0.1"/>

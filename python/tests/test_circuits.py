@@ -14,6 +14,7 @@ import pytest
 
 import caplet
 from caplet.bridges import cells
+from shared_data import data
 
 # A soma of radius 5 that is not at 0, a dendrite that tapers, an axon that forks.
 NEURON = """1 1 3 4 5 5 -1
@@ -519,10 +520,7 @@ def test_files_are_let_go_of(tmp_path):
 
 def test_neurons_of_the_data(tmp_path):
     _, morphio, h5py = sonata()
-    folder = os.path.join(os.environ.get("CAPLET_DATA", ""), "swc/neuromorpho")
-    name = "C040600B3.CNG"
-    if not os.path.exists(f"{folder}/{name}.swc"):
-        pytest.skip("needs the shared data")
+    folder, name = data("swc/neuromorpho"), "C040600B3.CNG"
     held = {"x": [0.0, 500], "y": [0.0, 0], "z": [0.0, 0], "morphology": [name, name], "rotation_angle_yaxis": [0.0, 1]}
     scene = caplet.from_sonata(str(write_nodes(h5py, tmp_path / "nodes.h5", {"A": held})), morphologies=folder)
     p0, p1, radii = segments(morphio, f"{folder}/{name}.swc")
