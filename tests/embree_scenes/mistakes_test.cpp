@@ -19,38 +19,17 @@ namespace {
 
 using glm::dvec3;
 using test::complaint;
+using test::OneTexel;
+using test::write_beside;
 using testing::AllOf;
 using testing::HasSubstr;
 
-/// All in one folder, so that they find each other.
-std::filesystem::path write_file(const std::string& name, const std::string& text) {
-  static const std::filesystem::path folder = test::temporary_folder();
-  std::ofstream(folder / name, std::ios::binary) << text;
-  return folder / name;
-}
-
-/// Every image is one texel; those called "broken" are refused.
-class OneTexel : public test::NoImages {
- public:
-  TextureImage read_texture(const std::filesystem::path& path,
-                            const ImageEncoding& encoding) const override {
-    if (path.stem() == "broken") throw InputError("these bytes are no picture");
-    TextureImage image;
-    image.width = image.height = 1;
-    image.channels = 3;
-    image.bytes = {10, 20, 30};
-    image.file = path.string();
-    image.encoding = encoding;
-    return image;
-  }
-};
-
 Scene scene_of(const std::string& inside, const std::string& name = "e.xml") {
   return import_scene(
-      write_file(name, "<?xml version=\"1.0\"?>\n<scene>\n" + inside + "</scene>\n"), OneTexel());
+      write_beside(name, "<?xml version=\"1.0\"?>\n<scene>\n" + inside + "</scene>\n"), OneTexel());
 }
 Scene seen_by(const std::string& options) {
-  return import_scene(write_file("v.ecs", options), OneTexel());
+  return import_scene(write_beside("v.ecs", options), OneTexel());
 }
 
 const std::string kTriangle =
@@ -71,12 +50,12 @@ struct Case {
 };
 
 TEST(EmbreeMistakes, AreRefusedWithTheirPlace) {
-  write_file("atoms.xyz", "1\n\nC 0 0 0\n");
-  write_file("broken.png", "");
+  write_beside("atoms.xyz", "1\n\nC 0 0 0\n");
+  write_beside("broken.png", "");
   std::string many = kTriangle, row;
   for (int i = 0; i < 20; ++i) {
     const std::string name = "m" + std::to_string(i) + ".xml";
-    write_file(name, "<scene>" + kTriangle + "</scene>");
+    write_beside(name, "<scene>" + kTriangle + "</scene>");
     many += "<xml src=\"" + name + "\"/>\n";
   }
   for (int i = 0; i < 3 * 11588; ++i) row += "0 ";
@@ -140,8 +119,8 @@ TEST(EmbreeMistakes, AreElementsWithoutEnd) {
 }
 
 TEST(EmbreeMistakes, OfTheViewersOptions) {
-  write_file("good.xml", "<scene>" + kTriangle + "</scene>");
-  write_file("other.xml", "<?xml version=\"1.0\"?>\n<mujoco/>\n");
+  write_beside("good.xml", "<scene>" + kTriangle + "</scene>");
+  write_beside("other.xml", "<?xml version=\"1.0\"?>\n<mujoco/>\n");
   const Case cases[] = {
       {"-i other.xml\n",
        "other.xml:2:2: the root element is not <scene>: this is no scene of Embree"},
@@ -269,7 +248,7 @@ TEST(EmbreeScenes, NumbersThatUnderflowAreZero) {
 
 // Bits 1 and 2 of a byte: a neighbour at the first and at the second end.
 TEST(EmbreeScenes, FlagsMayBeInTheCompanion) {
-  write_file("flags.bin", std::string("\x07\x02\x01", 3));
+  write_beside("flags.bin", std::string("\x07\x02\x01", 3));
   const Scene scene = scene_of(
       "<ConeSegments><positions>0 0 0 1 0 4 0 2 0 5 0 3</positions><indices>0 1</indices>"
       "<flags ofs=\"1\" size=\"2\"/></ConeSegments>",
@@ -282,7 +261,7 @@ TEST(EmbreeScenes, FlagsMayBeInTheCompanion) {
 }
 
 TEST(EmbreeScenes, MaterialsHaveImages) {
-  const std::filesystem::path image = write_file("a.png", "");
+  const std::filesystem::path image = write_beside("a.png", "");
   for (const std::string parameter :
        {"<texture3d name=\"map_Kd\" src=\"a.png\"/>", "<texture name=\"map_Kd\" src=\"a.png\"/>",
         "<param name=\"map_Kd\" type=\"texture\" src=\"a.png\"/>"}) {
@@ -334,7 +313,7 @@ TEST(EmbreeScenes, TriangleLightsShineFromBothSides) {
 }
 
 TEST(EmbreeScenes, TheViewersDirectionAndLights) {
-  write_file("good.xml", "<scene>" + kTriangle + "</scene>");
+  write_beside("good.xml", "<scene>" + kTriangle + "</scene>");
   const Scene scene = seen_by(
       "-i good.xml -vp 1 2 3 -vd 0 0 -5 -vu 0 1 0 -size 7 65536\n"
       "-pointlight 4 5 6 1 2 3\n-dirlight 0 2 0 3 2 1\n-directionallight 3 0 0 1 1 1\n"

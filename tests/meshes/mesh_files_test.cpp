@@ -18,30 +18,9 @@ namespace caplet {
 namespace {
 
 using test::complaint;
+using test::OneTexel;
 using testing::AllOf;
 using testing::HasSubstr;
-
-/// Every image is one texel; those called "two" are two texels with alpha.
-class OneTexel : public test::NoImages {
- public:
-  TextureImage read_texture(const std::filesystem::path& path,
-                            const ImageEncoding& encoding) const override {
-    TextureImage image;
-    image.width = image.height = 1;
-    image.channels = 3;
-    image.bytes = {10, 20, 30};
-    if (path.stem() == "two") {
-      image.width = 2;
-      image.channels = 4;
-      image.bytes = {10, 20, 30, 100, 40, 50, 60, 200};
-    }
-    for (std::size_t i = 0; i < image.decoded.size(); ++i)
-      image.decoded.at(i) = static_cast<float>(i) / 255.0F;
-    image.file = path.string();
-    image.encoding = encoding;
-    return image;
-  }
-};
 
 Scene scene_of(const std::string& name, const std::string& bytes,
                const ImportOptions& options = {}) {

@@ -18,34 +18,13 @@ namespace caplet {
 namespace {
 
 using test::complaint;
+using test::OneTexel;
+using test::write_beside;
 using testing::AllOf;
 using testing::HasSubstr;
 
-/// Every image is one texel; of those called "grey" it is one number; "broken" is refused.
-class OneTexel : public test::NoImages {
- public:
-  TextureImage read_texture(const std::filesystem::path& path,
-                            const ImageEncoding& encoding) const override {
-    if (path.stem() == "broken") throw InputError("these bytes are no picture");
-    TextureImage image;
-    image.width = image.height = 1;
-    image.channels = path.stem() == "grey" ? 1 : 3;
-    image.bytes = {10, 20, 30};
-    image.bytes.resize(static_cast<std::size_t>(image.channels));
-    image.file = path.string();
-    image.encoding = encoding;
-    return image;
-  }
-};
-
-/// All in one folder, so that they find each other.
-std::filesystem::path write_file(const std::string& name, const std::string& text) {
-  static const std::filesystem::path folder = test::temporary_folder();
-  std::ofstream(folder / name, std::ios::binary) << text;
-  return folder / name;
-}
 Scene scene_of(const std::string& name, const std::string& text) {
-  return import_scene(write_file(name, text), OneTexel());
+  return import_scene(write_beside(name, text), OneTexel());
 }
 const TriangleMeshShape& mesh_of(const Shape& shape) {
   return std::get<TriangleMeshShape>(shape.geometry);
@@ -70,7 +49,7 @@ std::string gltf(const std::string& primitive, const std::string& accessors = ""
   put<std::uint32_t>(bytes, {2, 1, 0});
   put<std::int8_t>(bytes, {0, -1, 2, 0, 0, 0, 0, 0});
   EXPECT_EQ(bytes.size(), 112U);
-  write_file("numbers.bin", bytes);
+  write_beside("numbers.bin", bytes);
   return R"({"asset":{"version":"2.0"},"nodes":[{"mesh":0}],"meshes":[{"name":"it","primitives":[{)" +
          primitive +
          R"(}]}],"buffers":[{"byteLength":112,"uri":"numbers.bin"}],"bufferViews":[{"buffer":0,"byteLength":112}],"accessors":[)"
@@ -215,7 +194,7 @@ TEST(Gltf, ColoursOfVerticesBesideTexturesAreLeftOut) {
 const std::string kCorners = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
 
 TEST(Obj, MistakesAreRefusedWithTheirPlace) {
-  std::filesystem::create_directory(write_file("x.obj", "").parent_path() / "folder.mtl");
+  std::filesystem::create_directory(write_beside("x.obj", "").parent_path() / "folder.mtl");
   const std::pair<std::string, std::string> cases[] = {
       {kCorners + "f 1 x 2\n", "x.obj:4:5: 'x' is no corner"},
       {kCorners + "f 1 2 /2\n", "x.obj:4:7: '/2' is no corner"},
@@ -224,15 +203,15 @@ TEST(Obj, MistakesAreRefusedWithTheirPlace) {
       {"mtllib broken.mtl\n" + kCorners + "usemtl a\nf 1 2 3\n",
        "broken.mtl:2: these bytes are no picture"},
   };
-  write_file("broken.mtl", "# a comment\nnewmtl a\nmap_Kd broken.png\n");
-  write_file("broken.png", "");
+  write_beside("broken.mtl", "# a comment\nnewmtl a\nmap_Kd broken.png\n");
+  write_beside("broken.png", "");
   for (const auto& [text, said] : cases)
     EXPECT_THAT(complaint([&, &text = text] { scene_of("x.obj", text); }), HasSubstr(said)) << text;
 }
 
 TEST(Obj, WhatCannotBeHadIsToldWithItsPlace) {
   test::LogOf log;
-  write_file("glass.mtl", "newmtl glass\nd 0.5\nillum 7\nKd 0.5 0.5 0.5\n");
+  write_beside("glass.mtl", "newmtl glass\nd 0.5\nillum 7\nKd 0.5 0.5 0.5\n");
   const Scene scene = scene_of("y.obj",
                                "mtllib gone.mtl\nmtllib glass.mtl\nv 0 0 0 1 0 0\nv 1 0 0 0 1 0\n"
                                "v 0 1 0 0 0 1\nusemtl glass\nf 1 2 3\nusemtl brass\no a\nf 1 2 3\n"
@@ -252,8 +231,8 @@ TEST(Obj, WhatCannotBeHadIsToldWithItsPlace) {
 }
 
 TEST(Obj, MaterialsHaveImagesOfNumbers) {
-  for (const char* name : {"m.png", "r.png", "d.png"}) write_file(name, "");
-  write_file("maps.mtl", "newmtl a\nPm 1\nmap_Pm m.png\nmap_Pr r.png\nmap_d d.png\n");
+  for (const char* name : {"m.png", "r.png", "d.png"}) write_beside(name, "");
+  write_beside("maps.mtl", "newmtl a\nPm 1\nmap_Pm m.png\nmap_Pr r.png\nmap_d d.png\n");
   const Scene scene = scene_of("z.obj", "mtllib maps.mtl\n" + kCorners + "usemtl a\nf 1 2 3\n");
   const Shape& shape = scene.shapes.at(0);
   const auto expect_image = [&](std::size_t texture, const char* name) {
@@ -275,10 +254,10 @@ TEST(Obj, MaterialsHaveImagesOfNumbers) {
 
 // Robots take the meshes alone: parts by name and material, without a library.
 TEST(Obj, MeshesAloneHaveNoMaterials) {
-  const std::filesystem::path path =
-      write_file("parts.obj", "mtllib gone.mtl\n" + kCorners +
-                                  "v 0 0 9 1 0 0\nvt 0.25 0.5\nvn 0 0 1\nusemtl a\nf 1/1 2/1 3/1\n"
-                                  "usemtl b\nf 1//1 2//1 3//1\nf 2//1 3//1 4\n");
+  const std::filesystem::path path = write_beside(
+      "parts.obj", "mtllib gone.mtl\n" + kCorners +
+                       "v 0 0 9 1 0 0\nvt 0.25 0.5\nvn 0 0 1\nusemtl a\nf 1/1 2/1 3/1\n"
+                       "usemtl b\nf 1//1 2//1 3//1\nf 2//1 3//1 4\n");
   test::LogOf log;
   const std::vector<TriangleMeshShape> parts = read_obj_meshes(path, {});
   EXPECT_EQ(log.text(), "");
