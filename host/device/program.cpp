@@ -155,7 +155,8 @@ Program Program::from_source(const Device& device, const std::string& name,
   }
   if (shares) {
     const std::lock_guard lock(device.programs_->mutex);
-    device.programs_->compiled.try_emplace(shared_key, out.program_, out.own_declarations_);
+    device.programs_->compiled.emplace(
+        shared_key, Device::Programs::Compiled{out.program_, out.own_declarations_});
   }
   out.build_seconds_ = seconds_since(start);
   if (!out.from_cache_ && out.build_seconds_ >= noticeable_seconds)
