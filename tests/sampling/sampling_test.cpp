@@ -65,6 +65,9 @@ __kernel void rays(__global const CameraRecord* camera, __global const float* in
   const uint i = (uint)get_global_id(0);
   if (i < count) out[i] = camera_ray(camera, vload2(2 * i, in), vload2(2 * i + 1, in));
 }
+__kernel void spread(__global const CameraRecord* camera, float x, float y, __global float* out) {
+  vstore2(camera_spread(camera, (float2)(x, y)), 0, out);
+}
 // The same values, and their negatives, added to sums of one word, two words and three.
 __kernel void sums(__global const float* values, uint count, int unit, __global ulong* out) {
   ulong4 one[1] = {(ulong4)(0)}, two[2] = {(ulong4)(0), (ulong4)(0)}, three[3] = {(ulong4)(0), (ulong4)(0), (ulong4)(0)};
@@ -179,6 +182,22 @@ RayRecord camera_ray(const Scene& scene, glm::vec2 raster, glm::vec2 lens) {
   kernel.setArg(3, cl_uint{1});
   launch(bench().device, kernel, 1, 1);
   return out.read()[0];
+}
+
+/// How far apart rays of neighbouring pixels are, at the camera and added at length 1.
+std::vector<float> camera_spread(const Scene& scene, glm::vec2 raster) {
+  FlatView flat;
+  lower_camera(scene, flat);
+  const std::vector<CameraRecord> record = {flat.camera};
+  const Buffer<CameraRecord> camera(bench().device, std::span<const CameraRecord>(record));
+  Buffer<float> out(bench().device, 2);
+  cl::Kernel kernel = bench().program.kernel("spread");
+  kernel.setArg(0, camera.handle());
+  kernel.setArg(1, raster.x);
+  kernel.setArg(2, raster.y);
+  kernel.setArg(3, out.handle());
+  launch(bench().device, kernel, 1, 1);
+  return out.read();
 }
 
 }  // namespace
@@ -409,6 +428,30 @@ TEST(Fisheye, FootprintsAreDistancesOfRays) {
                   std::min(apart(out), apart(around)), 1e-5);
     }
   }
+}
+
+// The angle between neighbours is the mean of that outward and around for fisheyes, of that along
+// columns and rows by longitude and latitude; equal areas have equal shares of the sphere.
+TEST(Cameras, SpreadIsTheAngleBetweenNeighbours) {
+  const auto apart = [](const Scene& scene, const glm::dvec2& at, const glm::dvec2& step) {
+    return glm::length(unproject(scene.view.camera, scene.view.film, at + step).direction -
+                       unproject(scene.view.camera, scene.view.film, at - step).direction);
+  };
+  for (const auto mapping : {FisheyeProjection::equidistant, FisheyeProjection::equisolid}) {
+    const Scene scene = fisheye_scene(mapping, 200);
+    for (const glm::dvec2& at : {glm::dvec2(260, 40), {120, 180}, {300, 100}}) {
+      const glm::dvec2 out = 0.5 * glm::normalize(at - glm::dvec2(200, 100)), around(-out.y, out.x);
+      const std::vector<float> spread = camera_spread(scene, at);
+      EXPECT_EQ(spread[0], 0);
+      EXPECT_NEAR(spread[1], (apart(scene, at, out) + apart(scene, at, around)) / 2, 1e-5);
+    }
+  }
+  const Scene around = spherical_scene(SphericalProjection::equirectangular);
+  for (const glm::dvec2& at : {glm::dvec2(100, 20), {300, 150}, {10, 100}})
+    EXPECT_NEAR(camera_spread(around, at)[1],
+                (apart(around, at, {0.5, 0}) + apart(around, at, {0, 0.5})) / 2, 1e-5);
+  const double share = camera_spread(spherical_scene(SphericalProjection::equal_area), {9, 9})[1];
+  EXPECT_NEAR(share * share, 4 * std::numbers::pi / (400 * 200), 1e-9);
 }
 
 // The host's rays are the device's, and points project back to where their ray came from.
