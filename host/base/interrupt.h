@@ -6,10 +6,14 @@
 
 namespace caplet {
 
-/// Installs handlers for SIGINT, SIGTERM and SIGHUP (unless ignored, as by nohup) that set the
-/// flag. After a SIGINT or SIGTERM the next one has its default action; SIGHUP may come repeatedly
-/// when a terminal closes, and only sets the flag.
+/// Installs handlers for SIGINT, SIGTERM, SIGUSR1 and SIGHUP (unless ignored, as by nohup) that set
+/// the flag. After a SIGINT or SIGTERM the next one has its default action. SIGHUP may come
+/// repeatedly when a terminal closes, and SIGUSR1 from a scheduler before the end of a time limit:
+/// they only set the flag.
 void install_interrupt_handlers();
+/// Installs the handler of SIGUSR1 again. Drivers that compile with LLVM replace it by one that
+/// does nothing.
+void renew_user_signal_handler();
 bool interrupt_requested();
 /// Sets or clears the flag, for tests.
 void set_interrupt_requested(bool requested);

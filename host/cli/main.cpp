@@ -2,7 +2,7 @@
 // Copyright Caplet authors
 //
 // The main program: dispatches subcommands and returns exit codes (0 done, 1 failed while working,
-// 2 wrong input or usage, 3 `verify` found disagreement).
+// 2 wrong input or usage, 3 `verify` found disagreement, 75 a stopped render's film is kept).
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <unistd.h>
@@ -115,12 +115,15 @@ int whole_program(int argc, char** argv) {
   caplet::cli::use_help_text(app);
   app.set_help_flag("-h,--help", "Show this help and exit")->group("Options");
   app.require_subcommand(1);
-  app.footer(
-      caplet::cli::footer_with({"caplet render scene.pbrt -o picture.exr --preview picture.png"},
-                               "`caplet COMMAND --help` explains a command.\n"
-                               "Exit codes: 0 done, 1 failed while working, 2 the input or the "
-                               "usage is wrong, 3 verify found disagreement."));
+  app.footer(caplet::cli::footer_with(
+      {"caplet render scene.pbrt -o picture.exr --preview picture.png"},
+      "`caplet COMMAND --help` explains a command.\n"
+      "Exit codes: 0 done, 1 failed while working, 2 the input or the "
+      "usage is wrong, 3 verify found disagreement, 75 a render was stopped "
+      "and its film is kept."));
   caplet::cli::add_render(app, invocation);
+  caplet::cli::add_merge(app, invocation);
+  caplet::cli::add_film(app);
   caplet::cli::add_pick(app);
   caplet::cli::add_verify(app);
 #ifdef CAPLET_WITH_VIEW

@@ -13,12 +13,14 @@
 #include <utility>
 
 #include "base/atomic_file.h"
+#include "base/check.h"
 #include "base/clock.h"
 #include "base/interrupt.h"
 #include "base/log.h"
 #include "base/progress.h"
 #include "cli/commands.h"
 #include "cli/description.h"
+#include "cli/film_output.h"
 #include "cli/frames.h"
 #include "cli/options.h"
 #include "cli/overlays.h"
@@ -29,6 +31,7 @@
 #include "film/develop.h"
 #include "film/image.h"
 #include "import/import.h"
+#include "lower/fingerprint.h"
 #include "lower/live_scene.h"
 #include "lower/lower.h"
 #include "present/film_window.h"
@@ -55,13 +58,14 @@ constexpr const char* no_picture = "none";
 /// written.
 struct Files {
   std::vector<fs::path> pictures, previews;
-  fs::path movie, stats;
+  fs::path movie, stats, film;
   Outputs all;
 
   /// Returns the first output, which stands for all in messages.
   fs::path first() const {
     if (!pictures.empty()) return pictures.front();
-    return !previews.empty() ? previews.front() : movie.empty() ? stats : movie;
+    if (!previews.empty()) return previews.front();
+    return !movie.empty() ? movie : !film.empty() ? film : stats;
   }
 };
 
@@ -108,6 +112,32 @@ void add_output(const RenderFlags& options, Files& files, const fs::path& path) 
   }
 }
 
+void check_film_options(const RenderFlags& options) {
+  const FilmFlags& film = options.film;
+  const char* flag = !film.film.empty()      ? "--film"
+                     : film.checkpoint       ? "--checkpoint"
+                     : film.resume           ? "--resume"
+                     : !film.samples.empty() ? "--samples"
+                                             : nullptr;
+  if (flag && options.has_frames())
+    throw InputError(
+        SourceLocation{flag},
+        "does not go with --turntable and --frames, which --skip-existing goes on with");
+  if (flag && options.separation)
+    throw InputError(SourceLocation{flag}, "does not go with --stereo");
+}
+
+/// Returns where the film is written; empty where it is not. Throws InputError.
+fs::path film_path(const RenderFlags& options, const Files& files) {
+  if (!options.film.keeps()) return {};
+  if (!options.film.film.empty()) return output_named(options.film.film);
+  fs::path path = files.first();
+  if (path.empty() || is_stream(path))
+    throw InputError(SourceLocation{options.film.resume ? "--resume" : "--checkpoint"},
+                     "--film FILE tells where the film is");
+  return path.replace_extension(".film");
+}
+
 void check_frame_options(const RenderFlags& options, const Files& files) {
   const auto refuse = [](const char* flag, const std::string& why) {
     throw InputError(SourceLocation{flag}, why);
@@ -144,9 +174,9 @@ Overrides check_options(const RenderFlags& options, Files& files) {
   const bool none = std::ranges::find(options.outputs, no_picture) != options.outputs.end();
   if (none && options.outputs.size() > 1)
     throw InputError(SourceLocation{"-o"}, "'none' does not go with another -o");
-  if (none && options.preview.empty() && options.stats.empty())
+  if (none && options.preview.empty() && options.stats.empty() && options.film.film.empty())
     throw InputError(SourceLocation{"-o"},
-                     "'none' goes with --preview or --stats: nothing would be written");
+                     "'none' goes with --preview, --film or --stats: nothing would be written");
   for (const std::string& output : options.outputs)
     if (output != no_picture) add_output(options, files, output_named(output));
   if (!options.preview.empty()) add_preview(files, options.preview, "--preview");
@@ -160,6 +190,7 @@ Overrides check_options(const RenderFlags& options, Files& files) {
     files.all.add("--stats", files.stats);
   }
   check_frame_options(options, files);
+  check_film_options(options);
   return overrides;
 }
 
@@ -174,11 +205,15 @@ report::StereoLayout layout_of(const RenderFlags& options) {
 /// file's, in the current folder), its size, and that no output is a file that the scene was read
 /// from.
 void check_outputs(const RenderFlags& options, const Scene& scene, Layers layers, Files& files) {
-  if (options.outputs.empty() && !options.has_frames()) {
+  if (options.outputs.empty() && !options.has_frames() && options.film.film.empty()) {
     fs::path name = fs::path(scene.view.film.filename).filename();
     if (name.empty()) name = fs::path(options.scenes.front()).filename();
     add_output(options, files, name.replace_extension(".exr"));
   }
+  files.film = film_path(options, files);
+  if (!files.film.empty()) files.all.add("--film", files.film);
+  if ((options.film.checkpoint || options.film.resume) && is_stream(files.film))
+    throw InputError(SourceLocation{"--film"}, "checkpoints and --resume need a file");
   files.all.check_inputs();
   const std::array<int, 4> window = scene.view.film.crop.value_or(
       std::array<int, 4>{0, scene.view.film.width, 0, scene.view.film.height});
@@ -200,8 +235,10 @@ void check_outputs(const RenderFlags& options, const Scene& scene, Layers layers
   }
 }
 
-constexpr const char* interrupted_early =
-    "interrupted before anything was rendered; nothing is written";
+/// Is thrown when an interrupt comes before there is anything to write.
+struct InterruptedEarly : RunError {
+  InterruptedEarly() : RunError("interrupted before anything was rendered; nothing is written") {}
+};
 
 void guard(const std::vector<Device>& devices) {
   for (const Device& device : devices) SecondTry::guard(device);
@@ -220,6 +257,7 @@ RenderResult with_progress(const std::vector<Device>& devices, const RenderOptio
   ProgressReporter reporter(ProgressReporter::style_for_stderr(quiet));
   try {
     return work([&](const Progress& progress) {
+      renew_user_signal_handler();
       if (progress.samples_done > 0 || progress.fraction >= 1)
         SecondTry::driver_works();
       else
@@ -233,18 +271,9 @@ RenderResult with_progress(const std::vector<Device>& devices, const RenderOptio
   } catch (const RunError&) {
     // A driver's compiler may fail because of the signal; the interrupt is then the reason, not the
     // driver.
-    if (interrupt_requested()) throw RunError(interrupted_early);
+    if (interrupt_requested()) throw InterruptedEarly();
     throw;
   }
-}
-
-RenderResult render_with_progress(const FlatScene& flat, const FlatView& view,
-                                  const std::vector<Device>& devices,
-                                  const RenderOptions& render_options, bool quiet) {
-  return with_progress(devices, render_options, quiet,
-                       [&](const std::function<void(const Progress&)>& progress) {
-                         return render(flat, view, devices, render_options, progress);
-                       });
 }
 
 /// The inputs and settings of a picture.
@@ -257,13 +286,46 @@ struct Work {
   Layers layers, film_layers;  // the layers to write, and those with the ones that overlays need
   const Files& files;
   RenderOptions render_options;
+  FilmOutput* film = nullptr;  // where the film is kept
 };
+
+std::map<std::string, std::string> notes_of(const Work& work, const RenderResult& result) {
+  const auto notes = report::picture_metadata(work.scene, scene_names(work.options.scenes),
+                                              work.invocation.command_line(), result);
+  return work.film ? work.film->notes(notes) : notes;
+}
+
+/// Returns the look that writes checkpoints.
+Look checkpoints(const Work& work) {
+  const double interval = *work.options.film.checkpoint;
+  const Clock::time_point start = Clock::now();
+  return {interval, [&work, interval, start](const Film& film) {
+            RenderResult so_far;
+            so_far.samples_per_pixel = narrow<int>(film.samples(0));
+            so_far.render_seconds = seconds_since(start);
+            so_far.interrupted = true;
+            for (const Device& device : work.devices)
+              so_far.devices.push_back(work_of(device.info()));
+            work.film->checkpoint(film, notes_of(work, so_far), interval);
+          }};
+}
+
+RenderResult render_with_progress(const Work& work, const FlatView& view,
+                                  const RenderOptions& render_options) {
+  return with_progress(work.devices, render_options, work.options.quiet,
+                       [&](const std::function<void(const Progress&)>& progress) {
+                         Session session(work.flat, view, work.devices,
+                                         session_options(render_options));
+                         if (work.film) work.film->resume(session, render_options.sample_begin);
+                         return render(session, work.devices, render_options, progress);
+                       });
+}
 
 /// Renders a view; if requested, tev shows its progress.
 RenderResult render_shown(const Work& work, const FlatView& view, const std::string& view_name) {
-  if (work.options.display.empty())
-    return render_with_progress(work.flat, view, work.devices, work.render_options,
-                                work.options.quiet);
+  RenderOptions shown = work.render_options;
+  if (work.film && work.options.film.checkpoint) shown.looks.push_back(checkpoints(work));
+  if (work.options.display.empty()) return render_with_progress(work, view, shown);
   constexpr double most_seconds_at_the_end = 5;
   const std::string name = (work.files.pictures.empty() ? fs::path(work.options.scenes.front())
                                                         : work.files.pictures.front())
@@ -272,14 +334,14 @@ RenderResult render_shown(const Work& work, const FlatView& view, const std::str
   TevDisplay display(parse_tev_address(work.options.display, "--display"),
                      view_name.empty() ? name : name + " (" + view_name + ")");
   NotFinite ignored;
-  RenderOptions shown = work.render_options;
   shown.film_on_device = false;
-  shown.look = [&](const Film& film) {
-    if (display.is_idle()) display.show(develop(film, work.scene, work.layers, ignored));
-  };
-  RenderResult result =
-      render_with_progress(work.flat, view, work.devices, shown, work.options.quiet);
-  display.show(develop(result.film, work.scene, work.layers, ignored));
+  shown.looks.push_back({1, [&](const Film& film) {
+                           if (display.is_idle())
+                             display.show(
+                                 develop(film, work.scene.view.film, work.layers, ignored));
+                         }});
+  RenderResult result = render_with_progress(work, view, shown);
+  display.show(develop(result.film, work.scene.view.film, work.layers, ignored));
   display.finish(most_seconds_at_the_end);
   return result;
 }
@@ -290,12 +352,12 @@ void add_to(report::RunSeconds& seconds, const RenderResult& result) {
 }
 
 BandedImage bands_of(const Work& work, const RenderResult& result, NotFinite& not_finite) {
-  BandedImage out = result.device_film ? report::developed_in_bands(*result.device_film, work.scene,
-                                                                    work.film_layers, not_finite)
-                                       : report::developed_in_bands(result.film, work.scene,
-                                                                    work.film_layers, not_finite);
-  out.whole.metadata = report::picture_metadata(work.scene, scene_names(work.options.scenes),
-                                                work.invocation.command_line(), result);
+  BandedImage out = result.device_film
+                        ? report::developed_in_bands(*result.device_film, work.scene.view.film,
+                                                     work.film_layers, not_finite)
+                        : report::developed_in_bands(result.film, work.scene.view.film,
+                                                     work.film_layers, not_finite);
+  out.whole.metadata = notes_of(work, result);
   return out;
 }
 
@@ -329,7 +391,16 @@ RenderResult written(const Work& work, RenderResult result, report::RunSeconds& 
 }
 
 RenderResult one_picture(const Work& work, const FlatView& view, report::RunSeconds& seconds) {
-  return written(work, render_shown(work, view, ""), seconds);
+  RenderResult result = render_shown(work, view, "");
+  std::exception_ptr failure;  // is thrown when the pictures are written as well
+  if (work.film) try {
+      work.film->finish(result.film, notes_of(work, result), result.render_seconds);
+    } catch (const RunError&) {
+      failure = std::current_exception();
+    }
+  result = written(work, std::move(result), seconds);
+  if (failure) std::rethrow_exception(failure);
+  return result;
 }
 
 /// Renders the views of two eyes in turn, the right one with as many samples as the left one got.
@@ -548,6 +619,16 @@ RenderResult render_frames(const Work& of_all, const FrameSource& source,
   return result;
 }
 
+/// Returns what a film's file says besides its samples.
+SavedFilm saved_like(const Scene& scene, const FlatScene& flat, const FlatView& view) {
+  SavedFilm out;
+  out.scene = fingerprint(flat);
+  out.view = fingerprint(view);
+  out.samples_wanted = static_cast<std::uint32_t>(scene.view.sampler.samples_per_pixel);
+  out.settings = scene.view.film;
+  return out;
+}
+
 void run_render(const RenderFlags& options, const Invocation& invocation) {
   Stopwatch total, phase;
   report::RunSeconds seconds;
@@ -574,29 +655,37 @@ void run_render(const RenderFlags& options, const Invocation& invocation) {
   post::check(options.overlays, scene, "--");
   if (options.overlays.scale_bar && !options.quiet) tell_of_bar(options, scene);
   widen_to_least(scene);
+  const auto wanted = static_cast<std::uint32_t>(scene.view.sampler.samples_per_pixel);
+  const SampleSpan samples = options.film.samples.empty()
+                                 ? SampleSpan{0, wanted}
+                                 : parse_samples(options.film.samples, wanted);
   seconds.load = phase.lap();
   const FlatScene flat = lower(scene);
   const FlatView view = lower_view(scene);
   seconds.build = phase.lap();
-  if (interrupt_requested()) throw RunError(interrupted_early);
+  if (interrupt_requested()) throw InterruptedEarly();
 
   devices = tried_apart(devices, {.shapes = flat.shapes, .render = true});
   guard(devices);
   if (!options.quiet)
     log::info("{}: {} primitives, {} x {} pixels, {} samples per pixel on {}",
               scene_names(options.scenes), flat.primitive_count, view.view.crop_width,
-              view.view.crop_height, scene.view.sampler.samples_per_pixel, names_of(devices));
+              view.view.crop_height, samples.end - samples.begin, names_of(devices));
+  std::optional<FilmOutput> film;
+  if (!files.film.empty())
+    film.emplace(files.film, saved_like(scene, flat, view), options.film.resume);
   RenderOptions render_options;
-  render_options.samples_per_pixel = scene.view.sampler.samples_per_pixel;
+  render_options.sample_begin = samples.begin;
+  render_options.samples_per_pixel = narrow<int>(samples.end - samples.begin);
   render_options.time_limit = options.time_limit;
   render_options.batch_paths = options.batch_paths;
   render_options.time_stages = !options.stats.empty();
-  render_options.film_on_device = true;
+  render_options.film_on_device = !film;
   render_options.cancelled = interrupt_requested;
   render_options.layers = film_layers;
   render_options.patience = options.patience;
-  const Work work{options, invocation,  scene, flat,          devices,
-                  layers,  film_layers, files, render_options};
+  const Work work{options, invocation,  scene, flat,           devices,
+                  layers,  film_layers, files, render_options, film ? &*film : nullptr};
   const RenderResult result = frames ? render_frames(work, *frames, overrides, scene, seconds)
                               : options.separation ? stereo_pictures(work, seconds)
                                                    : one_picture(work, view, seconds);
@@ -606,8 +695,11 @@ void run_render(const RenderFlags& options, const Invocation& invocation) {
   const fs::path first = frames && !files.movie.empty() ? files.movie : files.first();
   if (result.interrupted)
     log::warn("interrupted: {} holds {} of {} samples per pixel", first.string(),
-              result.samples_per_pixel, scene.view.sampler.samples_per_pixel);
+              result.samples_per_pixel, render_options.samples_per_pixel);
   log::info("wrote {}", first.string());
+  if (film && first != files.film) log::info("wrote {}", files.film.string());
+  if (film && result.interrupted && result.samples_per_pixel < render_options.samples_per_pixel)
+    throw CLI::RuntimeError(exit_stopped);
 }
 
 }  // namespace
@@ -623,7 +715,15 @@ void add_render(CLI::App& app, const Invocation& invocation) {
                               "Options override the scene file. Ctrl-C finishes the sample pass "
                               "and writes what there is; a second one stops at once. "
                               "The picture is scene-linear."));
-  command->callback([o, &invocation] { run_render(*o, invocation); });
+  command->callback([o, &invocation] {
+    try {
+      run_render(*o, invocation);
+    } catch (const InterruptedEarly& error) {
+      if (!o->film.keeps()) throw;
+      log::warn("{}", error.what());  // a film of before is as it was
+      throw CLI::RuntimeError(exit_stopped);
+    }
+  });
 }
 
 }  // namespace caplet::cli

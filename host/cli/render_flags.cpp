@@ -171,6 +171,7 @@ void add_render_flags(CLI::App& command, RenderFlags& o) {
   add_device_choice(command, o);
   add_quality(command, o);
   add_layer_choice(command, o);
+  add_film_flags(command, o.film);
   add_two_eyes(command, o);
   add_reports(command, o);
   add_import_options(command, o.import_options);

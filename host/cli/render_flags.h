@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "cli/film_output.h"
 #include "cli/options.h"
 #include "import/import.h"
 #include "post/overlay.h"
@@ -29,6 +30,7 @@ struct RenderFlags {
   std::optional<std::uint32_t> seed;
   std::optional<double> time_limit, clamp, separation, convergence;
   std::string layout, display;
+  FilmFlags film;
   double patience = 60;
   std::size_t batch_paths = 0;
   std::uint32_t turntable = 0;

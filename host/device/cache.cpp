@@ -12,6 +12,7 @@
 #include <mutex>
 
 #include "base/atomic_file.h"
+#include "base/content_hash.h"
 #include "base/error.h"
 #include "base/log.h"
 
@@ -46,16 +47,6 @@ fs::path cache_folder() {
   if (const fs::path home = environment_path("HOME"); !home.empty())
     return home / ".cache" / "caplet";
   return {};
-}
-
-std::string content_hash(std::string_view bytes) {
-  // The offset basis is 0x6c62272e07bb014262b821756295c58d, the prime 2^88 + 0x13b.
-  using Wide = unsigned __int128;
-  Wide hash = (static_cast<Wide>(0x6c62272e07bb0142u) << 64) | 0x62b821756295c58du;
-  const Wide prime = (static_cast<Wide>(1) << 88) | 0x13bu;
-  for (const char c : bytes) hash = (hash ^ static_cast<unsigned char>(c)) * prime;
-  return fmt::format("{:016x}{:016x}", static_cast<std::uint64_t>(hash >> 64),
-                     static_cast<std::uint64_t>(hash));
 }
 
 fs::path cache_file(std::string_view key, std::string_view extension) {

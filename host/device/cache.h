@@ -18,9 +18,6 @@ namespace caplet {
 /// them is set.
 std::filesystem::path cache_folder();
 
-/// Returns 32 hexadecimal digits: FNV-1a with 128 bits (Fowler, Noll, Vo; RFC 9923).
-std::string content_hash(std::string_view bytes);
-
 /// Returns what was stored under `key` (any text), or nothing when the file is missing, of another
 /// version or key, cut short or altered.
 std::optional<std::vector<unsigned char>> cache_load(std::string_view key,

@@ -64,11 +64,11 @@ LayeredImage black_image(const FilmLayout& layout, ColorSpace space, Layers laye
 /// Develops one pixel of a film.
 class Developer {
  public:
-  Developer(const Film& film, const Scene& scene)
+  Developer(const Film& film, const FilmSettings& settings)
       : film_(film),
-        picture_from_xyz_(picture_from_xyz(scene.view.film)),
-        rgb_from_xyz_(rgb_from_xyz(scene.view.film.space)),
-        exposure_(scene.view.film.exposure_time * scene.view.film.iso / 100),
+        picture_from_xyz_(picture_from_xyz(settings)),
+        rgb_from_xyz_(rgb_from_xyz(settings.space)),
+        exposure_(settings.exposure_time * settings.iso / 100),
         brightest_(std::ldexp(1.0, film.layout().color_exponent)) {}
 
   void look_at(std::size_t pixel) {
@@ -166,11 +166,12 @@ float instead_of(LayerHow how) {
 
 }  // namespace
 
-LayeredImage develop(const Film& film, const Scene& scene, Layers layers, NotFinite& not_finite) {
+LayeredImage develop(const Film& film, const FilmSettings& settings, Layers layers,
+                     NotFinite& not_finite) {
   CHECK_EQ_(film.layout().layers.has_all(layers), true);
-  LayeredImage image = black_image(film.layout(), scene.view.film.space, layers);
+  LayeredImage image = black_image(film.layout(), settings.space, layers);
   const Window& window = film.layout().window;
-  Developer developer(film, scene);
+  Developer developer(film, settings);
   not_finite.of += window.pixels();
   for (std::size_t pixel = 0; pixel < window.pixels(); ++pixel) {
     developer.look_at(pixel);
@@ -197,13 +198,13 @@ LayeredImage develop(const Film& film, const Scene& scene, Layers layers, NotFin
     not_finite.x = static_cast<std::size_t>(window.x) + pixel % width;
     not_finite.y = static_cast<std::size_t>(window.y) + pixel / width;
   }
-  put_under(image, scene.view.film.backdrop);
+  put_under(image, settings.backdrop);
   return image;
 }
 
-LayeredImage develop(const Film& film, const Scene& scene, Layers layers) {
+LayeredImage develop(const Film& film, const FilmSettings& settings, Layers layers) {
   NotFinite not_finite;
-  LayeredImage image = develop(film, scene, layers, not_finite);
+  LayeredImage image = develop(film, settings, layers, not_finite);
   not_finite.warn();
   return image;
 }

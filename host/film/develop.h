@@ -9,7 +9,7 @@
 #include "film/film.h"
 #include "film/image.h"
 #include "film/layers.h"
-#include "scene/scene.h"
+#include "scene/film.h"
 
 namespace caplet {
 
@@ -27,10 +27,9 @@ struct NotFinite {
 };
 
 /// Returns R G B A and the requested layers (docs/output.md) that the film has, for all its pixels,
-/// times the exposure of `scene`:
-/// R G B     mean of the samples, linear in the film's colour space, with its white balance; over
-/// the
-///           film's backdrop, by A
+/// times the exposure of `settings`:
+/// R G B     mean of the samples, linear in the settings' colour space, with their white balance;
+///           over their backdrop, by A
 /// A         coverage: share of the camera rays that hit something
 /// albedo    mean over all samples (0 where nothing is hit), linear in the film's colour space: 1 1
 /// 1
@@ -44,9 +43,10 @@ struct NotFinite {
 ///           samples
 /// All values are finite: where the exposure goes beyond a float, R G B are black and the variance
 /// is the greatest float (other layers: 0), and `not_finite` counts those pixels.
-LayeredImage develop(const Film& film, const Scene& scene, Layers layers, NotFinite& not_finite);
+LayeredImage develop(const Film& film, const FilmSettings& settings, Layers layers,
+                     NotFinite& not_finite);
 
 /// Does the same and warns.
-LayeredImage develop(const Film& film, const Scene& scene, Layers layers);
+LayeredImage develop(const Film& film, const FilmSettings& settings, Layers layers);
 
 }  // namespace caplet

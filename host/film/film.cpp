@@ -17,9 +17,6 @@ namespace caplet {
 
 namespace {
 
-constexpr const char* format_name = "caplet.film";
-constexpr const char* format_version = "1";
-
 std::size_t words_of(std::size_t layer) {
   return static_cast<std::size_t>(layer_rows[layer].count) *
          static_cast<std::size_t>(layer_rows[layer].words);
@@ -65,51 +62,6 @@ bool join(FilmPart& a, const FilmPart& b) {
   }
   return false;
 }
-
-std::string text_of(const std::vector<FilmPart>& parts) {
-  std::string out;
-  for (const FilmPart& part : parts)
-    out += fmt::format("{}{} {} {} {} {} {}", out.empty() ? "" : ",", part.window.x, part.window.y,
-                       part.window.width, part.window.height, part.sample_begin, part.sample_count);
-  return out;
-}
-
-/// Takes the next whole number from `text`, with the space or comma behind it.
-bool take_number(std::string_view& text, std::int64_t low, std::int64_t high, std::int64_t& out) {
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), out);
-  if (error != std::errc() || out < low || out > high) return false;
-  text.remove_prefix(static_cast<std::size_t>(end - text.data()));
-  if (text.empty()) return true;
-  const bool separated = text.front() == ' ' || text.front() == ',';
-  text.remove_prefix(1);
-  return separated;
-}
-
-class Metadata {
- public:
-  Metadata(const std::filesystem::path& path, const LayeredImage& image)
-      : path_(path), image_(image) {}
-
-  std::string_view text(const char* name) const {
-    const auto found = image_.metadata.find(name);
-    if (found == image_.metadata.end()) fail(fmt::format("it has no '{}'", name));
-    return found->second;
-  }
-  int number(const char* name) const {
-    std::string_view left = text(name);
-    std::int64_t value = 0;
-    if (!take_number(left, -largest_film_exponent, largest_film_exponent, value) || !left.empty())
-      fail(fmt::format("'{}' is not a number", name));
-    return static_cast<int>(value);
-  }
-  [[noreturn]] void fail(const std::string& why) const {
-    throw InputError(SourceLocation{path_.string()}, "this is no film of caplet: " + why);
-  }
-
- private:
-  std::filesystem::path path_;
-  const LayeredImage& image_;
-};
 
 }  // namespace
 
@@ -263,72 +215,6 @@ LayeredImage image_of(const FilmLayout& layout) {
   image.data_width = layout.window.width;
   image.data_height = layout.window.height;
   return image;
-}
-
-void Film::save(const std::filesystem::path& path) const {
-  LayeredImage image = image_of(layout_);
-  image.metadata = {{format_name, format_version},
-                    {"caplet.film.layers", std::to_string(layout_.layers.bits())},
-                    {"caplet.film.color_exponent", std::to_string(layout_.color_exponent)},
-                    {"caplet.film.length_exponent", std::to_string(layout_.length_exponent)},
-                    {"caplet.film.samples", text_of(parts_)}};
-  const std::size_t pixels = layout_.window.pixels();
-  for (std::size_t w = 0; w < words_per_pixel_; ++w)
-    for (const int half : {0, 1}) {
-      Channel channel{fmt::format("word{:02}.{}", w, half == 0 ? "low" : "high"),
-                      {},
-                      std::vector<std::uint32_t>(pixels)};
-      for (std::size_t i = 0; i < pixels; ++i)
-        channel.uints[i] =
-            static_cast<std::uint32_t>(words_[i * words_per_pixel_ + w] >> (32 * half));
-      image.channels.push_back(std::move(channel));
-    }
-  write_exr(path, image);
-}
-
-Film Film::load(const std::filesystem::path& path) {
-  const LayeredImage image = read_exr(path);
-  const Metadata of(path, image);
-  if (of.text(format_name) != format_version)
-    of.fail(fmt::format("its version is not {}", format_version));
-  FilmLayout layout;
-  layout.width = image.width;
-  layout.height = image.height;
-  layout.window = {image.x, image.y, image.data_width, image.data_height};
-  std::string_view bits = of.text("caplet.film.layers");
-  std::int64_t value = 0;
-  if (!take_number(bits, 0, std::int64_t{Layers::all().bits()}, value) || !bits.empty())
-    of.fail("its layers are not those of this program");
-  layout.layers = Layers::of_bits(static_cast<std::uint32_t>(value));
-  layout.color_exponent = of.number("caplet.film.color_exponent");
-  layout.length_exponent = of.number("caplet.film.length_exponent");
-  Film film(layout);
-  for (std::string_view left = of.text("caplet.film.samples"); !left.empty();) {
-    std::array<std::int64_t, 6> numbers{};
-    for (std::int64_t& number : numbers)
-      if (!take_number(left, 0, std::numeric_limits<std::uint32_t>::max(), number))
-        of.fail("its list of samples is broken");
-    const auto as_int = [](std::int64_t number) {
-      return static_cast<int>(std::min<std::int64_t>(number, 1 << 30));
-    };
-    const FilmPart part{
-        {as_int(numbers[0]), as_int(numbers[1]), as_int(numbers[2]), as_int(numbers[3])},
-        static_cast<std::uint32_t>(numbers[4]),
-        static_cast<std::uint32_t>(numbers[5])};
-    if (!layout.window.holds(part.window)) of.fail("its list of samples is broken");
-    add_part(film.parts_, part);
-  }
-  const std::size_t pixels = layout.window.pixels();
-  for (std::size_t w = 0; w < film.words_per_pixel_; ++w) {
-    const Channel* low = image.find(fmt::format("word{:02}.low", w));
-    const Channel* high = image.find(fmt::format("word{:02}.high", w));
-    if (!low || !high || low->uints.size() != pixels || high->uints.size() != pixels)
-      of.fail(fmt::format("word {} is missing", w));
-    for (std::size_t i = 0; i < pixels; ++i)
-      film.words_[i * film.words_per_pixel_ + w] = low->uints[i] | std::uint64_t{high->uints[i]}
-                                                                       << 32;
-  }
-  return film;
 }
 
 }  // namespace caplet

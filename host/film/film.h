@@ -9,7 +9,6 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <filesystem>
 #include <span>
 #include <vector>
 
@@ -92,11 +91,6 @@ class Film {
   /// Adds the samples of another film. Throws InputError, and changes nothing, when the two are not
   /// of one layout or have samples in common.
   void add(const Film& other);
-
-  /// Writes an EXR of the sums (docs/output.md), as write_exr does. Throws RunError.
-  void save(const std::filesystem::path& path) const;
-  /// Loads such a file. Throws InputError when missing, broken or no film.
-  static Film load(const std::filesystem::path& path);
 
  private:
   FilmLayout layout_;

@@ -37,40 +37,48 @@ Film::~Film() = default;
 
 const Film::Data& Film::developed() const {
   std::call_once(data_->once, [&] {
-    LayeredImage image = develop(data_->film, data_->sight->scene, data_->film.layout().layers);
-    image.metadata = data_->notes;
+    LayeredImage image =
+        develop(data_->saved.film, data_->saved.settings, data_->saved.film.layout().layers);
+    image.metadata = data_->saved.notes;
     data_->image = std::move(image);
   });
   return *data_;
 }
 
-int Film::width() const { return data_->film.layout().window.width; }
-int Film::height() const { return data_->film.layout().window.height; }
-int Film::x() const { return data_->film.layout().window.x; }
-int Film::y() const { return data_->film.layout().window.y; }
-int Film::samples_per_pixel() const { return static_cast<int>(data_->film.samples(0)); }
+int Film::width() const { return data_->saved.film.layout().window.width; }
+int Film::height() const { return data_->saved.film.layout().window.height; }
+int Film::x() const { return data_->saved.film.layout().window.x; }
+int Film::y() const { return data_->saved.film.layout().window.y; }
+int Film::samples_per_pixel() const { return static_cast<int>(data_->saved.film.samples(0)); }
 
 std::vector<SampleRange> Film::samples() const {
   std::vector<SampleRange> out;
-  for (const FilmPart& part : data_->film.parts())
+  for (const FilmPart& part : data_->saved.film.parts())
     out.push_back({part.sample_begin, part.sample_count});
   std::ranges::sort(out, {}, &SampleRange::first);
   return out;
 }
 
 void Film::add(const Film& other) {
-  caplet::Film sum = data_->film;
-  sum.add(other.data_->film);
-  *this = Inside::film(std::move(sum), data_->sight, data_->notes,
+  SavedFilm sum = data_->saved;
+  caplet::add(sum, other.data_->saved);
+  *this = Inside::film(std::move(sum), data_->sight ? data_->sight : other.data_->sight,
                        data_->render_seconds + other.data_->render_seconds);
 }
 
-void Film::save(const std::filesystem::path& file) const { data_->film.save(file); }
+void Film::save(const std::filesystem::path& file) const {
+  save_film(file, data_->saved, data_->render_seconds);
+}
+
+Film Film::load(const std::filesystem::path& file) {
+  return Inside::film(load_film(file), nullptr, 0);
+}
 
 Film Film::load(const std::filesystem::path& file, const Scene& scene) {
   const caplet::Scene& model = *Inside::model(scene);
-  return Inside::film(caplet::Film::load(file), std::make_shared<const post::Sight>(model),
-                      {{"caplet.scene", model.source}}, 0);
+  SavedFilm saved = load_film(file);
+  saved.settings = model.view.film;
+  return Inside::film(std::move(saved), std::make_shared<const post::Sight>(model), 0);
 }
 
 std::vector<std::string> Film::channels() const {
@@ -106,8 +114,10 @@ void Film::write_preview(const std::filesystem::path& file, const OverlayOptions
   check_preview_size(file, width(), height(), "preview");
   post::Overlays asked;
   for (const auto& [name, value] : drawn) post::set_overlay(asked, name, value, name);
-  post::check(asked, *data_->sight, "");
-  if (!data_->film.layout().layers.has_all(asked.layers()))
+  if (asked.any() && !data_->sight)
+    throw InputError("overlays need the scene of the film: load the film with it");
+  if (asked.any()) post::check(asked, *data_->sight, "");
+  if (!data_->saved.film.layout().layers.has_all(asked.layers()))
     throw InputError(
         "the film does not have the layers that outlines and the depth cue are drawn from (depth, "
         "object)");

@@ -17,11 +17,11 @@ Film render(const Scene& scene, const Device& device, const RenderOptions& optio
   const FlatScene flat = lower(model);
   try_device(on, {.shapes = flat.shapes, .render = true});
   const auto samples = static_cast<std::uint32_t>(model.view.sampler.samples_per_pixel);
-  caplet::Session session(flat, lower_view(model), {on},
-                          {.layers = Layers::all(), .most_samples = samples});
+  const FlatView view = lower_view(model);
+  caplet::Session session(flat, view, {on}, {.layers = Layers::all(), .most_samples = samples});
   SessionRuns runs;
   runs.render(session, samples, options);
-  return runs.film(session, model);
+  return runs.film(session, model, flat, view);
 }
 
 }  // namespace caplet::v0

@@ -8,6 +8,7 @@
 #include "library/detail/inside.h"
 #include "library/detail/questions.h"
 #include "library/detail/sessions.h"
+#include "lower/fingerprint.h"
 #include "lower/live_scene.h"
 #include "lower/lower.h"
 #include "render/known_answers.h"
@@ -47,16 +48,34 @@ std::uint32_t SessionRuns::render(caplet::Session& session, std::uint32_t sample
   return done;
 }
 
-Film SessionRuns::film(caplet::Session& session, const caplet::Scene& scene) {
+FilmOrigin SessionRuns::origin(const caplet::Session& session, const FlatScene& flat,
+                               const FlatView& view) {
+  if (scene_hash_.empty()) {
+    scene_hash_ = fingerprint(flat);
+    view_hash_ = fingerprint(view);
+  }
+  return {session.layout(), scene_hash_, view_hash_};
+}
+
+void SessionRuns::resume(const SavedFilm& film) { before_ = film.notes; }
+
+Film SessionRuns::film(caplet::Session& session, const caplet::Scene& scene, const FlatScene& flat,
+                       const FlatView& view) {
   if (!sight_) sight_ = std::make_shared<const post::Sight>(scene);
-  caplet::Film film = session.film();
+  SavedFilm saved;
+  saved.film = session.film();
+  const FilmOrigin of = origin(session, flat, view);
+  saved.scene = of.scene;
+  saved.view = of.view;
+  saved.settings = scene.view.film;
   RenderResult result;
-  result.samples_per_pixel = static_cast<int>(film.samples(0));
+  result.samples_per_pixel = static_cast<int>(saved.film.samples(0));
   result.render_seconds = seconds;
   result.interrupted = interrupted;
   result.devices = session.work();
-  return Inside::film(std::move(film), sight_,
-                      report::picture_metadata(scene, scene.source, "libcaplet", result), seconds);
+  saved.notes =
+      notes_together(before_, report::picture_metadata(scene, scene.source, "libcaplet", result));
+  return Inside::film(std::move(saved), sight_, seconds);
 }
 
 struct Session::Data {
@@ -131,9 +150,25 @@ int Session::render(int samples, const RenderOptions& options) {
 
 void Session::cancel() { data_->session.cancel(); }
 
-Film Session::film() const { return data_->runs.film(data_->session, data_->live.scene()); }
+Film Session::film() const {
+  Data& d = *data_;
+  return d.runs.film(d.session, d.live.scene(), d.live.flat(), d.live.view());
+}
 
-void Session::resume(const Film& film) { data_->session.resume(Inside::film(film)); }
+void Session::begin_at(std::uint32_t sample) {
+  data_->session.begin_at(sample);
+  data_->runs = {};
+}
+
+void Session::resume(const Film& film) {
+  Data& d = *data_;
+  const SavedFilm& saved = Inside::film(film);
+  const std::string why =
+      difference(saved.origin(), d.runs.origin(d.session, d.live.flat(), d.live.view()));
+  if (!why.empty()) throw InputError("the film cannot be continued: " + why);
+  d.session.resume(saved.film);
+  d.runs.resume(saved);
+}
 
 std::optional<Hit> Session::pixel(int x, int y) { return data_->questions().pixel(x, y); }
 std::optional<Hit> Session::nearest(const Ray& ray) { return nearest(std::span(&ray, 1)).front(); }

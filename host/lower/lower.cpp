@@ -42,9 +42,8 @@ void lower_sampler(const SamplerSettings& sampler, ViewRecord& out) {
     out.sampler_x = narrow<uint>(strata[0]);
     out.sampler_y = narrow<uint>(strata[1]);
     if (!sampler.jitter) out.strategy |= CAPLET_STRATEGY_UNJITTERED;
-  } else {
-    out.sampler_x =
-        narrow<uint>(std::bit_width(narrow<uint>(sampler.samples_per_pixel) - 1));  // zsobol
+  } else if (sampler.kind == SamplerSettings::Kind::zsobol) {
+    out.sampler_x = narrow<uint>(std::bit_width(narrow<uint>(sampler.samples_per_pixel) - 1));
   }
 }
 

@@ -11,7 +11,8 @@ namespace caplet {
 
 SessionOptions session_options(const RenderOptions& options) {
   CHECK_LT_(0, options.samples_per_pixel);
-  return {.layers = options.layers,
+  return {.sample_begin = options.sample_begin,
+          .layers = options.layers,
           .batch_paths = options.batch_paths,
           .most_samples = static_cast<std::uint32_t>(options.samples_per_pixel),
           .time_stages = options.time_stages,
@@ -33,7 +34,7 @@ RenderResult render(Session& session, std::span<const Device> devices, const Ren
   result.stage_compile_seconds = session.compile_seconds_by_stage();
   const Clock::time_point start = Clock::now();
   if (progress) progress({0, 0, 0});
-  std::uint32_t done = 0;
+  std::uint32_t done = session.samples();
   const auto pass = [&](std::uint32_t samples) {
     std::optional<double> time_left = options.time_limit;
     if (time_left) *time_left = std::max(0.0, *time_left - seconds_since(start));
@@ -49,22 +50,32 @@ RenderResult render(Session& session, std::span<const Device> devices, const Ren
         },
         time_left);
     done += more;
-    return more == samples;
+    // A pass of one batch hears of it when it is complete.
+    return more == samples && !(options.cancelled && options.cancelled());
   };
-  if (options.look) {
-    // A pass has as many samples as take about the time between two looks.
+  if (!options.looks.empty()) {
+    const double shortest = std::ranges::min(options.looks, {}, &Look::seconds).seconds;
+    std::vector<Clock::time_point> last(options.looks.size(), start);
+    // A pass has as many samples as take up to half the time between two looks.
     for (std::uint32_t samples = 1; done < total;) {
       const Clock::time_point begin = Clock::now();
       if (!pass(std::min(samples, total - done)) ||
           (options.time_limit && seconds_since(start) >= *options.time_limit))
         break;
       const double seconds = seconds_since(begin);
-      if (done < total) options.look(session.film());
-      if (seconds < options.look_seconds / 2) samples *= 2;
-      if (seconds > 2 * options.look_seconds) samples = std::max<std::uint32_t>(1, samples / 2);
+      if (seconds < shortest / 4) samples *= 2;
+      if (seconds > shortest / 2) samples = std::max<std::uint32_t>(1, samples / 2);
+      if (done >= total) break;
+      std::optional<Film> film;
+      for (std::size_t i = 0; i < last.size(); ++i) {
+        if (seconds_since(last[i]) < options.looks[i].seconds) continue;
+        if (!film) film = session.film();
+        options.looks[i].show(*film);
+        last[i] = Clock::now();
+      }
     }
-  } else {
-    pass(total);
+  } else if (done < total) {
+    pass(total - done);
   }
   result.interrupted = options.cancelled && options.cancelled();
   if (options.film_on_device) result.device_film = session.film_on_device();

@@ -18,8 +18,16 @@
 
 namespace caplet {
 
+/// Look is called between passes of a render, about every so many seconds, with the film so far.
+/// The final film does not depend on it.
+struct Look {
+  double seconds = 1;
+  std::function<void(const Film&)> show;
+};
+
 struct RenderOptions {
-  int samples_per_pixel = 16;
+  std::uint32_t sample_begin = 0;    // the first sample of every pixel
+  int samples_per_pixel = 16;        // from that one on
   std::optional<double> time_limit;  // seconds; the pass under way is finished
   std::function<bool()> cancelled;   // asked after each batch: no more passes when true
   std::size_t batch_paths = 0;       // 0: chosen for the device
@@ -28,10 +36,7 @@ struct RenderOptions {
       false;             // RenderResult::device_film in place of film, where it is on one device
   double patience = 60;  // SessionOptions::patience
   Layers layers = Layers::all();  // of the film
-  // This is called between passes, about once in so many seconds, with the current film; the final
-  // film does not depend on it.
-  std::function<void(const Film&)> look = {};
-  double look_seconds = 1;
+  std::vector<Look> looks = {};
 };
 
 struct Progress {
@@ -43,7 +48,7 @@ struct Progress {
 struct RenderResult {
   Film film;
   std::optional<DeviceFilm> device_film;  // the same, to be read in parts
-  int samples_per_pixel = 0;              // finished
+  int samples_per_pixel = 0;              // in the film
   bool interrupted = false;               // cancelled
   double compile_seconds = 0, render_seconds = 0, first_pass_seconds = 0;
   std::uint64_t camera_rays = 0, bounce_rays = 0, shadow_rays = 0;
@@ -65,8 +70,9 @@ RenderResult render(const FlatScene& scene, const FlatView& view, const Device& 
 /// Returns the options of a session for renders with these options, for pictures that follow each
 /// other.
 SessionOptions session_options(const RenderOptions& options);
-/// Renders a picture of a session's view, whose film is empty (Session::update). The counts of
-/// rays, and the work of devices, are those of the session from its beginning.
+/// Renders a picture of a session's view, whose film is empty (Session::update) or holds the first
+/// of its samples (Session::resume). The counts of rays, and the work of devices, are those of the
+/// session from its beginning.
 RenderResult render(Session& session, std::span<const Device> devices, const RenderOptions& options,
                     const std::function<void(const Progress&)>& progress);
 

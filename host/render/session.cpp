@@ -18,8 +18,6 @@
 
 namespace caplet {
 
-namespace {
-
 DeviceWork work_of(const DeviceInfo& info) {
   DeviceWork out;
   out.name = info.name;
@@ -27,8 +25,6 @@ DeviceWork work_of(const DeviceInfo& info) {
   out.platform = info.platform;
   return out;
 }
-
-}  // namespace
 
 struct Session::Worker {
   Worker(const Device& on, const FlatScene& flat, const FlatView& of,
@@ -239,6 +235,11 @@ void Session::update(const FlatScene& scene, const SceneChanges& changes, const 
   before_.reset();
   again_.clear();
   first_ = next_ = options_.sample_begin;
+}
+
+void Session::begin_at(std::uint32_t sample) {
+  options_.sample_begin = sample;
+  clear();
 }
 
 void Session::resume(Film film) {

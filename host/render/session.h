@@ -48,6 +48,9 @@ struct DeviceWork {
   bool lost = false;                     // failed or hung: others have its work
 };
 
+/// Returns the names of a device that has done nothing yet.
+DeviceWork work_of(const DeviceInfo& info);
+
 using StageSeconds = std::vector<std::pair<std::string, double>>;
 
 /// Devices take samples from a common list until there are no more, by their measured speed, so
@@ -65,6 +68,9 @@ class Session {
   /// Switches to the scene as it now is, which differs from the last one in `changes`, and to a
   /// view of it. The film is empty again, and begins at the first sample. Throws RunError.
   void update(const FlatScene& scene, const SceneChanges& changes, const FlatView& view);
+
+  /// Empties the film, whose first sample will be `sample`.
+  void begin_at(std::uint32_t sample);
 
   /// Begins with the samples of `film`, and goes on after the last of them. Throws InputError when
   /// it is not of this scene's layout.
@@ -87,6 +93,8 @@ class Session {
   /// samples that it was resumed with.
   std::optional<DeviceFilm> film_on_device() const;
   FilmLayout layout() const;
+  /// Returns how many samples of every pixel its film has, those before its own among them.
+  std::uint32_t samples() const { return next_ - options_.sample_begin; }
 
   /// Stops the render under way after the samples that are begun; if there is none, stops the next
   /// one. It may be called from any thread, and from a progress function.

@@ -10,29 +10,29 @@ namespace {
 
 /// Calls rows(first, count), which returns these rows of the film as a film.
 template <class Rows>
-BandedImage in_bands(const FilmLayout& layout, const Scene& scene, Layers layers,
+BandedImage in_bands(const FilmLayout& layout, const FilmSettings& settings, Layers layers,
                      NotFinite& not_finite, Rows rows) {
   BandedImage out;
   out.whole = image_of(layout);
-  out.whole.space = scene.view.film.space;
+  out.whole.space = settings.space;
   out.rows = band_rows(out.whole.data_width, layers.channels());
-  out.band = [&scene, &not_finite, layers, rows](int first, int count) {
-    return develop(rows(first, count), scene, layers, not_finite);
+  out.band = [&settings, &not_finite, layers, rows](int first, int count) {
+    return develop(rows(first, count), settings, layers, not_finite);
   };
   return out;
 }
 
 }  // namespace
 
-BandedImage developed_in_bands(const DeviceFilm& film, const Scene& scene, Layers layers,
+BandedImage developed_in_bands(const DeviceFilm& film, const FilmSettings& settings, Layers layers,
                                NotFinite& not_finite) {
-  return in_bands(film.layout, scene, layers, not_finite,
+  return in_bands(film.layout, settings, layers, not_finite,
                   [&film](int first, int count) { return film.read(first, count); });
 }
 
-BandedImage developed_in_bands(const Film& film, const Scene& scene, Layers layers,
+BandedImage developed_in_bands(const Film& film, const FilmSettings& settings, Layers layers,
                                NotFinite& not_finite) {
-  return in_bands(film.layout(), scene, layers, not_finite,
+  return in_bands(film.layout(), settings, layers, not_finite,
                   [&film](int first, int count) { return film.rows(first, count); });
 }
 

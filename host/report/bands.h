@@ -8,16 +8,16 @@
 #include "film/develop.h"
 #include "film/image.h"
 #include "render/renderer.h"
-#include "scene/scene.h"
+#include "scene/film.h"
 
 namespace caplet::report {
 
 /// Develops the layers (film/develop.h) of the film's sums, without metadata. Keeps references to
-/// `film`, `scene`, `not_finite`.
-BandedImage developed_in_bands(const DeviceFilm& film, const Scene& scene, Layers layers,
+/// `film`, `settings`, `not_finite`.
+BandedImage developed_in_bands(const DeviceFilm& film, const FilmSettings& settings, Layers layers,
                                NotFinite& not_finite);
 /// Does the same for a film in memory.
-BandedImage developed_in_bands(const Film& film, const Scene& scene, Layers layers,
+BandedImage developed_in_bands(const Film& film, const FilmSettings& settings, Layers layers,
                                NotFinite& not_finite);
 
 }  // namespace caplet::report

@@ -105,8 +105,8 @@ void EyeFilms::step(const std::function<void(bool is_coarse)>& between_batches) 
 
 Picture EyeFilms::picture() {
   NotFinite not_finite;
-  const LayeredImage image =
-      develop(session_.film(), live_.scene(), session_options(options_).layers, not_finite);
+  const LayeredImage image = develop(session_.film(), live_.scene().view.film,
+                                     session_options(options_).layers, not_finite);
   Picture out = shown_of(image, is_full());
   out.version = ++version_;
   out.view = view_;
@@ -117,7 +117,7 @@ Picture EyeFilms::picture() {
 }
 
 std::string EyeFilms::snapshot() {
-  return exr_bytes(develop(eye_ == 0 ? session_.film() : *films_[0], live_.scene(),
+  return exr_bytes(develop(eye_ == 0 ? session_.film() : *films_[0], live_.scene().view.film,
                            session_options(options_).layers));
 }
 

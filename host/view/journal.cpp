@@ -10,7 +10,7 @@
 #include <iterator>
 #include <utility>
 
-#include "device/cache.h"
+#include "base/content_hash.h"
 
 namespace caplet::view {
 

@@ -15,6 +15,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "base/content_hash.h"
 #include "base/error.h"
 #include "base/log.h"
 #include "base/utf8.h"

@@ -58,10 +58,13 @@ class CAPLET_API Film {
   /// Adds the samples of another film of the same scene, view and layers. Throws InputError, and
   /// changes nothing, when it differs in these or has samples that this film already has.
   void add(const Film& other);
-  /// Saves the sums as an EXR file for `load`. The file is replaced atomically. Throws RunError.
+  /// Saves the sums as an EXR file for `load` and `caplet merge`. The file is replaced atomically.
+  /// Throws RunError.
   void save(const std::filesystem::path& file) const;
-  /// `scene`: the scene of the film, which gives the picture's exposure and colours. Throws
+  /// Loads such a file, with the exposure and colours that its picture was made with. Throws
   /// InputError when the file is missing, broken or no film.
+  static Film load(const std::filesystem::path& file);
+  /// Does the same with the exposure and colours of `scene`, and with overlays, which need a scene.
   static Film load(const std::filesystem::path& file, const Scene& scene);
 
   /// Returns "R", "G", "B", "A", "Z", "albedo.R", "N.X", "P.X", "variance.R", ... and "object.id",

@@ -37,6 +37,9 @@ class CAPLET_API Session {
   /// before.
   void update(const Scene& scene);
 
+  /// Empties the film, of which `sample` will be the first: for shares of a picture's samples,
+  /// whose films are added.
+  void begin_at(std::uint32_t sample);
   /// Adds the next `samples` samples of every pixel to the film, and returns how many were
   /// finished. Blocks.
   int render(int samples, const RenderOptions& options = {});
@@ -46,7 +49,7 @@ class CAPLET_API Session {
   /// Returns the film so far.
   Film film() const;
   /// Starts from this film's samples: renders add the samples after them. Throws InputError when it
-  /// belongs to another scene, view or layers.
+  /// belongs to another scene, view or size.
   void resume(const Film& film);
 
   /// These are queries as in Picker, for the session's scene.

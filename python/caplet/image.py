@@ -186,8 +186,11 @@ _describe(Image.save, ("self", "path"))
 _describe(Image.png, ("self",))
 
 
-def load_film(path, scene):
-    """A film that save_film wrote, of this scene."""
+def load_film(path, scene=None):
+    """Loads a film that save_film, or `caplet render --film`, wrote. scene: its scene, for overlays; its exposure and colours are then
+    this scene's, else those of the film."""
+    if scene is None:
+        return Image(_caplet.Film.load(os.fspath(path)))
     native = getattr(scene, "_native", None)
     if not isinstance(native, _caplet.Scene):
         raise InputError(f"scene: a caplet.Scene is needed, not {type(scene).__name__}")

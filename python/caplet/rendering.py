@@ -71,6 +71,7 @@ class Session:
     """A scene on one or several devices that is rendered and changed again and again.
 
     device: an index, "cpu", "gpu", "bundled", part of a name, several between commas, or "all"; None: a GPU if there is one, else the first.
+    first_sample: the first sample of every pixel, for shares of a picture's samples, whose images are added (Image.__add__).
     The scene stays as it is here until `update`. Any thread may call any of it: they wait for each other.
 
     >>> scene = Scene()
@@ -82,13 +83,15 @@ class Session:
     (9, 16, 3)
     """
 
-    def __init__(self, scene, device=None, size=None):
+    def __init__(self, scene, device=None, size=None, first_sample=0):
         native = _scene(scene)._native.copy()
         self._size = size
         if size is not None:
             native.set_size(*arrays.size(size))
         self._native = _caplet.Session(native, _devices(device))
         self._cancelled = False
+        if first_sample:
+            self._native.begin_at(_count(first_sample, "first_sample", 1 << 24))
 
     def render(self, spp=16, time_limit=None, progress=None):
         """Adds the next `spp` samples of every pixel; returns how many were finished.
@@ -152,10 +155,11 @@ def _count(value, name, most):
     return int(value)
 
 
-def render(scene, spp=None, size=None, device=None, seed=None, time_limit=None, progress=None):
+def render(scene, spp=None, size=None, device=None, seed=None, time_limit=None, progress=None, samples=None):
     """Renders a scene. Returns an Image.
 
-    spp: samples a pixel; None: the scene's. size: (width, height) in pixels. Others as of Session. After Ctrl-C there is no image:
+    spp: samples a pixel; None: the scene's. samples: (A, B), only samples A to B - 1 of every pixel, in place of spp: images of
+    different samples add to that of all. size: (width, height) in pixels. Others as of Session. After Ctrl-C there is no image:
     a Session keeps what was done.
     """
     native = _scene(scene)._native.copy()
@@ -164,8 +168,16 @@ def render(scene, spp=None, size=None, device=None, seed=None, time_limit=None, 
     if size is not None:
         native.set_size(*arrays.size(size))
     native.widen_to_least()
+    first = 0
+    if samples is not None:
+        if spp is not None:
+            raise InputError("spp: does not go with samples")
+        first = _count(samples[0] + 1, "samples", 1 << 24) - 1
+        spp = _count(samples[1] - first, "samples", 1 << 24)
     session = Session.__new__(Session)
     session._native, session._cancelled, session._size = _caplet.Session(native, _devices(device)), False, None
+    if first:
+        session._native.begin_at(first)
     told = _Progress(progress, spp or native.spp)
     try:
         session._native.render(_count(native.spp if spp is None else spp, "spp", 1 << 24), time_limit, told.part(0, spp or native.spp))

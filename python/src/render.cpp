@@ -125,6 +125,11 @@ void bind_film(nb::module_& m) {
              film.save(file);
            })
       .def_static("load",
+                  [](const std::string& file) {
+                    const Released released;
+                    return Film::load(file);
+                  })
+      .def_static("load",
                   [](const std::string& file, HeldScene& of) {
                     const caplet::Scene scene = of.now();
                     const Released released;
@@ -233,6 +238,12 @@ void bind_session(nb::module_& m) {
              const Released released;
              const auto turn = turn_of(held);
              return held.session.film();
+           })
+      .def("begin_at",
+           [](HeldSession& held, std::uint32_t sample) {
+             const Released released;
+             const auto turn = turn_of(held);
+             held.session.begin_at(sample);
            })
       .def("resume", [](HeldSession& held, const Film& film) {
         const Released released;

@@ -8,7 +8,11 @@ import importlib.resources
 import inspect
 import os
 import pathlib
+import subprocess
+import sys
 
+import caplet
+import numpy as np
 import pytest
 
 SOURCE = pathlib.Path(os.environ.get("CAPLET_SOURCE", pathlib.Path(__file__).parents[2]))
@@ -19,6 +23,20 @@ def test_the_page(tmp_path, monkeypatch):
     result = doctest.testfile(str(SOURCE / "docs/python.md"), module_relative=False)
     assert result.attempted > 30 and result.failed == 0
     assert (tmp_path / "dust.exr").exists() and (tmp_path / "scene.pbrt").exists()
+
+
+def test_the_example_of_the_page_of_clusters(tmp_path):
+    text = (SOURCE / "docs/cluster.md").read_text()
+    (tmp_path / "shares.py").write_text(text.split("```python\n")[1].split("```")[0])
+    (tmp_path / "scenes").symlink_to(SOURCE / "scenes")
+    subprocess.run([sys.executable, "shares.py"], cwd=tmp_path, check=True, timeout=300, env={**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)})
+    summed = {name: caplet.load_film(tmp_path / f"{name}.film") for name in range(4)}
+    whole = caplet.render(caplet.load(SOURCE / "scenes/capsules.pbrt"), size=(96, 54), spp=16)
+    together = sum(list(summed.values())[1:], summed[0])
+    assert together.spp == 16 and together.samples == [(0, 16)]
+    for name in whole.channels:
+        assert np.array_equal(together[name], whole[name]), name
+    assert (tmp_path / "sum.exr").exists()
 
 
 def test_the_page_of_circuits():

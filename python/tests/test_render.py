@@ -109,6 +109,41 @@ def test_a_session_goes_on_and_films_add_up(ball, tmp_path):
         whole + whole  # the same samples twice
 
 
+def test_shares_add_to_one_render(ball, tmp_path):
+    whole = caplet.render(ball, spp=8)
+    late = caplet.render(ball, samples=(3, 8))
+    assert late.spp == 5 and late.samples == [(3, 5)]
+    assert equal(late + caplet.render(ball, samples=(0, 3)), whole)
+    session = caplet.Session(ball, first_sample=3)
+    session.render(5)
+    assert equal(session.image(), late)
+    session.image().save_film(tmp_path / "late.film")
+    # Without its scene a film has its picture, but no overlays.
+    alone = caplet.load_film(tmp_path / "late.film")
+    assert equal(alone, late)
+    with pytest.raises(caplet.InputError, match="overlays need the scene"):
+        alone.save(tmp_path / "late.png", outline=True)
+    caplet.load_film(tmp_path / "late.film", ball).save(tmp_path / "late.png", outline=True)
+    # A session goes on with films of its own scene and view alone.
+    session.resume(alone)
+    session.render(1)
+    assert session.image().samples == [(3, 6)]
+    for options in ({"size": (40, 30)}, {"seed": 1}):
+        other = caplet.render(ball, samples=(0, 3), **options)
+        with pytest.raises(caplet.InputError, match="cannot be continued"):
+            session.resume(other)
+        with pytest.raises(caplet.InputError):
+            late + other
+    ball.set_material(0, materials.conductor(alpha=0.3))
+    with pytest.raises(caplet.InputError, match="another scene"):
+        caplet.Session(ball).resume(late)
+    for wrong in ((3, 3), (-1, 2), (4, 2), (0.5, 2)):
+        with pytest.raises(caplet.InputError, match="samples"):
+            caplet.render(ball, samples=wrong)
+    with pytest.raises(caplet.InputError, match="spp"):
+        caplet.render(ball, spp=3, samples=(0, 3))
+
+
 def test_a_session_follows_edits(ball):
     session = caplet.Session(ball)
     session.render(2)

@@ -22,6 +22,7 @@
 
 #include "film/image.h"
 #include "program.h"
+#include "small_disk.h"
 #include "support/data.h"
 
 namespace caplet {
@@ -267,33 +268,6 @@ TEST(Outputs, NoTwoAreTheSameFile) {
   EXPECT_FALSE(fs::exists(folder / "new.exr"));
 }
 
-/// A file system of some pages while the object lives.
-class SmallDisk {
- public:
-  explicit SmallDisk(const fs::path& folder) : folder_(folder) {
-    mounted_ = ::mount("tmpfs", folder.c_str(), "tmpfs", 0, "size=128k") == 0;
-    if (!mounted_) std::printf("no file system can be mounted here: %s\n", std::strerror(errno));
-  }
-  ~SmallDisk() {
-    if (mounted_) ::umount2(folder_.c_str(), MNT_DETACH);
-  }
-  SmallDisk(const SmallDisk&) = delete;
-  SmallDisk& operator=(const SmallDisk&) = delete;
-  bool mounted() const { return mounted_; }
-  /// Takes all but `pages` of what is free.
-  void leave(std::uintmax_t pages) const {
-    fs::remove(folder_ / "filler");
-    const std::uintmax_t free = fs::space(folder_).available,
-                         page = static_cast<std::uintmax_t>(::getpagesize());
-    test::write_file(folder_ / "filler", std::string(free - pages * page, 'x'));
-    EXPECT_EQ(fs::space(folder_).available, pages * page);
-  }
-
- private:
-  fs::path folder_;
-  bool mounted_ = false;
-};
-
 /// In a process of its own: a namespace in which `target` is a mount point, with `source` mounted
 /// there. 0, or the error's number.
 int mount_file(const fs::path& source, const fs::path& target) {
@@ -326,7 +300,7 @@ TEST(Outputs, AFileThatIsMountedIsWrittenOver) {
 TEST(Outputs, AFullDiskCostsNothing) {
   const fs::path folder = folder_with_scene(), disk = folder / "disk";
   fs::create_directory(disk);
-  const SmallDisk small(disk);
+  const test::SmallDisk small(disk);
   if (!small.mounted()) GTEST_SKIP() << "mount is not allowed";
   test::write_file(folder / "rays.txt", "0 0 5 0 0 -1\n");
   const std::vector<std::pair<std::string, Names>> outputs = {
@@ -530,7 +504,7 @@ TEST(Pictures, WhatCannotBeWrittenIsFoundOutBefore) {
   }
   const Result nothing = render(folder, {"-o", "none"});
   EXPECT_EQ(nothing.code, 2);
-  EXPECT_THAT(nothing.err, HasSubstr("-o: 'none' goes with --preview or --stats"));
+  EXPECT_THAT(nothing.err, HasSubstr("-o: 'none' goes with --preview, --film or --stats"));
   EXPECT_EQ(test::names_in(folder), Names{"scene.pbrt"});
 }
 

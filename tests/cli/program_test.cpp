@@ -36,10 +36,10 @@ TEST(Program, HelpAndVersion) {
   const auto folder = test::temporary_folder();
   const Result help = test::run_program({"--help"}, folder);
   EXPECT_EQ(help.code, 0);
-  for (const char* command :
-       {"render", "pick", "verify", "info", "convert", "devices", "doctor", "bench"})
+  for (const char* command : {"render", "merge", "film", "pick", "verify", "info", "convert",
+                              "devices", "doctor", "bench"})
     EXPECT_THAT(help.out, HasSubstr(command));
-  EXPECT_THAT(help.out, Not(HasSubstr("merge")));
+  EXPECT_THAT(help.out, Not(HasSubstr("try-device")));
   const Result render = test::run_program({"render", "--help"}, folder);
   EXPECT_EQ(render.code, 0);
   for (const char* option :

@@ -10,6 +10,7 @@
 #include <fstream>
 #include <iterator>
 
+#include "base/content_hash.h"
 #include "environment.h"
 #include "support/data.h"
 #include "support/log_of.h"

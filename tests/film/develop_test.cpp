@@ -65,7 +65,7 @@ Film film_of(const std::vector<Pixel>& pixels, Size size) {
 
 LayeredImage develop(const std::vector<Pixel>& pixels, Size size, const Scene& scene,
                      Layers layers) {
-  return caplet::develop(film_of(pixels, size), scene, layers);
+  return caplet::develop(film_of(pixels, size), scene.view.film, layers);
 }
 
 Pixel nothing() { return {}; }

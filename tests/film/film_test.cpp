@@ -2,7 +2,7 @@
 // Copyright Caplet authors
 //
 // Films as wholes: what is in them, adding them, files of them.
-#include "film/film.h"
+#include "film/film_file.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -162,33 +162,159 @@ TEST(Film, FilesHoldAllOfIt) {
   for (const Layers layers : {Layers::none(), Layers::all()}) {
     const Film film = random_film(layout_of(5, 4, layers), 1, 4, 8);
     const auto file = folder / (std::to_string(layers.channels()) + ".exr");
-    film.save(file);
-    const Film again = Film::load(file);
+    save_film(file, {film, "", "", 0, {}, {}});
+    const Film again = load_film(file).film;
     EXPECT_TRUE(same(again, film));
     EXPECT_EQ(again.parts(), film.parts());
   }
 }
 
+SavedFilm saved_film(std::uint32_t begin, std::uint32_t samples) {
+  SavedFilm out{random_film(layout_of(5, 4), 1, begin, samples), "s1", "v1", 16, {}, {}};
+  out.settings.width = 20;
+  out.settings.height = 10;
+  return out;
+}
+
+TEST(SavedFilm, FilesHoldWhatPicturesAreDevelopedBy) {
+  const auto folder = test::temporary_folder();
+  LayeredImage sky;
+  sky.width = sky.data_width = 3;
+  sky.height = sky.data_height = 2;
+  for (const char* name : {"R", "G", "B"})
+    sky.channels.push_back({name, {0.1f, 0.7f, 1.f / 3, 0, 1, 0.25f}, {}});
+  write_exr(folder / "sky.exr", sky);
+  std::vector<std::optional<Backdrop>> backdrops(4);
+  backdrops[1] = Backdrop{Backdrop::Kind::transparent, {}, nullptr};
+  backdrops[2] = Backdrop{Backdrop::Kind::color, {0.1, 1. / 3, 1}, nullptr};
+  backdrops[3] =
+      Backdrop{Backdrop::Kind::image,
+               {},
+               std::make_shared<EnvironmentImage>(FileImageReader().read_rgb(folder / "sky.exr"))};
+  for (const std::optional<Backdrop>& backdrop : backdrops) {
+    SavedFilm film = saved_film(4, 8);
+    film.settings.iso = 1. / 3;
+    film.settings.exposure_time = 0.1;
+    film.settings.white_balance = 3456.7;
+    film.settings.space = ColorSpace::aces2065_1;
+    film.settings.backdrop = backdrop;
+    film.notes = {{"caplet.device", "A"}, {"software", "Caplet 1"}, {"caplet.seed", "7"}};
+    save_film(folder / "a.film", film);
+    const SavedFilm again = load_film(folder / "a.film");
+    EXPECT_TRUE(same(again.film, film.film));
+    EXPECT_EQ(again.notes, film.notes);
+    EXPECT_EQ(again.scene, "s1");
+    EXPECT_EQ(again.view, "v1");
+    EXPECT_EQ(again.samples_wanted, 16u);
+    EXPECT_EQ(again.settings.iso, film.settings.iso);
+    EXPECT_EQ(again.settings.exposure_time, film.settings.exposure_time);
+    EXPECT_EQ(again.settings.white_balance, film.settings.white_balance);
+    EXPECT_EQ(again.settings.space, film.settings.space);
+    EXPECT_EQ(again.settings.width, 20);
+    EXPECT_EQ(again.settings.height, 10);
+    ASSERT_EQ(again.settings.backdrop.has_value(), backdrop.has_value());
+    if (!backdrop) continue;
+    EXPECT_EQ(again.settings.backdrop->kind, backdrop->kind);
+    EXPECT_EQ(again.settings.backdrop->color, backdrop->color);
+    if (backdrop->image) {
+      EXPECT_EQ(again.settings.backdrop->image->rgb, backdrop->image->rgb);
+    }
+  }
+  std::filesystem::remove(folder / "sky.exr");
+  EXPECT_THAT([&] { load_film(folder / "a.film"); },
+              ThrowsMessage<InputError>(HasSubstr("sky.exr")));
+}
+
+TEST(SavedFilm, OfTheSamePictureAreAdded) {
+  SavedFilm sum = saved_film(0, 8);
+  sum.notes = {{"caplet.device", "A"}, {"caplet.render_seconds", "1.5"}, {"caplet.driver", "x"}};
+  SavedFilm more = saved_film(8, 4);
+  more.notes = {
+      {"caplet.device", "B, A"}, {"caplet.render_seconds", "2.250"}, {"caplet.driver", "x"}};
+  add(sum, more);
+  EXPECT_EQ(sum.film.samples(0), 12u);
+  EXPECT_EQ(sum.notes.at("caplet.device"), "A, B");
+  EXPECT_EQ(sum.notes.at("caplet.driver"), "x");
+  EXPECT_EQ(sum.notes.at("caplet.render_seconds"), "3.750");
+  EXPECT_EQ(sum.notes.at("caplet.samples_per_pixel"), "12");
+  EXPECT_EQ(text_of(samples_of(sum.film)), "0:12");
+  const auto refused = [&](auto change, const char* why) {
+    SavedFilm other = saved_film(12, 4);
+    change(other);
+    const SavedFilm before = sum;
+    EXPECT_THAT([&] { add(sum, other); }, ThrowsMessage<InputError>(HasSubstr(why)));
+    EXPECT_TRUE(same(sum.film, before.film)) << why;
+    EXPECT_EQ(sum.notes, before.notes);
+  };
+  const auto with = [](auto member, auto value) {
+    return [member, value](SavedFilm& film) {
+      FilmLayout layout = film.film.layout();
+      layout.*member = value;
+      film.film = random_film(layout, 1, 12, 4);
+    };
+  };
+  refused(with(&FilmLayout::width, 21), "its size is 21 x 10, not 20 x 10");
+  refused(with(&FilmLayout::height, 11), "its size is 20 x 11, not 20 x 10");
+  refused(with(&FilmLayout::window, Window{4, 3, 5, 5}), "its crop is 4,3,9,8, not 4,3,9,7");
+  refused(with(&FilmLayout::layers, Layers::none()), "its layers are none, not Z");
+  refused(with(&FilmLayout::color_exponent, 4), "it is of another scene");
+  refused([](SavedFilm& film) { film.scene = "s2"; }, "it is of another scene");
+  refused([](SavedFilm& film) { film.view = "v2"; }, "its camera, pixel filter");
+  refused([](SavedFilm& film) { film.film = random_film(layout_of(5, 4), 1, 11, 4); },
+          "samples 11 to 12");
+  // What is unknown is no reason.
+  SavedFilm unknown = saved_film(12, 4);
+  unknown.scene = unknown.view = "";
+  add(unknown, sum);
+  EXPECT_EQ(unknown.scene, "s1");
+  EXPECT_EQ(unknown.view, "v1");
+  EXPECT_EQ(unknown.film.samples(0), 16u);
+}
+
+TEST(SavedFilm, SamplesThatAreMissingAreTold) {
+  const std::vector<SampleSpan> there{{2, 4}, {6, 7}};
+  EXPECT_THAT(missing(there, 9), ElementsAre(SampleSpan{0, 2}, SampleSpan{4, 6}, SampleSpan{7, 9}));
+  EXPECT_THAT(missing(there, 7), ElementsAre(SampleSpan{0, 2}, SampleSpan{4, 6}));
+  EXPECT_THAT(missing(there, 0), ElementsAre(SampleSpan{0, 2}, SampleSpan{4, 6}));
+  EXPECT_THAT(missing({}, 3), ElementsAre(SampleSpan{0, 3}));
+  EXPECT_THAT(missing({{0, 9}}, 9), ElementsAre());
+  EXPECT_EQ(text_of(there), "2:4, 6:7");
+  EXPECT_EQ(text_of(std::vector<SampleSpan>{}), "none");
+  // Of smaller windows they are not those of every pixel.
+  const FilmLayout layout = layout_of(5, 4);
+  const Film film(layout, std::vector<std::uint64_t>(20 * layout.words_per_pixel()),
+                  {{layout.window, 5, 2}, {{4, 3, 2, 2}, 0, 5}, {layout.window, 9, 1}});
+  EXPECT_EQ(text_of(samples_of(film)), "5:7, 9:10");
+}
+
 TEST(Film, FilesThatAreNoneAreRefused) {
   const auto folder = test::temporary_folder();
-  EXPECT_THROW(Film::load(folder / "missing.exr"), InputError);
+  EXPECT_THROW(load_film(folder / "missing.exr"), InputError);
   std::ofstream(folder / "text.exr") << "no picture";
-  EXPECT_THROW(Film::load(folder / "text.exr"), InputError);
+  EXPECT_THROW(load_film(folder / "text.exr"), InputError);
   LayeredImage picture;
   picture.width = picture.height = picture.data_width = picture.data_height = 2;
   picture.channels.push_back({"R", std::vector<float>(4), {}});
   write_exr(folder / "picture.exr", picture);
-  EXPECT_THAT([&] { Film::load(folder / "picture.exr"); },
+  EXPECT_THAT([&] { load_film(folder / "picture.exr"); },
               ThrowsMessage<InputError>(HasSubstr("picture.exr: this is no film")));
   const Film film = random_film(layout_of(5, 4), 1, 4, 8);
-  film.save(folder / "film.exr");
+  save_film(folder / "film.exr", {film, "", "", 0, {}, {}});
   int number = 0;
   for (const auto& [name, wrong] : std::vector<std::pair<std::string, std::string>>{
-           {"caplet.film", "2"},
+           {"caplet.film", "1"},
            {"caplet.film.layers", "1000000"},
            {"caplet.film.layers", "7x"},
            {"caplet.film.color_exponent", "x"},
            {"caplet.film.length_exponent", "61"},
+           {"caplet.film.space", "srgb2"},
+           {"caplet.film.iso", "1x"},
+           {"caplet.film.exposure_time", ""},
+           {"caplet.film.white_balance", "inf"},
+           {"caplet.film.backdrop", "0.1 0.2"},
+           {"caplet.film.backdrop", "0.1 0.2 0.3 0.4"},
+           {"caplet.film.backdrop", "file missing.png"},
+           {"caplet.film.samples_wanted", "-1"},
            {"caplet.film.samples", "4 3 5 4 4"},
            {"caplet.film.samples", "0 0 20 10 4 8"},
            {"caplet.film.samples", "4 3 5 4 4 8,4 3 1 1 6 1"}}) {
@@ -198,14 +324,14 @@ TEST(Film, FilesThatAreNoneAreRefused) {
     image.metadata[name] = wrong;
     const auto file = folder / (std::to_string(number++) + ".exr");
     write_exr(file, image);
-    EXPECT_THROW(Film::load(file), InputError) << name << ' ' << wrong;
+    EXPECT_THROW(load_film(file), InputError) << name << ' ' << wrong;
   }
   LayeredImage image = read_exr(folder / "film.exr");
   std::erase_if(image.metadata,
                 [](const auto& entry) { return !entry.first.starts_with("caplet."); });
   image.channels.pop_back();
   write_exr(folder / "broken.exr", image);
-  EXPECT_THAT([&] { Film::load(folder / "broken.exr"); },
+  EXPECT_THAT([&] { load_film(folder / "broken.exr"); },
               ThrowsMessage<InputError>(HasSubstr("is missing")));
 }
 

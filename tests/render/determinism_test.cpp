@@ -101,8 +101,8 @@ TEST(Encodings, CpuAndGpuTraversalsRenderTheSame) {
                  a.film.number(Layer::primitive, i) != b.film.number(Layer::primitive, i);
   // A ray within rounding of a silhouette may fall on either side: at most one pixel in a thousand.
   EXPECT_LE(different, pixels / 1000);
-  const Figures figures = compare(picture_of(develop(a.film, scene, Layers::all())),
-                                  picture_of(develop(b.film, scene, Layers::all())));
+  const Figures figures = compare(picture_of(develop(a.film, scene.view.film, Layers::all())),
+                                  picture_of(develop(b.film, scene.view.film, Layers::all())));
   EXPECT_LT(std::abs(figures.mean), 2e-3);
   // PoCL's compiler rounds every operation of both as it is written.
   if (test_device().is_pocl()) {
@@ -126,8 +126,8 @@ TEST(Encodings, AllThatGpusDoDifferentlyRendersTheSame) {
   const RenderResult a = render(flat, view, test_device(Encoding::wide), options, {});
   options.batch_paths = std::size_t{1} << 20;
   const RenderResult b = render(flat, view, test_device(Encoding::single), options, {});
-  const Picture wide = picture_of(develop(a.film, scene, Layers::all())),
-                single = picture_of(develop(b.film, scene, Layers::all()));
+  const Picture wide = picture_of(develop(a.film, scene.view.film, Layers::all())),
+                single = picture_of(develop(b.film, scene.view.film, Layers::all()));
   EXPECT_LT(std::abs(compare(wide, single).mean), 2e-3);
   if (test_device().is_pocl()) {
     EXPECT_TRUE(same_bits(a.film, b.film));
@@ -175,8 +175,8 @@ TEST(Encodings, LampsOfEveryShapeLightTheSame) {
   const FlatView view = lower_view(scene);
   const RenderResult a = render(flat, view, test_device(Encoding::wide), options, {});
   const RenderResult b = render(flat, view, test_device(Encoding::single), options, {});
-  const Mean wide = mean_of(develop(a.film, scene, Layers::all()), "G"),
-             single = mean_of(develop(b.film, scene, Layers::all()), "G");
+  const Mean wide = mean_of(develop(a.film, scene.view.film, Layers::all()), "G"),
+             single = mean_of(develop(b.film, scene.view.film, Layers::all()), "G");
   EXPECT_NEAR(wide.value, single.value, 1e-3 * wide.value);
   if (test_device().is_pocl()) {
     EXPECT_TRUE(same_bits(a.film, b.film));

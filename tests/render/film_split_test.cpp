@@ -11,7 +11,7 @@
 #include <string>
 
 #include "film/develop.h"
-#include "film/film.h"
+#include "film/film_file.h"
 #include "film/image.h"
 #include "import/import.h"
 #include "lower/lower.h"
@@ -117,8 +117,8 @@ TEST(FilmSplit, FilmsAddedInAnyOrder) {
     Film sum(whole().layout());
     for (const Film& film : films) {
       const auto file = folder / (std::to_string(number++) + ".exr");
-      film.save(file);
-      sum.add(Film::load(file));
+      save_film(file, {film, "", "", 0, {}, {}});
+      sum.add(load_film(file).film);
     }
     EXPECT_TRUE(same(sum, whole())) << i;
   }
@@ -216,14 +216,14 @@ TEST(FilmSplit, SessionsEndAtTheirTimeLimitAfterOnePass) {
 // A layer that is not asked for takes no room, and changes nothing of the others.
 TEST(FilmSplit, LayersDoNotSeeEachOther) {
   DeviceScene scene(test_device(), model().flat);
-  const LayeredImage all = develop(whole(), model().scene, Layers::all());
+  const LayeredImage all = develop(whole(), model().scene.view.film, Layers::all());
   for (const Layers layers : {Layers::none(), Layers::usual(),
                               Layers::none().with(Layer::variance).with(Layer::object)}) {
     Renderer renderer(scene, model().view, {.layers = layers});
     renderer.pass(whole().layout().window, 0, samples);
     const Film film = renderer.film().read();
     EXPECT_EQ(film.words().size(), film.layout().window.pixels() * film.layout().words_per_pixel());
-    const LayeredImage image = develop(film, model().scene, layers);
+    const LayeredImage image = develop(film, model().scene.view.film, layers);
     EXPECT_EQ(image.channels.size(), layers.channels());
     for (const Channel& found : image.channels) {
       EXPECT_EQ(found.floats, channel(all, found.name).floats) << found.name;

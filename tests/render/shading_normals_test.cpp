@@ -270,11 +270,11 @@ TEST(ShadingNormals, LetNoScatteredRayThrough) {
     flat.lighting.sampled_light_count = 0;
     RenderOptions options;
     options.samples_per_pixel = 64;
-    EXPECT_EQ(
-        mean_of(develop(render(flat, view, test_device(), options, {}).film, scene, Layers::all()),
-                "G")
-            .value,
-        0);
+    EXPECT_EQ(mean_of(develop(render(flat, view, test_device(), options, {}).film, scene.view.film,
+                              Layers::all()),
+                      "G")
+                  .value,
+              0);
   }
 }
 

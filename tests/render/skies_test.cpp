@@ -29,8 +29,8 @@ LayeredImage picture(const Scene& scene, int samples, Encoding encoding) {
   const FlatScene flat = lower(scene);
   RenderOptions options;
   options.samples_per_pixel = samples;
-  return develop(render(flat, lower_view(scene), test_device(encoding), options, {}).film, scene,
-                 Layers::all());
+  return develop(render(flat, lower_view(scene), test_device(encoding), options, {}).film,
+                 scene.view.film, Layers::all());
 }
 
 // Its own radiance in every pixel, by both encodings of the tree, and nothing in front of it.

@@ -37,7 +37,7 @@ Mean light_of(const Scene& scene, int samples, bool sampled) {
   RenderOptions options;
   options.samples_per_pixel = samples;
   const RenderResult result = render(flat, view, test_device(), options, {});
-  return mean_of(develop(result.film, scene, Layers::all()), "G");
+  return mean_of(develop(result.film, scene.view.film, Layers::all()), "G");
 }
 
 struct Case {

@@ -6,7 +6,6 @@
 #pragma once
 
 #include <cstdint>
-#include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -18,7 +17,7 @@
 #include "caplet/scene.h"
 #include "device/device.h"
 #include "device/forked.h"
-#include "film/film.h"
+#include "film/film_file.h"
 #include "film/image.h"
 #include "post/scale_bar.h"
 #include "scene/edit.h"
@@ -54,9 +53,8 @@ struct Device::Data {
 };
 
 struct Film::Data {
-  caplet::Film film;
-  std::shared_ptr<const post::Sight> sight;  // of the scene in the film
-  std::map<std::string, std::string> notes;  // for its pictures
+  SavedFilm saved;
+  std::shared_ptr<const post::Sight> sight;  // of the scene in the film; null where unknown
   double render_seconds = 0;
   mutable std::once_flag once = {};  // guards the development of `image`
   mutable LayeredImage image = {};
@@ -83,12 +81,12 @@ struct Inside {
     begin_opencl();
     return device.data_->device;
   }
-  static Film film(caplet::Film film, std::shared_ptr<const post::Sight> sight,
-                   std::map<std::string, std::string> notes, double render_seconds) {
+  static Film film(SavedFilm saved, std::shared_ptr<const post::Sight> sight,
+                   double render_seconds) {
     return Film(std::shared_ptr<const Film::Data>(
-        new Film::Data{std::move(film), std::move(sight), std::move(notes), render_seconds}));
+        new Film::Data{std::move(saved), std::move(sight), render_seconds}));
   }
-  static const caplet::Film& film(const Film& film) { return film.data_->film; }
+  static const SavedFilm& film(const Film& film) { return film.data_->saved; }
 };
 
 DeviceInfo to_public(const caplet::DeviceInfo& info);

@@ -5,10 +5,14 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <memory>
+#include <string>
 
 #include "caplet/film.h"
 #include "caplet/render.h"
+#include "film/film_file.h"
+#include "lower/flat_scene.h"
 #include "post/scale_bar.h"
 #include "render/session.h"
 #include "scene/scene.h"
@@ -23,10 +27,17 @@ struct SessionRuns {
   /// Adds the next samples and returns how many were finished.
   std::uint32_t render(caplet::Session& session, std::uint32_t samples,
                        const RenderOptions& options);
-  /// Returns the present film of `scene`.
-  Film film(caplet::Session& session, const caplet::Scene& scene);
+  /// Returns the present film of `scene`, whose flat arrays and view these are.
+  Film film(caplet::Session& session, const caplet::Scene& scene, const FlatScene& flat,
+            const FlatView& view);
+  /// Returns what the session's film is of.
+  FilmOrigin origin(const caplet::Session& session, const FlatScene& flat, const FlatView& view);
+  /// Starts with what other runs have rendered.
+  void resume(const SavedFilm& film);
 
  private:
+  std::string scene_hash_, view_hash_;  // after the first film
+  std::map<std::string, std::string> before_;
   std::shared_ptr<const post::Sight> sight_;  // of the scene, after the first film
 };
 
