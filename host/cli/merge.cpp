@@ -14,10 +14,11 @@
 #include "cli/commands.h"
 #include "cli/description.h"
 #include "cli/options.h"
+#include "film/denoise.h"
 #include "film/film_file.h"
 #include "film/image.h"
 #include "present/picture_options.h"
-#include "report/bands.h"
+#include "report/denoised.h"
 #include "report/picture.h"
 
 namespace caplet::cli {
@@ -30,7 +31,7 @@ struct MergeFlags {
   std::vector<std::string> films, outputs;
   std::string preview, film, background;
   std::optional<std::string> layers;
-  bool variance = false, quiet = false;
+  bool variance = false, denoise = false, quiet = false;
 };
 
 struct Targets {
@@ -120,6 +121,8 @@ void run_merge(const MergeFlags& flags, const Invocation& invocation) {
     throw InputError(SourceLocation{flags.films.front()}, "there are no samples");
   if (!flags.background.empty())
     sum.settings.backdrop = parse_backdrop(flags.background, FileImageReader(), "--background");
+  if (flags.denoise) sum.settings.denoise = true;
+  if (sum.settings.denoise) check_denoiser("--denoise");
   const Layers layers = layers_of(flags, sum.film);
   if (sum.settings.backdrop && sum.settings.backdrop->kind == Backdrop::Kind::transparent)
     for (const fs::path& preview : targets.previews) check_preview_alpha(preview, "--preview");
@@ -127,12 +130,14 @@ void run_merge(const MergeFlags& flags, const Invocation& invocation) {
   sum.notes["caplet.command"] = invocation.command_line();
   if (!targets.film.empty()) save_film(targets.film, sum);
   NotFinite not_finite;
-  BandedImage picture = report::developed_in_bands(sum.film, sum.settings, layers, not_finite);
+  BandedImage picture = report::developed(sum.film, sum.settings, layers, not_finite);
   picture.whole.metadata = sum.notes;
+  if (sum.settings.denoise) picture.whole.metadata["caplet.denoiser"] = denoiser_name();
   for (std::size_t i = 0; i < std::max(targets.pictures.size(), targets.previews.size()); ++i)
-    report::write_pictures(i < targets.pictures.size() ? targets.pictures[i] : fs::path(),
-                           i < targets.previews.size() ? targets.previews[i] : fs::path(), picture,
-                           layers.channels(), 0);
+    report::write_pictures(
+        i < targets.pictures.size() ? targets.pictures[i] : fs::path(),
+        i < targets.previews.size() ? targets.previews[i] : fs::path(), picture,
+        layers.channels() + (sum.settings.denoise ? report::denoising_channels : 0), 0);
   not_finite.warn();
   log::info("wrote {}: {} samples a pixel of {} films",
             !targets.pictures.empty()   ? targets.pictures.front().string()
@@ -171,6 +176,7 @@ void add_merge(CLI::App& app, const Invocation& invocation) {
       ->add_option("--background", o->background,
                    "What lies behind, as of render, in place of the films' own")
       ->type_name("transparent|COLOR|FILE");
+  command->add_flag("--denoise", o->denoise, "Remove the noise of the picture, as render does");
   command->add_flag("-q,--quiet", o->quiet, "Only warnings and errors");
   command->footer(footer_with({"caplet merge a.film b.film -o picture.exr",
                                "caplet merge share-*.film -o picture.exr --film all.film"}));

@@ -177,6 +177,7 @@ void apply(const Overrides& overrides, Scene& scene) {
   if (overrides.seed) scene.view.sampler.seed = *overrides.seed;
   if (overrides.clamp) scene.view.film.max_component_value = *overrides.clamp;
   if (overrides.max_depth) scene.view.integrator.max_depth = *overrides.max_depth;
+  if (overrides.denoise) scene.view.film.denoise = true;
 }
 
 void add_import_options(CLI::App& command, ImportOptions& options) {

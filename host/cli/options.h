@@ -112,6 +112,7 @@ struct Overrides {
   std::optional<int> samples_per_pixel, max_depth;
   std::optional<std::uint32_t> seed;
   std::optional<double> clamp;  // film.max_component_value; 0: none
+  bool denoise = false;         // true: film.denoise
 };
 
 /// Applies the settings. A new size rescales the file's own crop and re-frames an automatic camera.

@@ -28,6 +28,7 @@
 #include "cli/trial.h"
 #include "device/second_try.h"
 #include "display/tev.h"
+#include "film/denoise.h"
 #include "film/develop.h"
 #include "film/image.h"
 #include "import/import.h"
@@ -40,7 +41,7 @@
 #include "present/stereo.h"
 #include "present/turntable.h"
 #include "render/render.h"
-#include "report/bands.h"
+#include "report/denoised.h"
 #include "report/picture.h"
 #include "report/stereo.h"
 #include "report/summary.h"
@@ -168,6 +169,8 @@ Overrides check_options(const RenderFlags& options, Files& files) {
   overrides.max_depth = options.max_depth;
   overrides.seed = options.seed;
   overrides.clamp = options.clamp;
+  overrides.denoise = options.denoise;
+  if (options.denoise) check_denoiser("--denoise");
   if (!options.separation && (options.convergence || !options.layout.empty()))
     throw InputError(SourceLocation{options.convergence ? "--convergence" : "--stereo-layout"},
                      "goes with --stereo");
@@ -220,7 +223,9 @@ void check_outputs(const RenderFlags& options, const Scene& scene, Layers layers
   const int width = window[1] - window[0], height = window[3] - window[2];
   const std::string flag = options.crop.empty() ? "--size" : "--crop";
   if (!files.pictures.empty())
-    check_exr_size(width, height, layers.channels() * (options.separation ? 2 : 1), flag);
+    check_exr_size(width, height,
+                   (layers.channels() + report::denoising_channels) * (options.separation ? 2 : 1),
+                   flag);
   const bool is_transparent =
       scene.view.film.backdrop && scene.view.film.backdrop->kind == Backdrop::Kind::transparent;
   for (const fs::path& preview : files.previews) {
@@ -352,12 +357,13 @@ void add_to(report::RunSeconds& seconds, const RenderResult& result) {
 }
 
 BandedImage bands_of(const Work& work, const RenderResult& result, NotFinite& not_finite) {
-  BandedImage out = result.device_film
-                        ? report::developed_in_bands(*result.device_film, work.scene.view.film,
-                                                     work.film_layers, not_finite)
-                        : report::developed_in_bands(result.film, work.scene.view.film,
-                                                     work.film_layers, not_finite);
+  BandedImage out =
+      result.device_film
+          ? report::developed(*result.device_film, work.scene.view.film, work.film_layers,
+                              not_finite)
+          : report::developed(result.film, work.scene.view.film, work.film_layers, not_finite);
   out.whole.metadata = notes_of(work, result);
+  if (work.scene.view.film.denoise) out.whole.metadata["caplet.denoiser"] = denoiser_name();
   return out;
 }
 
@@ -370,8 +376,14 @@ void each_pair(const Files& files, const Write& write) {
           i < files.previews.size() ? files.previews[i] : fs::path());
 }
 
+std::size_t channels_of(const Work& work) {
+  return work.layers.channels() +
+         (work.scene.view.film.denoise ? report::denoising_channels : std::size_t{0});
+}
+
 RenderResult written(const Work& work, RenderResult result, report::RunSeconds& seconds) {
   add_to(seconds, result);
+  if (work.files.pictures.empty() && work.files.previews.empty()) return result;
   NotFinite not_finite;
   const BandedImage picture = bands_of(work, result, not_finite);
   Stopwatch phase;
@@ -382,8 +394,7 @@ RenderResult written(const Work& work, RenderResult result, report::RunSeconds& 
       post::draw(shown, layers, work.scene, overlays);
     };
   each_pair(work.files, [&](const fs::path& exr, const fs::path& preview) {
-    report::write_pictures(exr, preview, picture, work.layers.channels(), result.render_seconds,
-                           finish);
+    report::write_pictures(exr, preview, picture, channels_of(work), result.render_seconds, finish);
   });
   not_finite.warn();
   seconds.write += phase.lap();
@@ -432,7 +443,7 @@ RenderResult stereo_pictures(const Work& both, report::RunSeconds& seconds) {
   Stopwatch phase;
   each_pair(both.files, [&](const fs::path& exr, const fs::path& preview) {
     report::write_stereo_pictures(exr, preview, left, right, layout_of(both.options),
-                                  both.layers.channels(),
+                                  channels_of(both),
                                   results[0].render_seconds + results[1].render_seconds);
   });
   not_finite.warn();
@@ -651,6 +662,7 @@ void run_render(const RenderFlags& options, const Invocation& invocation) {
   apply(overrides, scene);
   if (frames && frames->kind != FrameSource::Kind::turntable)
     frame_all(options, *frames, overrides, scene);
+  if (scene.view.film.denoise && !options.denoise) check_denoiser("Film \"denoise\"");
   check_outputs(options, scene, layers, files);
   post::check(options.overlays, scene, "--");
   if (options.overlays.scale_bar && !options.quiet) tell_of_bar(options, scene);
@@ -683,6 +695,8 @@ void run_render(const RenderFlags& options, const Invocation& invocation) {
   render_options.film_on_device = !film;
   render_options.cancelled = interrupt_requested;
   render_options.layers = film_layers;
+  if (scene.view.film.denoise)
+    render_options.layers = Layers::of_bits(film_layers.bits() | report::denoising_layers().bits());
   render_options.patience = options.patience;
   const Work work{options, invocation,  scene, flat,           devices,
                   layers,  film_layers, files, render_options, film ? &*film : nullptr};

@@ -153,6 +153,8 @@ void add_reports(CLI::App& command, RenderFlags& o) {
       ->type_name("HOST:PORT");
   command.add_flag("--variance", o.variance,
                    "Also write variance.R/G/B: the variance of each pixel's mean");
+  command.add_flag("--denoise", o.denoise,
+                   "Remove the noise by Open Image Denoise; noisy.R/G/B keep the picture before");
   command
       .add_option("--stats", o.stats, "Write times, ray counts and memory as JSON; -: to stdout")
       ->type_name("FILE.json");

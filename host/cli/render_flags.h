@@ -35,7 +35,7 @@ struct RenderFlags {
   std::size_t batch_paths = 0;
   std::uint32_t turntable = 0;
   double frames_a_second = 25;
-  bool variance = false, quiet = false, skip_existing = false;
+  bool variance = false, denoise = false, quiet = false, skip_existing = false;
   bool has_frames() const { return turntable > 0 || !frames.empty(); }
 };
 

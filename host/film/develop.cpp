@@ -138,16 +138,22 @@ class Developer {
   Vector rgb_{};
 };
 
-/// Puts the backdrop under the picture. R G B already have coverage's share of the shapes' light,
-/// so the backdrop fills the rest.
-void put_under(LayeredImage& image, const std::optional<Backdrop>& backdrop) {
+/// Returns what is written where a value is infinite or not a number.
+float instead_of(LayerHow how) {
+  return how == LayerHow::variance ? std::numeric_limits<float>::max() : 0.0f;
+}
+
+}  // namespace
+
+void put_under(LayeredImage& image, const std::optional<Backdrop>& backdrop,
+               const std::string& prefix) {
   image.backdrop = backdrop;
   if (!backdrop || backdrop->kind == Backdrop::Kind::transparent) return;
   const std::vector<float>& coverage = image.find("A")->floats;
   std::array<std::vector<float>*, 3> rgb{};
   for (Channel& channel : image.channels)
     for (const std::size_t c : {0U, 1U, 2U})
-      if (channel.name == std::array{"R", "G", "B"}.at(c)) rgb.at(c) = &channel.floats;
+      if (channel.name == prefix + std::array{"R", "G", "B"}.at(c)) rgb.at(c) = &channel.floats;
   std::size_t pixel = 0;
   for (int y = 0; y < image.data_height; ++y)
     for (int x = 0; x < image.data_width; ++x, ++pixel) {
@@ -158,13 +164,6 @@ void put_under(LayeredImage& image, const std::optional<Backdrop>& backdrop) {
         rgb.at(c)->at(pixel) += (1 - coverage[pixel]) * color.at(c);
     }
 }
-
-/// Returns what is written where a value is infinite or not a number.
-float instead_of(LayerHow how) {
-  return how == LayerHow::variance ? std::numeric_limits<float>::max() : 0.0f;
-}
-
-}  // namespace
 
 LayeredImage develop(const Film& film, const FilmSettings& settings, Layers layers,
                      NotFinite& not_finite) {

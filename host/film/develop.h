@@ -5,6 +5,8 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
+#include <string>
 
 #include "film/film.h"
 #include "film/image.h"
@@ -48,5 +50,11 @@ LayeredImage develop(const Film& film, const FilmSettings& settings, Layers laye
 
 /// Does the same and warns.
 LayeredImage develop(const Film& film, const FilmSettings& settings, Layers layers);
+
+/// Puts a backdrop under R G B, or the channels of these names behind a prefix, by A, and notes
+/// that it is there. R G B already have coverage's share of the shapes' light; the backdrop fills
+/// the rest.
+void put_under(LayeredImage& image, const std::optional<Backdrop>& backdrop,
+               const std::string& prefix = "");
 
 }  // namespace caplet

@@ -173,6 +173,7 @@ class Reader {
     if (found == color_space_names.end())
       fail(fmt::format("'{}' is no colour space of this program", space));
     out.space = static_cast<ColorSpace>(found - color_space_names.begin());
+    out.denoise = text("caplet.film.denoise") == "yes";
     out.backdrop = backdrop();
     return out;
   }
@@ -239,6 +240,7 @@ void save_film(const std::filesystem::path& path, const SavedFilm& saved, double
        {"caplet.film.exposure_time", fmt::format("{}", saved.settings.exposure_time)},
        {"caplet.film.white_balance", fmt::format("{}", saved.settings.white_balance)},
        {"caplet.film.space", color_space_names[static_cast<std::size_t>(saved.settings.space)]},
+       {"caplet.film.denoise", saved.settings.denoise ? "yes" : "no"},
        {"caplet.film.backdrop", text_of(saved.settings.backdrop)}});
   image.rows = band_rows(layout.window.width, 2 * words);
   image.band = [&](int first, int rows) {

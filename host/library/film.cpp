@@ -8,11 +8,13 @@
 #include <thread>
 
 #include "base/spelling.h"
-#include "film/develop.h"
+#include "film/denoise.h"
 #include "film/preview.h"
 #include "library/detail/inside.h"
 #include "post/overlay.h"
 #include "post/overlay_options.h"
+#include "report/bands.h"
+#include "report/denoised.h"
 
 namespace caplet::v0 {
 
@@ -37,9 +39,12 @@ Film::~Film() = default;
 
 const Film::Data& Film::developed() const {
   std::call_once(data_->once, [&] {
-    LayeredImage image =
-        develop(data_->saved.film, data_->saved.settings, data_->saved.film.layout().layers);
+    NotFinite not_finite;
+    LayeredImage image = report::whole_of(report::developed(
+        data_->saved.film, data_->saved.settings, data_->saved.film.layout().layers, not_finite));
+    not_finite.warn();
     image.metadata = data_->saved.notes;
+    if (data_->saved.settings.denoise) image.metadata["caplet.denoiser"] = denoiser_name();
     data_->image = std::move(image);
   });
   return *data_;

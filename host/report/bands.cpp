@@ -2,6 +2,7 @@
 // Copyright Caplet authors
 #include "report/bands.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace caplet::report {
@@ -34,6 +35,24 @@ BandedImage developed_in_bands(const Film& film, const FilmSettings& settings, L
                                NotFinite& not_finite) {
   return in_bands(film.layout(), settings, layers, not_finite,
                   [&film](int first, int count) { return film.rows(first, count); });
+}
+
+LayeredImage whole_of(const BandedImage& picture) {
+  LayeredImage out = picture.whole;
+  const int height = out.data_height;
+  for (int first = 0; first < height; first += picture.rows) {
+    LayeredImage band = picture.band(first, std::min(picture.rows, height - first));
+    if (out.channels.empty()) {
+      out.channels = std::move(band.channels);
+      continue;
+    }
+    for (std::size_t i = 0; i < out.channels.size(); ++i) {
+      Channel &to = out.channels[i], &from = band.channels[i];
+      to.floats.insert(to.floats.end(), from.floats.begin(), from.floats.end());
+      to.uints.insert(to.uints.end(), from.uints.begin(), from.uints.end());
+    }
+  }
+  return out;
 }
 
 }  // namespace caplet::report

@@ -20,4 +20,7 @@ BandedImage developed_in_bands(const DeviceFilm& film, const FilmSettings& setti
 BandedImage developed_in_bands(const Film& film, const FilmSettings& settings, Layers layers,
                                NotFinite& not_finite);
 
+/// Makes all bands, and joins them.
+LayeredImage whole_of(const BandedImage& picture);
+
 }  // namespace caplet::report

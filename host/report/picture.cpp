@@ -104,13 +104,17 @@ void write_pictures(const std::filesystem::path& picture, const std::filesystem:
                     const Finish& finish) {
   Preview small(finish);
   const std::vector<std::string> written = names_of(finish.written);
+  std::vector<std::string> unwanted = names_of(Layers::all());
+  std::erase_if(unwanted, [&](const std::string& name) {
+    return std::ranges::find(written, name) != written.end();
+  });
   BandedImage shown = image;
   if (!preview.empty())
     shown.band = [&](int first, int rows) {
       LayeredImage band = image.band(first, rows);
       small.add(band);
       std::erase_if(band.channels, [&](const Channel& c) {
-        return std::ranges::find(written, c.name) == written.end();
+        return std::ranges::find(unwanted, c.name) != unwanted.end();
       });
       return band;
     };

@@ -62,6 +62,7 @@ struct FilmSettings {
       0;  // kelvin: this daylight maps to the colour space's white; 0: no balancing
   ColorSpace space = ColorSpace::srgb;
   std::optional<Backdrop> backdrop = {};
+  bool denoise = false;    // the picture (film/denoise.h)
   double least_width = 0;  // pixels: capsules and spheres are drawn at least this thick
                            // (present/least_width.h); 0: no minimum
 
@@ -75,6 +76,7 @@ struct FilmSettings {
     visit.number({"whitebalance", "this daylight becomes white: 1000 to 25000, or 0 for none", 0,
                   25000, "kelvin"},
                  self.white_balance);
+    visit.flag({"denoise", "Open Image Denoise removes the noise of the picture"}, self.denoise);
     visit.number({"leastwidth", "capsules and spheres are drawn no thinner", 0, 64, "pixels"},
                  self.least_width);
   }

@@ -26,6 +26,21 @@ def _check_interpreter():
 
 _check_interpreter()
 
+
+def _find_denoiser():
+    """Tells the library where the package pyoidn has Open Image Denoise, unless it is told already."""
+    import importlib.util
+    import os
+    import pathlib
+    found = importlib.util.find_spec("pyoidn")
+    if found is not None and found.origin:
+        library = pathlib.Path(found.origin).parent / "oidn/lib/libOpenImageDenoise.so.2"
+        if library.exists():
+            os.environ.setdefault("CAPLET_OIDN", str(library))
+
+
+_find_denoiser()
+
 from . import errors
 from .errors import Error, InputError, RunError
 from . import _caplet, bridges, cameras, lights, materials, media, textures

@@ -481,5 +481,10 @@ def test_pictures_without_noise():
     scene.add_boxes((-3, -1.2, -3), (3, -1, 3), color=(0.5, 0.5, 0.5))
     noisy, good = caplet.render(scene, spp=2, size=(96, 64)), caplet.render(scene, spp=256, size=(96, 64), seed=5)
     clean = caplet.denoise(noisy)
+    scene.film(denoise=True)
+    own = caplet.render(scene, spp=2, size=(96, 64))
+    for name, was in zip("RGB", np.moveaxis(noisy.rgb, 2, 0)):
+        assert np.array_equal(own[f"noisy.{name}"], was)
+    assert np.abs(own.rgb - good.rgb).mean() < 0.6 * np.abs(noisy.rgb - good.rgb).mean()
     assert clean.shape == (64, 96, 3) and clean.dtype == np.float32
     assert np.abs(clean - good.rgb).mean() < 0.6 * np.abs(noisy.rgb - good.rgb).mean()

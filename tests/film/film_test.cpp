@@ -283,7 +283,7 @@ TEST(SavedFilm, SamplesThatAreMissingAreTold) {
   // Of smaller windows they are not those of every pixel.
   const FilmLayout layout = layout_of(5, 4);
   const Film film(layout, std::vector<std::uint64_t>(20 * layout.words_per_pixel()),
-                  {{layout.window, 5, 2}, {{4, 3, 2, 2}, 0, 5}, {layout.window, 9, 1}});
+                  {{layout.window, 9, 1}, {{4, 3, 2, 2}, 0, 5}, {layout.window, 5, 2}});
   EXPECT_EQ(text_of(samples_of(film)), "5:7, 9:10");
 }
 

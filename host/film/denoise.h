@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// Removes noise by Open Image Denoise (https://www.openimagedenoise.org), a library that is loaded
+// when it is asked for.
+#pragma once
+
+#include <string>
+
+#include "film/image.h"
+
+namespace caplet {
+
+/// Throws RunError, which names `flag` and how to get it, where the library cannot be loaded.
+void check_denoiser(const std::string& flag);
+/// Returns its name and version, for metadata. Throws RunError.
+std::string denoiser_name();
+
+/// Replaces R G B, scene-linear, by a picture without noise, and keeps what they were as noisy.R
+/// noisy.G noisy.B. albedo.R/G/B and N.X/Y/Z guide it where both are there; they are denoised
+/// themselves before. The picture is that of shapes and sky, before a backdrop is put under it.
+/// Throws RunError.
+void denoise(LayeredImage& image);
+
+}  // namespace caplet
