@@ -224,7 +224,9 @@ void check_outputs(const RenderFlags& options, const Scene& scene, Layers layers
   const std::string flag = options.crop.empty() ? "--size" : "--crop";
   if (!files.pictures.empty())
     check_exr_size(width, height,
-                   (layers.channels() + report::denoising_channels) * (options.separation ? 2 : 1),
+                   (layers.channels() +
+                    (scene.view.film.denoise ? report::denoising_channels : std::size_t{0})) *
+                       (options.separation ? 2 : 1),
                    flag);
   const bool is_transparent =
       scene.view.film.backdrop && scene.view.film.backdrop->kind == Backdrop::Kind::transparent;

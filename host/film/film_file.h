@@ -32,7 +32,7 @@ struct SavedFilm {
   Film film;
   std::string scene, view;           // as of FilmOrigin
   std::uint32_t samples_wanted = 0;  // of each pixel of the whole picture; 0: unknown
-  // What its picture is developed by: exposure, white balance, colour space, denoising and
+  // These develop its picture: exposure, white balance, colour space, denoising and
   // backdrop. The rest is not saved.
   FilmSettings settings;
   std::map<std::string, std::string> notes;  // attributes of its pictures (docs/output.md)

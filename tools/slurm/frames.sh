@@ -17,6 +17,7 @@ if [ $# -lt 3 ]; then
 fi
 frames=$1 scene=$(realpath -m -- "$2") out=$(realpath -m -- "$3")
 shift 3
+mkdir -p "${out%/*}"
 quoted() { printf '%q ' "$@"; }
 exec sbatch --parsable --array="$frames" --requeue --open-mode=append --job-name=caplet-frames --output="${out%/*}/frame-%a.log" <<END
 #!/bin/bash
