@@ -6,6 +6,8 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
+#include <cstring>
 #include <string_view>
 #include <vector>
 
@@ -14,6 +16,21 @@
 namespace caplet {
 
 namespace {
+
+__extension__ typedef unsigned __int128 Wide;
+
+/// Returns a hash of bytes: FNV-1a of 128 bits (base/content_hash.h) that takes eight bytes at a
+/// time, for it reads gigabytes. Each step can be undone, so that no change of one word is lost.
+Wide hash_of_words(std::string_view bytes) {
+  Wide hash = bytes.size();
+  const Wide prime = (static_cast<Wide>(1) << 88) | 0x13bu;
+  for (std::size_t begin = 0; begin < bytes.size(); begin += sizeof(std::uint64_t)) {
+    std::uint64_t word = 0;
+    std::memcpy(&word, bytes.data() + begin, std::min(sizeof(word), bytes.size() - begin));
+    hash = (hash ^ word) * prime;
+  }
+  return hash;
+}
 
 /// Hashes buffers in pieces, several at a time, and then the hashes of the pieces.
 class Hasher {
@@ -28,12 +45,11 @@ class Hasher {
   }
 
   std::string result() const {
-    std::vector<std::string> hashes(pieces_.size());
+    std::vector<Wide> hashes(pieces_.size());
     tbb::parallel_for(std::size_t{0}, pieces_.size(),
-                      [&](std::size_t i) { hashes[i] = content_hash(pieces_[i]); });
-    std::string all;
-    for (const std::string& hash : hashes) all += hash;
-    return content_hash(all);
+                      [&](std::size_t i) { hashes[i] = hash_of_words(pieces_[i]); });
+    return content_hash(
+        {reinterpret_cast<const char*>(hashes.data()), hashes.size() * sizeof(hashes.front())});
   }
 
  private:

@@ -61,10 +61,10 @@ TEST(Fingerprint, DiffersForAnyOtherScene) {
   EXPECT_GT(count, 30u);
   // A bit of a buffer of more than a piece.
   std::vector<std::string> long_ones;
-  for (const std::size_t place : {0u, 299'999u, 600'000u - 1})
+  for (const std::size_t place : {0u, 299'999u, 600'000u})
     for (const float value : {0.0f, 1.0f}) {
       FlatScene flat = lower(scene_of(1));
-      flat.texture_data.assign(600'000, 0.0f);
+      flat.texture_data.assign(600'001, 0.0f);
       flat.texture_data[place] = value;
       long_ones.push_back(fingerprint(flat));
     }
