@@ -77,7 +77,8 @@ FilmOutput::~FilmOutput() {
   if (writing_.valid()) writing_.wait();
 }
 
-void FilmOutput::resume(Session& session, std::uint32_t begin) {
+void FilmOutput::resume(Session& session, std::uint32_t begin,
+                        const std::map<std::string, std::string>& now) {
   if (!before_) return;
   const auto refuse = [&](const std::string& why) {
     throw InputError(SourceLocation{path_.string()},
@@ -93,6 +94,9 @@ void FilmOutput::resume(Session& session, std::uint32_t begin) {
     refuse(fmt::format("this film has the samples {}, and those asked for begin at {}",
                        text_of(samples), begin));
   notes_before_ = std::move(before_->notes);
+  if (made_on(notes_before_) != made_on(now))
+    log::warn("{} was made on {}, and goes on on {}: it need not have the bits of one render",
+              path_.string(), made_on(notes_before_), made_on(now));
   session.resume(std::move(before_->film));
   before_.reset();
   log::info("{}: goes on after sample {}", path_.string(), samples.front().end - 1);

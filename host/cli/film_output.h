@@ -48,8 +48,9 @@ class FilmOutput {
   FilmOutput& operator=(const FilmOutput&) = delete;
 
   /// Lets a session that begins with sample `begin` go on after the samples of the film that was
-  /// read. Throws InputError when it is of another picture or begins with another sample.
-  void resume(Session& session, std::uint32_t begin);
+  /// read. Warns when its devices or program (`now`: the notes of this run) are others. Throws
+  /// InputError when it is of another picture or begins with another sample.
+  void resume(Session& session, std::uint32_t begin, const std::map<std::string, std::string>& now);
   /// Returns the notes of a picture with those of the runs before.
   std::map<std::string, std::string> notes(std::map<std::string, std::string> now) const;
 

@@ -64,25 +64,15 @@ Targets targets_of(const MergeFlags& flags) {
   return out;
 }
 
-/// Returns what films of the same bits have in common, for messages: device, driver and version.
-std::string maker_of(const SavedFilm& film) {
-  const auto note = [&](const char* name) {
-    const auto found = film.notes.find(name);
-    return found == film.notes.end() ? std::string("unknown") : found->second;
-  };
-  return fmt::format("'{}' ({}) by {}", note("caplet.device"), note("caplet.driver"),
-                     note("software"));
-}
-
 SavedFilm sum_of(const std::vector<std::string>& files) {
   SavedFilm sum = load_film(files.front());
-  const std::string maker = maker_of(sum);
+  const std::string maker = made_on(sum.notes);
   bool is_warned = false;
   for (std::size_t i = 1; i < files.size(); ++i) {
     const SavedFilm more = load_film(files[i]);
-    if (!is_warned && maker_of(more) != maker) {
+    if (!is_warned && made_on(more.notes) != maker) {
       log::warn("{} was made on {}, {} on {}: the sum need not have the bits of one render",
-                files.front(), maker, files[i], maker_of(more));
+                files.front(), maker, files[i], made_on(more.notes));
       is_warned = true;
     }
     try {

@@ -302,18 +302,24 @@ std::map<std::string, std::string> notes_of(const Work& work, const RenderResult
   return work.film ? work.film->notes(notes) : notes;
 }
 
+/// Returns what is known of a render that is not done.
+RenderResult so_far(const Work& work, int samples, double seconds) {
+  RenderResult out;
+  out.samples_per_pixel = samples;
+  out.render_seconds = seconds;
+  out.interrupted = true;
+  for (const Device& device : work.devices) out.devices.push_back(work_of(device.info()));
+  return out;
+}
+
 /// Returns the look that writes checkpoints.
 Look checkpoints(const Work& work) {
   const double interval = *work.options.film.checkpoint;
   const Clock::time_point start = Clock::now();
   return {interval, [&work, interval, start](const Film& film) {
-            RenderResult so_far;
-            so_far.samples_per_pixel = narrow<int>(film.samples(0));
-            so_far.render_seconds = seconds_since(start);
-            so_far.interrupted = true;
-            for (const Device& device : work.devices)
-              so_far.devices.push_back(work_of(device.info()));
-            work.film->checkpoint(film, notes_of(work, so_far), interval);
+            const RenderResult result =
+                so_far(work, narrow<int>(film.samples(0)), seconds_since(start));
+            work.film->checkpoint(film, notes_of(work, result), interval);
           }};
 }
 
@@ -323,7 +329,9 @@ RenderResult render_with_progress(const Work& work, const FlatView& view,
                        [&](const std::function<void(const Progress&)>& progress) {
                          Session session(work.flat, view, work.devices,
                                          session_options(render_options));
-                         if (work.film) work.film->resume(session, render_options.sample_begin);
+                         if (work.film)
+                           work.film->resume(session, render_options.sample_begin,
+                                             notes_of(work, so_far(work, 0, 0)));
                          return render(session, work.devices, render_options, progress);
                        });
 }

@@ -3,6 +3,7 @@
 #include "film/film_file.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -319,20 +320,37 @@ std::string difference(const FilmOrigin& film, const FilmOrigin& other) {
   return {};
 }
 
-Notes notes_together(const Notes& before, Notes now) {
-  for (const char* name :
-       {"software", "caplet.version", "caplet.device", "caplet.driver", "caplet.platform"}) {
-    const auto found = before.find(name);
-    if (found == before.end()) continue;
-    std::string all = found->second;
-    for (std::string_view left = now[name]; !left.empty();) {
+namespace {
+
+/// Returns the texts between ", " of a note, in order, each once; before them those of `first`.
+std::string each_once(std::string_view note, std::string_view first = {}) {
+  std::vector<std::string_view> seen;
+  for (std::string_view left : {first, note})
+    while (!left.empty()) {
       const std::size_t end = std::min(left.find(", "), left.size());
-      const std::string one(left.substr(0, end));
-      if ((", " + all + ", ").find(", " + one + ", ") == std::string::npos) all += ", " + one;
+      const std::string_view one = left.substr(0, end);
+      if (std::ranges::find(seen, one) == seen.end()) seen.push_back(one);
       left.remove_prefix(std::min(end + 2, left.size()));
     }
-    now[name] = all;
-  }
+  return fmt::format("{}", fmt::join(seen, ", "));
+}
+
+}  // namespace
+
+std::string made_on(const Notes& notes) {
+  const auto note = [&](const char* name) {
+    const auto found = notes.find(name);
+    return found == notes.end() ? std::string("unknown") : each_once(found->second);
+  };
+  return fmt::format("'{}' ({}) by {}", note("caplet.device"), note("caplet.driver"),
+                     note("software"));
+}
+
+Notes notes_together(const Notes& before, Notes now) {
+  for (const char* name :
+       {"software", "caplet.version", "caplet.device", "caplet.driver", "caplet.platform"})
+    if (const auto found = before.find(name); found != before.end())
+      now[name] = each_once(now[name], found->second);
   double seconds = 0;
   for (const Notes& notes : {std::cref(before), std::cref(now)})
     if (const auto found = notes.find("caplet.render_seconds"); found != notes.end()) {

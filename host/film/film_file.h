@@ -48,6 +48,10 @@ void save_film(const std::filesystem::path& path, const SavedFilm& saved, double
 /// InputError when a file is missing, broken or no film.
 SavedFilm load_film(const std::filesystem::path& path);
 
+/// Returns devices, drivers and program that made a picture, of its notes. Films of which these are
+/// the same add to the bits of one render.
+std::string made_on(const std::map<std::string, std::string>& notes);
+
 /// Adds the samples of another film, and what its notes tell of devices and times. Throws
 /// InputError, and changes nothing, when they are not of one picture or have samples in common.
 void add(SavedFilm& to, const SavedFilm& other);

@@ -178,6 +178,27 @@ TEST(Films, OtherPicturesAreRefused) {
   refused({"thick.pbrt"}, "it is of another scene", "it is of another scene");
 }
 
+TEST(Films, OtherDevicesAreTold) {
+  const fs::path folder = folder_with_scene();
+  expect_done(render(folder, {"--film", "a.film"}));
+  const Result same = render(folder, {"--film", "a.film", "--spp", "3", "--resume"});
+  expect_done(same);
+  EXPECT_THAT(same.err, Not(HasSubstr("was made on")));
+  for (const char* note : {"caplet.device", "caplet.driver", "software"}) {
+    SavedFilm film = load_film(folder / "a.film");
+    film.notes[note] = "another one";
+    save_film(folder / "b.film", film);
+    const Result other = render(folder, {"--film", "b.film", "--spp", "4", "--resume"});
+    expect_done(other);
+    EXPECT_THAT(other.err, AllOf(HasSubstr("b.film was made on"), HasSubstr("another one")));
+    EXPECT_THAT(load_film(folder / "b.film").notes.at(note), HasSubstr("another one, "));
+    expect_done(render(folder, {"--film", "c.film", "--samples", "4:5"}));
+    const Result sum = merge(folder, {"b.film", "c.film", "-o", "sum.exr"});
+    expect_done(sum);
+    EXPECT_THAT(sum.err, AllOf(HasSubstr("b.film was made on"), HasSubstr("another one")));
+  }
+}
+
 TEST(Films, OptionsThatDoNotGoTogetherAreRefused) {
   const fs::path folder = folder_with_scene();
   expect_done(render(folder, {"--film", "a.film"}));

@@ -84,8 +84,7 @@ TEST_F(Denoise, WhatFailsIsToldAndChangesNothing) {
   EXPECT_THAT(image.find("R")->floats, ElementsAre(1, 10));
 }
 
-// These have processes of their own, where none is loaded yet.
-TEST(DenoiseMissing, IsAnErrorWithARemedy) {
+TEST_F(Denoise, AMissingLibraryIsAnErrorWithARemedy) {
   const auto folder = test::temporary_folder();
   std::ofstream(folder / "text.so") << "no library";
   for (const std::string& file :
@@ -98,7 +97,7 @@ TEST(DenoiseMissing, IsAnErrorWithARemedy) {
   }
 }
 
-TEST(DenoiseMissing, OfAnotherVersionIsAnError) {
+TEST_F(Denoise, OneOfAnotherVersionIsAnError) {
   ::setenv("CAPLET_OIDN", "libm.so.6", 1);
   EXPECT_THAT([] { check_denoiser("--denoise"); },
               ThrowsMessage<RunError>(HasSubstr("has no oidnNewDevice: version 2 is needed")));

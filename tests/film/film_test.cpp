@@ -262,6 +262,9 @@ TEST(SavedFilm, OfTheSamePictureAreAdded) {
   refused([](SavedFilm& film) { film.view = "v2"; }, "its camera, pixel filter");
   refused([](SavedFilm& film) { film.film = random_film(layout_of(5, 4), 1, 11, 4); },
           "samples 11 to 12");
+  EXPECT_EQ(made_on({{"caplet.device", "A, A"}, {"caplet.driver", "1, 1"}, {"software", "C"}}),
+            made_on({{"caplet.device", "A"}, {"caplet.driver", "1"}, {"software", "C"}}));
+  EXPECT_EQ(made_on({{"caplet.device", "A, B"}}), "'A, B' (unknown) by unknown");
   // What is unknown is no reason.
   SavedFilm unknown = saved_film(12, 4);
   unknown.scene = unknown.view = "";
