@@ -71,9 +71,7 @@ void Film::add(const Film& other) {
                        data_->render_seconds + other.data_->render_seconds);
 }
 
-void Film::save(const std::filesystem::path& file) const {
-  save_film(file, data_->saved, data_->render_seconds);
-}
+void Film::save(const std::filesystem::path& file) const { save_film(file, data_->saved); }
 
 Film Film::load(const std::filesystem::path& file) {
   return Inside::film(load_film(file), nullptr, 0);
