@@ -6,6 +6,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
+#include <stdexcept>
+
 #include "film/image.h"
 #include "program.h"
 
@@ -27,7 +30,9 @@ Result run(const fs::path& folder, const Names& arguments) {
 void expect_done(const Result& result) { ASSERT_EQ(result.code, 0) << result.err; }
 
 const std::vector<float>& floats(const LayeredImage& image, const std::string& name) {
-  return image.find(name)->floats;
+  const Channel* channel = image.find(name);
+  if (!channel) throw std::out_of_range("there is no channel " + name);
+  return channel->floats;
 }
 
 /// Expects R G B to be what the library in its place makes of the plain picture, over a backdrop of
