@@ -29,10 +29,7 @@ nlohmann::ordered_json summary(const SavedFilm& saved) {
   nlohmann::ordered_json out;
   out["size"] = {layout.width, layout.height};
   out["crop"] = {window.x, window.y, window.x + window.width, window.y + window.height};
-  auto& layers = out["layers"] = nlohmann::ordered_json::array();
-  for (std::size_t i = 0; i < layer_rows.size(); ++i)
-    if (layout.layers.has(static_cast<Layer>(i)) && *layer_rows[i].option != '\0')
-      layers.push_back(layer_rows[i].option);
+  out["layers"] = options_of(layout.layers);
   const std::vector<SampleSpan> samples = samples_of(saved.film);
   out["samples"] = spans(samples);
   out["samples_wanted"] = saved.samples_wanted;

@@ -283,14 +283,19 @@ SavedFilm load_film(const std::filesystem::path& path) {
   return out;
 }
 
-namespace {
-
-std::string names_of(Layers layers) {
-  std::string out;
+std::vector<std::string> options_of(Layers layers) {
+  std::vector<std::string> out;
   for (std::size_t i = 0; i < layer_rows.size(); ++i)
     if (layers.has(static_cast<Layer>(i)) && *layer_rows[i].option != '\0')
-      out += fmt::format("{}{}", out.empty() ? "" : ",", layer_rows[i].option);
-  return out.empty() ? "none" : out;
+      out.emplace_back(layer_rows[i].option);
+  return out;
+}
+
+namespace {
+
+std::string text_of(Layers layers) {
+  const std::vector<std::string> options = options_of(layers);
+  return options.empty() ? "none" : fmt::format("{}", fmt::join(options, ","));
 }
 
 std::string text_of(const Window& window) {
@@ -312,7 +317,7 @@ std::string difference(const FilmOrigin& film, const FilmOrigin& other) {
   if (!(a.window == b.window))
     return fmt::format("its crop is {}, not {}", text_of(a.window), text_of(b.window));
   if (!(a.layers == b.layers))
-    return fmt::format("its layers are {}, not {}", names_of(a.layers), names_of(b.layers));
+    return fmt::format("its layers are {}, not {}", text_of(a.layers), text_of(b.layers));
   if (differ(film.scene, other.scene) || !(a == b))
     return "it is of another scene, or the scene was changed";
   if (differ(film.view, other.view))

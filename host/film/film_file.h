@@ -22,6 +22,9 @@ struct FilmOrigin {
   std::string scene, view;
 };
 
+/// Returns the names by which options ask for layers, without those that every picture has.
+std::vector<std::string> options_of(Layers layers);
+
 /// Returns why the samples of the two are not of one picture: a text such as "its size is 20 x 10,
 /// not 30 x 10"; empty when they are.
 std::string difference(const FilmOrigin& film, const FilmOrigin& other);

@@ -33,9 +33,11 @@ LayeredImage rows_of(const LayeredImage& image, int first, int rows) {
 }
 
 template <class AnyFilm>
-BandedImage developed_of(const AnyFilm& film, const FilmSettings& settings, Layers layers,
-                         Layers needed, NotFinite& not_finite) {
+BandedImage developed_of(const AnyFilm& film, const FilmLayout& layout,
+                         const FilmSettings& settings, Layers layers, NotFinite& not_finite) {
   if (!settings.denoise) return developed_in_bands(film, settings, layers, not_finite);
+  const Layers needed =
+      layout.layers.has_all(denoising_layers()) ? denoising_layers() : Layers::none();
   FilmSettings alone = settings;
   alone.backdrop.reset();
   const auto image = std::make_shared<LayeredImage>(whole_of(
@@ -63,18 +65,12 @@ Layers denoising_layers() { return Layers::none().with(Layer::albedo).with(Layer
 
 BandedImage developed(const DeviceFilm& film, const FilmSettings& settings, Layers layers,
                       NotFinite& not_finite) {
-  const Layers there = film.layout.layers;
-  return developed_of(film, settings, layers,
-                      there.has_all(denoising_layers()) ? denoising_layers() : Layers::none(),
-                      not_finite);
+  return developed_of(film, film.layout, settings, layers, not_finite);
 }
 
 BandedImage developed(const Film& film, const FilmSettings& settings, Layers layers,
                       NotFinite& not_finite) {
-  const Layers there = film.layout().layers;
-  return developed_of(film, settings, layers,
-                      there.has_all(denoising_layers()) ? denoising_layers() : Layers::none(),
-                      not_finite);
+  return developed_of(film, film.layout(), settings, layers, not_finite);
 }
 
 }  // namespace caplet::report

@@ -12,6 +12,7 @@
 
 #include "film/film_file.h"
 #include "film/image.h"
+#include "pictures.h"
 #include "program.h"
 #include "small_disk.h"
 
@@ -32,16 +33,6 @@ using Names = std::vector<std::string>;
 
 constexpr int stopped = 75;
 constexpr const char* endless = "16000000";  // samples
-
-void expect_equal_pictures(const fs::path& a, const fs::path& b) {
-  const LayeredImage one = read_exr(a), other = read_exr(b);
-  ASSERT_EQ(one.channels.size(), other.channels.size());
-  for (const Channel& channel : one.channels) {
-    ASSERT_NE(other.find(channel.name), nullptr) << channel.name;
-    EXPECT_EQ(channel.floats, other.find(channel.name)->floats) << channel.name;
-    EXPECT_EQ(channel.uints, other.find(channel.name)->uints) << channel.name;
-  }
-}
 
 void expect_done(const Result& result) { ASSERT_EQ(result.code, 0) << result.err; }
 
@@ -65,7 +56,7 @@ TEST(Films, SharesMergeInAnyOrderToOneRender) {
               ElementsAre("1.film", "2.film", "3.film", "scene.pbrt", "whole.exr"));
   EXPECT_THAT(samples_in(folder / "2.film"), ElementsAre(SampleSpan{3, 6}));
   expect_done(merge(folder, {"2.film", "3.film", "1.film", "-o", "sum.exr", "-o", "sum.png"}));
-  expect_equal_pictures(folder / "sum.exr", folder / "whole.exr");
+  test::expect_equal_pictures(folder / "sum.exr", folder / "whole.exr");
   EXPECT_EQ(read_exr(folder / "sum.exr").metadata.at("caplet.samples_per_pixel"), "10");
   EXPECT_TRUE(fs::exists(folder / "sum.png"));
   // A sum is a film, which goes with others.
@@ -73,7 +64,7 @@ TEST(Films, SharesMergeInAnyOrderToOneRender) {
   const Result rest = merge(folder, {"13.film", "2.film", "-o", "again.exr", "--film", "all.film"});
   expect_done(rest);
   EXPECT_THAT(rest.err, Not(HasSubstr("missing")));
-  expect_equal_pictures(folder / "again.exr", folder / "whole.exr");
+  test::expect_equal_pictures(folder / "again.exr", folder / "whole.exr");
   expect_done(render(folder, {"--spp", "10", "--variance", "--film", "one.film"}));
   const SavedFilm one = load_film(folder / "one.film"), all = load_film(folder / "all.film");
   EXPECT_TRUE(std::ranges::equal(one.film.words(), all.film.words()));
@@ -91,7 +82,7 @@ TEST(Films, RangesOfSamplesAreThoseAskedFor) {
   expect_done(render(folder, {"--samples", "3:7", "-o", "picture.exr"}));
   EXPECT_EQ(read_exr(folder / "picture.exr").metadata.at("caplet.samples_per_pixel"), "4");
   expect_done(merge(folder, {"a.film", "-o", "a.exr"}));
-  expect_equal_pictures(folder / "a.exr", folder / "picture.exr");
+  test::expect_equal_pictures(folder / "a.exr", folder / "picture.exr");
   for (const auto& [text, why] :
        std::vector<std::pair<const char*, const char*>>{{"3", "is not A:B or I/N"},
                                                         {"3:3", "is not A:B with A < B"},
@@ -124,23 +115,23 @@ TEST(Films, ResumeGoesOnToTheBitsOfOneRender) {
   };
   const double before = seconds();
   expect_done(render(folder, second));
-  expect_equal_pictures(folder / "out.exr", folder / "whole.exr");
+  test::expect_equal_pictures(folder / "out.exr", folder / "whole.exr");
   const double after = seconds();
   EXPECT_GT(after, before);
   EXPECT_EQ(read_exr(folder / "out.exr").metadata.at("caplet.samples_per_pixel"), "9");
   // What is complete stays so.
   expect_done(render(folder, second));
-  expect_equal_pictures(folder / "out.exr", folder / "whole.exr");
+  test::expect_equal_pictures(folder / "out.exr", folder / "whole.exr");
   EXPECT_GE(seconds(), after);
   expect_done(render(folder, first));
-  expect_equal_pictures(folder / "out.exr", folder / "whole.exr");
+  test::expect_equal_pictures(folder / "out.exr", folder / "whole.exr");
   // A share goes on within itself.
   expect_done(render(folder, {"--samples", "4:6", "--film", "share.film"}));
   expect_done(render(folder, {"--samples", "4:9", "--film", "share.film", "--resume"}));
   EXPECT_THAT(samples_in(folder / "share.film"), ElementsAre(SampleSpan{4, 9}));
   expect_done(render(folder, {"--spp", "4", "--film", "begin.film"}));
   expect_done(merge(folder, {"share.film", "begin.film", "-o", "sum.exr"}));
-  expect_equal_pictures(folder / "sum.exr", folder / "whole.exr");
+  test::expect_equal_pictures(folder / "sum.exr", folder / "whole.exr");
 }
 
 TEST(Films, OtherPicturesAreRefused) {
@@ -252,7 +243,7 @@ TEST(Films, PicturesAreDevelopedAsTheSceneAsked) {
     if (!background.empty()) one.insert(one.end(), {"--background", background});
     expect_done(render(folder, one));
     expect_done(merge(folder, {"a.film", "-o", "a.exr", "--preview", "a.png"}));
-    expect_equal_pictures(folder / "a.exr", folder / "whole.exr");
+    test::expect_equal_pictures(folder / "a.exr", folder / "whole.exr");
     EXPECT_EQ(read_exr(folder / "a.exr").space, ColorSpace::rec2020);
     EXPECT_EQ(test::read_file(folder / "a.png"), test::read_file(folder / "whole.png"))
         << background;
@@ -260,7 +251,7 @@ TEST(Films, PicturesAreDevelopedAsTheSceneAsked) {
   // Another background than the film's, and fewer layers.
   expect_done(render(folder, {"-o", "whole.exr", "--background", "#ff0000", "--layers", "Z"}));
   expect_done(merge(folder, {"a.film", "-o", "a.exr", "--background", "#ff0000", "--layers", "Z"}));
-  expect_equal_pictures(folder / "a.exr", folder / "whole.exr");
+  test::expect_equal_pictures(folder / "a.exr", folder / "whole.exr");
 }
 
 TEST(Films, TellWhatIsInThem) {
@@ -315,7 +306,7 @@ TEST_P(StoppedBy, KeepsTheFilmAndSaysSo) {
   const std::string spp = std::to_string(samples[0].end + 5);
   expect_done(render(folder, {"--spp", spp, "--film", "a.film", "--resume", "-o", "a.exr"}));
   expect_done(render(folder, {"--spp", spp, "-o", "whole.exr"}));
-  expect_equal_pictures(folder / "a.exr", folder / "whole.exr");
+  test::expect_equal_pictures(folder / "a.exr", folder / "whole.exr");
 }
 
 TEST(Checkpoints, SurviveTheEndOfTheProgram) {
@@ -348,7 +339,7 @@ TEST(Checkpoints, SurviveTheEndOfTheProgram) {
   const std::string spp = std::to_string(samples + 1);
   expect_done(render(folder, {"--spp", spp, "--size", "200x150", "-o", "a.exr", "--resume"}));
   expect_done(render(folder, {"--spp", spp, "--size", "200x150", "-o", "whole.exr"}));
-  expect_equal_pictures(folder / "a.exr", folder / "whole.exr");
+  test::expect_equal_pictures(folder / "a.exr", folder / "whole.exr");
   // What killed runs left half-written is gone.
   EXPECT_THAT(test::names_in(folder), ElementsAre("a.exr", "a.film", "scene.pbrt", "whole.exr"));
 }

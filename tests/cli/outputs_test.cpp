@@ -21,6 +21,7 @@
 #include <thread>
 
 #include "film/image.h"
+#include "pictures.h"
 #include "program.h"
 #include "small_disk.h"
 #include "support/data.h"
@@ -43,16 +44,6 @@ struct stat status_of(const fs::path& path) {
   return out;
 }
 mode_t mode_of(const fs::path& path) { return status_of(path).st_mode & 07777; }
-
-void expect_equal_pictures(const fs::path& a, const fs::path& b) {
-  const LayeredImage one = read_exr(a), other = read_exr(b);
-  ASSERT_EQ(one.channels.size(), other.channels.size());
-  for (const Channel& channel : one.channels) {
-    ASSERT_NE(other.find(channel.name), nullptr) << channel.name;
-    EXPECT_EQ(channel.floats, other.find(channel.name)->floats) << channel.name;
-    EXPECT_EQ(channel.uints, other.find(channel.name)->uints) << channel.name;
-  }
-}
 
 /// A character device of the memory driver's: 3 is null, 7 full. False, with the reason printed,
 /// where none may be made.
@@ -97,7 +88,7 @@ TEST(Outputs, AFifoTakesThemAndStays) {
     for (const char* name : {"picture", "stats"})
       ::close(::open((folder / name).c_str(), O_WRONLY | O_NONBLOCK));
   reader.join();
-  expect_equal_pictures(folder / "plain.exr", received / "picture.exr");
+  test::expect_equal_pictures(folder / "plain.exr", received / "picture.exr");
   EXPECT_EQ(nlohmann::json::parse(test::read_file(received / "stats.json")).at("samples_per_pixel"),
             2);
   for (const char* name : {"picture", "stats"})
