@@ -141,6 +141,9 @@ TEST(Denoised, IsRefusedBeforeRenderingWhereItCannotBe) {
                       HasSubstr("/nonexistent.so"), HasSubstr("pip install pyoidn")));
     EXPECT_FALSE(fs::exists(folder / "a.exr"));
   }
+  // A film alone is not denoised.
+  expect_done(test::run_program({"render", "scene.pbrt", "--denoise", "--film", "a.film"}, folder,
+                                {{"CAPLET_OIDN", CAPLET_FAKE_OIDN}, {"FAKE_OIDN_FAILS", "1"}}));
   // A failure while it works leaves what was there.
   test::write_file(folder / "a.exr", "before");
   const Result failed =

@@ -248,6 +248,9 @@ TEST(Films, PicturesAreDevelopedAsTheSceneAsked) {
     EXPECT_EQ(test::read_file(folder / "a.png"), test::read_file(folder / "whole.png"))
         << background;
   }
+  // JPEG has no alpha.
+  EXPECT_EQ(merge(folder, {"a.film", "-o", "a.jpg", "--background", "transparent"}).code, 2);
+  EXPECT_FALSE(fs::exists(folder / "a.jpg"));
   // Another background than the film's, and fewer layers.
   expect_done(render(folder, {"-o", "whole.exr", "--background", "#ff0000", "--layers", "Z"}));
   expect_done(merge(folder, {"a.film", "-o", "a.exr", "--background", "#ff0000", "--layers", "Z"}));

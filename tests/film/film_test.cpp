@@ -231,7 +231,9 @@ TEST(SavedFilm, OfTheSamePictureAreAdded) {
   SavedFilm more = saved_film(8, 4);
   more.notes = {
       {"caplet.device", "B, A"}, {"caplet.render_seconds", "2.250"}, {"caplet.driver", "x"}};
+  more.samples_wanted = 20;
   add(sum, more);
+  EXPECT_EQ(sum.samples_wanted, 20u);
   EXPECT_EQ(sum.film.samples(0), 12u);
   EXPECT_EQ(sum.notes.at("caplet.device"), "A, B");
   EXPECT_EQ(sum.notes.at("caplet.driver"), "x");
