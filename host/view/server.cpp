@@ -226,7 +226,7 @@ class Server::State::Client : public std::enable_shared_from_this<Client> {
     if (writing_ || ended_ || !joined_) return;
     bool binary = true;
     if (waiting_.empty()) {
-      now_ = server_.events().picture(id_, shown_);
+      now_ = server_.events().picture(id_);
     } else {
       now_ = std::move(waiting_.front().first);
       binary = waiting_.front().second;
@@ -276,7 +276,6 @@ class Server::State::Client : public std::enable_shared_from_this<Client> {
   std::deque<std::pair<std::shared_ptr<const std::string>, bool>> waiting_;
   std::size_t waiting_bytes_ = 0;
   std::shared_ptr<const std::string> now_;
-  std::uint64_t shown_ = 0;
   bool joined_ = false, writing_ = false, ended_ = false;
 };
 

@@ -44,9 +44,9 @@ struct ServerEvents {
       file;  // `path` comes after the token; "" is the page itself
   std::function<void(ClientId)> joined, left;
   std::function<void(ClientId, std::string)> message;
-  /// Returns the next picture for a client that has read all earlier messages, or null. `shown` is
-  /// the number of its last picture (0: none), and receives that of the new one.
-  std::function<std::shared_ptr<const std::string>(ClientId, std::uint64_t& shown)> picture;
+  /// Returns the next picture for a client that has read all earlier messages, or null when it has
+  /// had the last one.
+  std::function<std::shared_ptr<const std::string>(ClientId)> picture;
 };
 
 /// Serves on its own thread for the lifetime of the object. It refuses requests with another token,

@@ -44,7 +44,7 @@ class Viewer::State {
     events.joined = [this](ClientId id) { server_->send(id, clients_.join(id)); };
     events.left = [this](ClientId id) { clients_.leave(id); };
     events.message = [this](ClientId id, const std::string& text) { said(id, text); };
-    events.picture = [this](ClientId id, std::uint64_t& shown) { return picture_for(id, shown); };
+    events.picture = [this](ClientId id) { return picture_for(id); };
     server_.emplace(options.server, std::move(events));
     loop_.emplace(RenderTools{clients_, *server_, films_, picker_, desk_, keeping_});
   }
@@ -82,10 +82,9 @@ class Viewer::State {
     server_->send(id, error_text(error.what()));
   }
 
-  Text picture_for(ClientId id, std::uint64_t& shown) {
+  Text picture_for(ClientId id) {
     const std::optional<Clients::NextPicture> next = clients_.next_picture(id);
     if (!next) return {};
-    shown = next->now->version;
     return std::make_shared<const std::string>(packed(*next->now, next->before.get()));
   }
 

@@ -231,6 +231,15 @@ TEST(Texts, CompletionsHaveAllOptions) {
   }
 }
 
+// zsh offers an option again only where it may be said again: after a star. Others leave with all
+// of their names.
+TEST(Texts, ZshOffersOptionsAsOftenAsTheyMayBeSaid) {
+  const std::string render = between(output_of({"describe", "zsh"}), "\n    render)\n", ";;");
+  for (const char* option : {"'*-o+[", "'*--output=[", "'--spp=["})
+    EXPECT_THAT(render, HasSubstr(option));
+  EXPECT_TRUE(has(render, "'\\((-q --quiet|--quiet -q)\\)--quiet\\["));
+}
+
 TEST(Texts, BashCompletesCommandsAndValues) {
   const Bash bash;
   EXPECT_THAT(bash.offers({"rend"}), ElementsAre("render"));

@@ -277,6 +277,11 @@ TEST(EmbreeScenes, MeshesGroupsAndTransforms) {
       scene_of("<Transform><AffineSpace angle=\"180\" axis=\"0 0 1\" point=\"1 1 0\"/>" +
                kTriangle + "</Transform>");
   EXPECT_LT(glm::length(dvec3(about.shapes[0].world_from_object[3]) - dvec3(2, 2, 0)), 1e-12);
+  // A quarter turn about (3 0 0) takes the origin to (3 -3 0).
+  const Scene quarter =
+      scene_of("<Transform><AffineSpace angle=\"90\" axis=\"0 0 1\" point=\"3 0 0\"/>" + kTriangle +
+               "</Transform>");
+  EXPECT_LT(glm::length(dvec3(quarter.shapes[0].world_from_object[3]) - dvec3(3, -3, 0)), 1e-12);
 }
 
 TEST(EmbreeScenes, WhatIsNamedIsPlacedAgain) {

@@ -158,6 +158,17 @@ TEST(KnownAnswers, SeeWrongRecordsOfCrossings) {
                                  HasSubstr("a normal along the ray")));
 }
 
+// Its square is within 1e-3 of 1: floats that are normalised are within 1e-6.
+TEST(KnownAnswers, SeeNormalsThatAreNotUnitVectors) {
+  const ChangedKernels longer(
+      {{"stages/pick_record.cl", "vstore3(normal, 0, out.normal);",
+        "vstore3(geometry->shape == shape_cone ? 1.0007f * normal : normal, 0, out.normal);"}});
+  const std::vector<std::string> failures = known_answer_failures(test_device(), nearest);
+  ASSERT_EQ(failures.size(), 1u);
+  EXPECT_THAT(failures[0], AllOf(StartsWith("cone: nearest crossing (pick)"),
+                                 HasSubstr("a normal of length 1.0007")));
+}
+
 TEST(KnownAnswers, SeeWrongLists) {
   const ChangedKernels changed(
       {{"trace/list.cl", "(uint)exit_surface[i] | CAPLET_LEAVING", "(uint)exit_surface[i]"}});

@@ -215,7 +215,9 @@ TEST(MjcfLooks, TheFilesLightsReplaceTheStudio) {
       "<visual><headlight ambient='.25 .25 .25' diffuse='0 0 0'/></visual>" + body +
       "<light pos='0 0 4' dir='0 0 -2' diffuse='.5 .5 .5'/><light directional='true' dir='1 0 0' "
       "ambient='.5 0 0'/>"
-      "<light pos='0 0 3' cutoff='180' diffuse='1 1 1'/><light active='false'/></worldbody>";
+      "<light pos='0 0 3' cutoff='180' diffuse='1 1 1'/><light active='false'/>"
+      "<light diffuse='0 0 0' ambient='.125 0 0'/><geom type='plane' size='0 0 1' pos='0 0 -9'/>"
+      "</worldbody>";
   const Scene scene = scene_of_text(lit);
   ASSERT_EQ(scene.lights.size(), 4U);
   const double pi = std::acos(-1.0);
@@ -225,7 +227,7 @@ TEST(MjcfLooks, TheFilesLightsReplaceTheStudio) {
   EXPECT_EQ(spot.direction, glm::dvec3(0, 0, -1));
   EXPECT_NEAR(red(std::get<DistantLight>(scene.lights[1].model).irradiance), 0.7 * pi, 1e-9);
   EXPECT_NEAR(red(std::get<PointLight>(scene.lights[2].model).intensity), 4 * pi, 1e-9);
-  EXPECT_NEAR(red(std::get<InfiniteLight>(scene.lights[3].model).radiance), 0.75, 1e-5);
+  EXPECT_NEAR(red(std::get<InfiniteLight>(scene.lights[3].model).radiance), 0.875, 1e-5);
   EXPECT_EQ(scene_of_text(lit, {{{"light", "studio"}}}).lights.size(), 1U);
 }
 

@@ -76,6 +76,21 @@ TEST(Editor, TakesAGestureBackAsOne) {
   EXPECT_NEAR(live.scene().shapes[1].world_from_object[3].x, before[3].x + 0.3, 1e-12);
 }
 
+// A change that merges with the last one is a new state: what was undone before cannot come back.
+TEST(Editor, MergingForgetsWhatWasUndone) {
+  LiveScene live(some_scene());
+  Editor editor(live);
+  const glm::dmat4 step = glm::translate(glm::dmat4(1), {0.1, 0, 0});
+  editor.make(Move{{1}, step});
+  const std::uint64_t first = editor.state();
+  editor.make(Move{{2}, step});
+  EXPECT_TRUE(editor.undo());
+  EXPECT_TRUE(editor.can_redo());
+  editor.make(Move{{1}, step}, true);
+  EXPECT_FALSE(editor.can_redo());
+  EXPECT_NE(editor.state(), first);
+}
+
 TEST(Editor, PaintsSurfacesAndWholes) {
   LiveScene live(some_scene());
   Editor editor(live);

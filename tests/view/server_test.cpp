@@ -16,6 +16,7 @@
 #include <boost/beast/core.hpp>
 #include <boost/beast/websocket.hpp>
 #include <condition_variable>
+#include <map>
 #include <mutex>
 #include <thread>
 
@@ -49,11 +50,9 @@ class Served {
     events.message = [this](ClientId, const std::string& text) {
       note([&] { messages.push_back(text); });
     };
-    events.picture = [this](ClientId, std::uint64_t& shown) -> std::shared_ptr<const std::string> {
+    events.picture = [this](ClientId id) -> std::shared_ptr<const std::string> {
       const std::lock_guard lock(mutex_);
-      if (shown == version) return {};
-      shown = version;
-      return picture;
+      return std::exchange(shown_[id], version) == version ? nullptr : picture;
     };
     server.emplace(options, std::move(events));
   }
@@ -91,6 +90,7 @@ class Served {
   }
   std::mutex mutex_;
   std::condition_variable changed_;
+  std::map<ClientId, std::uint64_t> shown_;  // the version that each has had
 };
 
 /// What it answers to these bytes, until it closes or is silent for a while.
