@@ -11,6 +11,7 @@
 
 #include "base/check.h"
 #include "base/log.h"
+#include "film/replicates.h"
 #include "film/under.h"
 #include "lower/spectrum.h"
 
@@ -64,12 +65,13 @@ LayeredImage black_image(const FilmLayout& layout, ColorSpace space, Layers laye
 /// Develops one pixel of a film.
 class Developer {
  public:
-  Developer(const Film& film, const FilmSettings& settings)
+  Developer(const Film& film, const FilmSettings& settings, Layers layers)
       : film_(film),
         picture_from_xyz_(picture_from_xyz(settings)),
         rgb_from_xyz_(rgb_from_xyz(settings.space)),
-        exposure_(settings.exposure_time * settings.iso / 100),
-        brightest_(std::ldexp(1.0, film.layout().color_exponent)) {}
+        exposure_(settings.exposure_time * settings.iso / 100) {
+    if (layers.has(Layer::variance)) variances_ = variances_of_means(film, picture_from_xyz_);
+  }
 
   void look_at(std::size_t pixel) {
     pixel_ = pixel;
@@ -101,21 +103,8 @@ class Developer {
       }
       case LayerHow::mean:
         return per_hit_ * sums(layer);
-      case LayerHow::variance: {
-        if (samples_ < 2) return {};
-        const Vector square = per_sample_ * sums(layer);
-        Vector of_mean{};
-        for (std::size_t c = 0; c < 3; ++c) {
-          // A mean of squares is not below the mean's square, except where the squares were too
-          // large for their sum.
-          const double least = rgb_[c] * rgb_[c];
-          const bool unknown = least > brightest_ * brightest_ && square[c] < 0.5 * least;
-          of_mean[c] =
-              unknown ? std::numeric_limits<double>::infinity()
-                      : exposure_ * exposure_ * std::max(0.0, square[c] - least) / (samples_ - 1);
-        }
-        return of_mean;
-      }
+      case LayerHow::variance:
+        return exposure_ * exposure_ * variances_[pixel_];
       case LayerHow::number:
         break;
     }
@@ -132,7 +121,8 @@ class Developer {
 
   const Film& film_;
   const std::array<double, 9> picture_from_xyz_, rgb_from_xyz_;
-  const double exposure_, brightest_;
+  const double exposure_;
+  std::vector<Vector> variances_;
   std::size_t pixel_ = 0;
   double samples_ = 0, hits_ = 0, per_sample_ = 0, per_hit_ = 0;
   Vector rgb_{};
@@ -166,14 +156,20 @@ void put_under(LayeredImage& image, const std::optional<Backdrop>& backdrop,
 }
 
 LayeredImage develop(const Film& film, const FilmSettings& settings, Layers layers,
-                     NotFinite& not_finite) {
+                     NotFinite& not_finite, RowMargins margins) {
   CHECK_EQ_(film.layout().layers.has_all(layers), true);
-  LayeredImage image = black_image(film.layout(), settings.space, layers);
-  const Window& window = film.layout().window;
-  Developer developer(film, settings);
+  FilmLayout layout = film.layout();
+  layout.window.y += margins.above;
+  layout.window.height -= margins.above + margins.below;
+  const Window& window = layout.window;
+  CHECK_LE_(0, window.height);
+  LayeredImage image = black_image(layout, settings.space, layers);
+  Developer developer(film, settings, layers);
+  const std::size_t first =
+      static_cast<std::size_t>(margins.above) * static_cast<std::size_t>(window.width);
   not_finite.of += window.pixels();
   for (std::size_t pixel = 0; pixel < window.pixels(); ++pixel) {
-    developer.look_at(pixel);
+    developer.look_at(first + pixel);
     bool all_finite = true;
     std::size_t channel = 0;
     for (std::size_t i = 0; i < layer_rows.size(); ++i) {
@@ -181,7 +177,7 @@ LayeredImage develop(const Film& film, const FilmSettings& settings, Layers laye
       const LayerRow& row = layer_rows[i];
       if (!layers.has(layer)) continue;
       if (row.kind == LayerKind::id) {
-        image.channels[channel++].uints[pixel] = film.number(layer, pixel);
+        image.channels[channel++].uints[pixel] = film.number(layer, first + pixel);
         continue;
       }
       const Vector values = developer.values(layer);

@@ -28,6 +28,11 @@ struct NotFinite {
   void warn() const;
 };
 
+/// RowMargins are the rows of a film that do not become rows of the picture.
+struct RowMargins {
+  int above = 0, below = 0;
+};
+
 /// Returns R G B A and the requested layers (docs/output.md) that the film has, for all its pixels,
 /// times the exposure of `settings`:
 /// R G B     mean of the samples, linear in the settings' colour space, with their white balance;
@@ -40,13 +45,13 @@ struct NotFinite {
 /// long),
 ///           world position, distance; 0, 0 and depth_of_nothing without hits
 /// object.id, primitive.id   of the first sample; 2^32 - 1: nothing hit
-/// variance  variance of R G B's mean, (E[x^2] - E[x]^2) / (n - 1), at least 0; 0 for fewer than
-/// two
-///           samples
+/// variance  variance of R G B's mean, as the two replicates of the film and of the neighbours say
+///           (docs/output.md); 0 for fewer than two samples
 /// All values are finite: where the exposure goes beyond a float, R G B are black and the variance
 /// is the greatest float (other layers: 0), and `not_finite` counts those pixels.
+/// The rows in the margins are not developed; they are there as neighbours.
 LayeredImage develop(const Film& film, const FilmSettings& settings, Layers layers,
-                     NotFinite& not_finite);
+                     NotFinite& not_finite, RowMargins margins = {});
 
 /// Does the same and warns.
 LayeredImage develop(const Film& film, const FilmSettings& settings, Layers layers);

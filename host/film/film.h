@@ -40,8 +40,8 @@ struct FilmLayout {
   int color_exponent = 0;   // 2^this is about the radiance of the brightest light
   int length_exponent = 0;  // and the extent of the scene, its camera included
 
-  /// Returns the 64-bit words of a pixel: its samples, then each layer's in the order of
-  /// layers.def.
+  /// Returns the 64-bit words of a pixel: its samples, those of the first replicate in the upper
+  /// half, then each layer's in the order of layers.def.
   std::size_t words_per_pixel() const;
   /// Returns the first of these words that belongs to a layer that the film has.
   std::size_t first_word(Layer layer) const;
@@ -78,7 +78,13 @@ class Film {
   std::span<std::uint64_t> words() { return words_; }
 
   /// Returns the samples of a pixel, counted row by row in the window.
-  std::uint64_t samples(std::size_t pixel) const { return words_[pixel * words_per_pixel_]; }
+  std::uint32_t samples(std::size_t pixel) const {
+    return static_cast<std::uint32_t>(words_[pixel * words_per_pixel_]);
+  }
+  /// Returns how many of them are of the first replicate: those of even number.
+  std::uint32_t first_replicate_samples(std::size_t pixel) const {
+    return static_cast<std::uint32_t>(words_[pixel * words_per_pixel_] >> 32);
+  }
   /// Returns the sum of component `c` of a layer that the film has (not of numbers).
   double sum(Layer layer, std::size_t c, std::size_t pixel) const;
   /// Returns the number of a layer of numbers: that of the sample with the lowest sample number;

@@ -24,7 +24,7 @@ namespace caplet {
 namespace {
 
 constexpr const char* format_name = "caplet.film";
-constexpr const char* format_version = "2";
+constexpr const char* format_version = "3";
 
 using Notes = std::map<std::string, std::string>;
 

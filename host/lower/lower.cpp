@@ -83,8 +83,6 @@ FlatView lower_view(const Scene& scene) {
     out.view.sample_limit =
         static_cast<float>(scene.view.film.max_component_value /
                            (scene.view.film.exposure_time * scene.view.film.iso / 100));
-  std::ranges::transform(picture_from_xyz(scene.view.film), out.view.rgb_from_xyz,
-                         [](double v) { return static_cast<float>(v); });
   return out;
 }
 

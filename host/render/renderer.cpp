@@ -138,7 +138,9 @@ void Renderer::reset(const FlatView& view) {
         Buffer<uint>(scene_.device(), sort_places(bins_of(sort_bits_), policy.sort_fan));
   }
   paths_.provide(scene_.device(), batch_paths_, needs_of(scene_, layers_));
-  sensor_ = SensorBuffers(scene_.device(), view);
+  FlatView sampled = view;
+  if (layers_.has(Layer::variance)) sampled.view.strategy |= CAPLET_STRATEGY_REPLICATES;
+  sensor_ = SensorBuffers(scene_.device(), sampled);
   origins_differ_ = view.camera.origins != 0;
   FilmLayout layout;
   layout.width = narrow<int>(view.view.width);

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "film/replicates.h"
+
 namespace caplet::report {
 
 namespace {
@@ -17,8 +19,15 @@ BandedImage in_bands(const FilmLayout& layout, const FilmSettings& settings, Lay
   out.whole = image_of(layout);
   out.whole.space = settings.space;
   out.rows = band_rows(out.whole.data_width, layers.channels());
-  out.band = [&settings, &not_finite, layers, rows](int first, int count) {
-    return develop(rows(first, count), settings, layers, not_finite);
+  out.band = [&settings, &not_finite, layers, rows, height = layout.window.height](int first,
+                                                                                   int count) {
+    RowMargins margins;
+    if (layers.has(Layer::variance)) {
+      margins.above = std::min(first, variance_radius);
+      margins.below = std::min(height - first - count, variance_radius);
+    }
+    return develop(rows(first - margins.above, margins.above + count + margins.below), settings,
+                   layers, not_finite, margins);
   };
   return out;
 }

@@ -102,10 +102,4 @@ static inline float3 xyz_from_spectrum(__global const float* observer, float4 ra
   return 0.25f * xyz;
 }
 
-// Returns linear RGB from XYZ by a 3x3 row-major matrix (ViewRecord.rgb_from_xyz: the film's colour
-// space; host: rgb_from_xyz).
-static inline float3 rgb_from_xyz(__global const float* m, float3 xyz) {
-  return (float3)(dot(load3(m), xyz), dot(load3(m + 3), xyz), dot(load3(m + 6), xyz));
-}
-
 #endif

@@ -12,11 +12,25 @@
 typedef struct {
   uint x, y;  // pixel of the full image
   uint sample;
-  uint seed;  // of the pixel
-  uint number,
-      key;  // of the Sobol samplers: the point's number within the sequence that the key names
+  uint seed;         // of the pixel
+  uint number, key;  // of the Sobol samplers: the point's number in the sequence of this key
   __global const ViewRecord* view;
 } PathSample;
+
+// Samples of even and of odd number are two replicates. With CAPLET_STRATEGY_REPLICATES each has
+// its own sequence of a Sobol sampler, so that they are independent and their difference says what
+// the variance is (docs/decisions/0033-two-replicates-say-the-error.md).
+static inline uint replicate_of(uint sample) { return sample & 1u; }
+
+// Returns how many bits of a sample's number name its sequence.
+static inline uint sequence_bits(__global const ViewRecord* view) {
+  return (view->strategy & CAPLET_STRATEGY_REPLICATES) != 0u ? 1u : 0u;
+}
+
+// Returns the key of a sample's sequence; `key` is that of the first one.
+static inline uint sequence_key(__global const ViewRecord* view, uint sample, uint key) {
+  return (sample & sequence_bits(view)) == 0u ? key : hash_mix(key ^ 0x2f7a5d3bu);
+}
 
 static inline uint reverse_bits(uint x) {
   x = (x >> 16) | (x << 16);

@@ -34,7 +34,8 @@ static inline uint sampler_of(__global const ViewRecord* view) {
 static inline PathSample sample_of_pixel(__global const ViewRecord* view, uint x, uint y,
                                          uint sample) {
   const uint seed = pixel_seed(x, y, view->seed);
-  PathSample at = {x, y, sample, seed, sample, seed, view};
+  PathSample at = {
+      x, y, sample, seed, sample >> sequence_bits(view), sequence_key(view, sample, seed), view};
   if (sampler_of(view) == sampler_zsobol) zsobol_address(&at);
   return at;
 }

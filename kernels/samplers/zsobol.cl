@@ -24,12 +24,14 @@ static inline uint spread_bits(uint x) {
 // Sets the number and the key of a sample's point. Bits beyond the 32 of a number, and samples
 // beyond those that were asked for, select another sequence.
 static inline void zsobol_address(PathSample* at) {
-  const uint bits = at->view->sampler_x;  // of a sample's number
+  const uint replicates = sequence_bits(at->view), sample = at->number;
+  const uint bits = max(at->view->sampler_x, replicates) - replicates;
   const ulong pixel = (ulong)(spread_bits(at->x) | (spread_bits(at->y) << 1));
-  const ulong index = (pixel << bits) | (at->sample & ((1u << bits) - 1u));
+  const ulong index = (pixel << bits) | (sample & ((1u << bits) - 1u));
   at->number = (uint)index;
-  at->key =
-      hash_combine(hash_combine(hash_mix(at->view->seed), (uint)(index >> 32)), at->sample >> bits);
+  at->key = sequence_key(
+      at->view, at->sample,
+      hash_combine(hash_combine(hash_mix(at->view->seed), (uint)(index >> 32)), sample >> bits));
 }
 
 static inline uint2 zsobol_pair(PathSample at, uint dimension) { return sobol_pair(at, dimension); }

@@ -46,11 +46,10 @@ static inline float3 sample_xyz(const Stage* g, uint path, int counted) {
   }
 
 // radiance_layer_<name> returns the value of a sample.
-#define RADIANCE_LAYER(name, option, channels, how, count, words, unit, value)              \
-  static inline float4 radiance_layer_##name(float3 xyz, __global const ViewRecord* view) { \
-    const float3 rgb = rgb_from_xyz(view->rgb_from_xyz, xyz);                               \
-    (void)rgb;                                                                              \
-    return (float4)(value, 0.0f);                                                           \
+#define RADIANCE_LAYER(name, option, channels, how, count, words, unit, value) \
+  static inline float4 radiance_layer_##name(float3 xyz, uint replicate) {     \
+    (void)replicate;                                                           \
+    return (float4)(value, 0.0f);                                              \
   }
 #define HIT_LAYER(name, option, channels, how, count, words, unit, value)
 #define ID_LAYER(name, option, channel, value)
@@ -58,6 +57,12 @@ static inline float3 sample_xyz(const Stage* g, uint path, int counted) {
 #undef RADIANCE_LAYER
 #undef HIT_LAYER
 #undef ID_LAYER
+
+// Returns the samples of a pixel of the batch, and in the upper half those of its first replicate.
+static inline ulong sample_counts(__global const BatchRecord* batch) {
+  const uint begin = batch->sample_begin, end = begin + batch->sample_count;
+  return (ulong)(end / 2u + end % 2u - (begin / 2u + begin % 2u)) << 32 | batch->sample_count;
+}
 
 static inline float4 layer_at(__global const float* values, const int count) {
   return count == 3 ? (float4)(vload3(0, values), 0.0f) : (float4)(values[0], 0.0f, 0.0f, 0.0f);
@@ -73,17 +78,18 @@ static void stage_item(const Stage* g, uint item) {
   const uint place = (pixel.y - view->crop_y) * view->crop_width + (pixel.x - view->crop_x);
   __global ulong* film = g->film.film + (size_t)place * batch->film_words;
   const int first = batch->first != 0u;
-  if (left == 0u) *film = (first ? 0ul : *film) + batch->sample_count;
+  if (left == 0u) *film = (first ? 0ul : *film) + sample_counts(batch);
   ++film;
   const uint layers = batch->layers;
   const int color = batch->color_exponent, length = batch->length_exponent;
   uint offset = 0;  // of the layer in path_layers
-#define RADIANCE_LAYER(name, option, channels, how, count, words, unit, value)                   \
-  if (layers & (1u << layer_##name)) {                                                           \
-    if (TAKES_LAYER)                                                                             \
-      ADD_SAMPLES(count, words, unit,                                                            \
-                  radiance_layer_##name(sample_xyz(g, path, layer_##name == layer_color), view)) \
-    film += (count) * (words);                                                                   \
+#define RADIANCE_LAYER(name, option, channels, how, count, words, unit, value)            \
+  if (layers & (1u << layer_##name)) {                                                    \
+    if (TAKES_LAYER)                                                                      \
+      ADD_SAMPLES(count, words, unit,                                                     \
+                  radiance_layer_##name(sample_xyz(g, path, layer_##name == layer_color), \
+                                        replicate_of(batch->sample_begin + i)))           \
+    film += (count) * (words);                                                            \
   }
 #define HIT_LAYER(name, option, channels, how, count, words, unit, value)                       \
   if (layers & (1u << layer_##name)) {                                                          \

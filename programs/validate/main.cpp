@@ -59,10 +59,7 @@ std::string cornell_box_row(int samples, bool& within) {
       mean(picture_of(ours.image)) / mean(picture_of(read_exr(folder / "TungstenRender.exr"))) - 1;
   within = std::abs(difference) < 0.015;
   return fmt::format(
-      "\nThe standard deviation of z is below 1 because Caplet states the variance of independent "
-      "samples,\n"
-      "which is an upper bound for low-discrepancy ones. The rows of environment images stand "
-      "where Mitsuba\n"
+      "\nThe rows of environment images stand where Mitsuba "
       "puts them ([lights](lights.md#image-light)).\n\nThe image mean of `scenes_pbrt/cornell-box` "
       "at depth 65, 256 x 256 "
       "pixels, {} samples differs by\n{:+.2f} % from "

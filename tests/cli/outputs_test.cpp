@@ -407,19 +407,23 @@ TEST(StandardStreams, RaysComeFromAFifo) {
 TEST(Pictures, BandsAreOfTheirRows) {
   constexpr std::size_t width = 2600, height = 1300, last = 20;
   const fs::path folder = folder_with_scene();
-  EXPECT_GT(height - last, static_cast<std::size_t>(band_rows(width, 19)))
-      << "one band is all of it";
-  ASSERT_EQ(render(folder, {"-o", "whole.exr", "--size", "2600x1300", "--spp", "1"}).code, 0);
-  ASSERT_EQ(render(folder, {"-o", "rows.exr", "--size", "2600x1300", "--spp", "1", "--crop",
-                            "0,1280,2600,1300"})
+  const auto band = static_cast<std::size_t>(band_rows(width, 22));
+  EXPECT_NE((height - last) / band, (height - 1) / band) << "the last rows are of one band";
+  ASSERT_EQ(
+      render(folder, {"-o", "whole.exr", "--size", "2600x1300", "--spp", "2", "--variance"}).code,
+      0);
+  // Variances are those of three rows around, too.
+  ASSERT_EQ(render(folder, {"-o", "rows.exr", "--size", "2600x1300", "--spp", "2", "--variance",
+                            "--crop", "0,1277,2600,1300"})
                 .code,
             0);
   const LayeredImage whole = read_exr(folder / "whole.exr"), rows = read_exr(folder / "rows.exr");
-  for (const char* name : {"R", "Z"}) {
-    const std::vector<float>& all = whole.find(name)->floats;
+  for (const char* name : {"R", "Z", "variance.G"}) {
+    const std::vector<float>&all = whole.find(name)->floats, &some = rows.find(name)->floats;
     ASSERT_EQ(all.size(), width * height);
-    EXPECT_TRUE(std::vector<float>(all.end() - width * last, all.end()) == rows.find(name)->floats)
-        << name;
+    ASSERT_EQ(some.size(), width * (last + 3));
+    EXPECT_TRUE(std::equal(all.end() - width * last, all.end(), some.end() - width * last)) << name;
+    EXPECT_GT(std::ranges::max(some), 0) << name;
   }
 }
 

@@ -71,9 +71,9 @@ TEST_P(ClosedForms, Agrees) {
     }
     RecordProperty(std::string("mean_") + "RGB"[c], std::to_string(mean));
     EXPECT_NEAR(mean, expected.value, expected.relative_tolerance * expected.value) << "RGB"[c];
-    // 1e-5: a picture without noise still has the rounding of float sums and of the colour tables.
+    // 2e-4: whites as a spectrum's XYZ and as the colour space's xy differ by up to this.
     EXPECT_NEAR(mean, expected.value,
-                expected.standard_errors * std::sqrt(variance) + 1e-5 * expected.value)
+                expected.standard_errors * std::sqrt(variance) + 2e-4 * expected.value)
         << "RGB"[c];
   }
 }

@@ -28,9 +28,9 @@ Size window(int width, int height) { return {width, height}; }
 
 /// Sums of one pixel.
 struct Pixel {
-  std::uint64_t samples = 0;
+  std::uint64_t samples = 0, first_samples = 0;  // of the first replicate
   double hits = 0;
-  std::array<double, 3> xyz{}, rgb_squared{}, albedo{}, normal{}, position{};
+  std::array<double, 3> xyz{}, first_xyz{}, albedo{}, normal{}, position{};
   double depth = 0;
   std::uint32_t object = CAPLET_NONE, primitive = CAPLET_NONE;
 };
@@ -45,12 +45,12 @@ Film film_of(const std::vector<Pixel>& pixels, Size size) {
   if (pixels.size() != layout.window.pixels()) throw std::logic_error("a pixel for each place");
   for (std::size_t i = 0; i < pixels.size(); ++i) {
     const Pixel& p = pixels[i];
-    film.words()[i * layout.words_per_pixel()] = p.samples;
+    film.words()[i * layout.words_per_pixel()] = p.first_samples << 32 | p.samples;
     test::set_sum(film, Layer::coverage, 0, i, p.hits);
     test::set_sum(film, Layer::depth, 0, i, p.depth);
     for (std::size_t c = 0; c < 3; ++c) {
       test::set_sum(film, Layer::color, c, i, p.xyz[c]);
-      test::set_sum(film, Layer::variance, c, i, p.rgb_squared[c]);
+      test::set_sum(film, Layer::variance, c, i, p.first_xyz[c]);
       test::set_sum(film, Layer::albedo, c, i, p.albedo[c]);
       test::set_sum(film, Layer::normal, c, i, p.normal[c]);
       test::set_sum(film, Layer::position, c, i, p.position[c]);
@@ -81,11 +81,12 @@ Pixel with_samples(std::initializer_list<std::array<double, 3>> rgb_samples) {
   Pixel pixel;
   for (const auto& rgb : rgb_samples) {
     const auto v = xyz_of_srgb(rgb[0], rgb[1], rgb[2]);
+    const bool first = pixel.samples++ % 2 == 0;
+    if (first) ++pixel.first_samples;
     for (std::size_t c = 0; c < 3; ++c) {
       pixel.xyz[c] += v[c];
-      pixel.rgb_squared[c] += rgb[c] * rgb[c];
+      if (first) pixel.first_xyz[c] += v[c];
     }
-    ++pixel.samples;
   }
   return pixel;
 }
@@ -106,18 +107,89 @@ TEST(Develop, MeansOfTheSamples) {
 }
 
 TEST(Develop, VarianceOfTheMean) {
-  // Red 1 and 3: variance of the samples (divisor n) 1, of the mean 1 / (n - 1) = 1. Blue 0.25,
+  // Red 1 and 3: of independent samples the variance of their mean is (3 - 1)^2 / 4. Blue 0.25,
   // 0.75: 0.0625. Green: none.
   const auto image = develop({with_samples({{1, 0.5, 0.25}, {3, 0.5, 0.75}})}, window(1, 1),
                              Scene{}, Layers::all());
   EXPECT_NEAR(value(image, "variance.R"), 1, rounding);
-  EXPECT_NEAR(value(image, "variance.G"), 0, rounding);
+  EXPECT_NEAR(value(image, "variance.G"), 0, 1e-20);
   EXPECT_NEAR(value(image, "variance.B"), 0.0625, rounding);
-  EXPECT_GE(value(image, "variance.G"), 0);
-  // 1, 3 and 5: 35 / 3 - 9 = 8 / 3, over n - 1 = 2.
-  const auto three = develop({with_samples({{1, 0, 0}, {3, 0, 0}, {5, 0, 0}})}, window(1, 1),
+  // 1 and 6 are one replicate, 2 the other: (3.5 - 2)^2 (1/2 + 1)^-1 2/3, as if each sample had
+  // the variance that makes (a - b)^2 what it is, a third of which is that of the mean of three.
+  const auto three = develop({with_samples({{1, 0, 0}, {2, 0, 0}, {6, 0, 0}})}, window(1, 1),
                              Scene{}, Layers::all());
-  EXPECT_NEAR(value(three, "variance.R"), 4.0 / 3, 2 * rounding);
+  EXPECT_NEAR(value(three, "variance.R"), 1.5 * 1.5 / (0.5 + 1) / 3, rounding);
+}
+
+// The first replicate alone, or the second, says nothing; nor do pixels without samples.
+TEST(Develop, VarianceNeedsBothReplicates) {
+  Pixel first = with_samples({{1, 0, 0}}), second = first;
+  first.samples = first.first_samples = 2;
+  second.samples = 2, second.first_samples = 0, second.first_xyz = {};
+  for (const Pixel& pixel : {first, second, nothing()})
+    EXPECT_EQ(value(develop({pixel}, window(1, 1), Scene{}, Layers::all()), "variance.R"), 0);
+}
+
+/// A pixel whose replicates of one sample each differ by 2 sqrt(variance); each hits something.
+Pixel with_variance(double variance) {
+  const double d = std::sqrt(variance);
+  Pixel out = with_samples({{1 + d, 1, 1}, {1 - d, 1, 1}});
+  out.hits = 2;
+  return out;
+}
+
+// Each pixel has the mean of the estimates of the 49 pixels around it, or of those that are there.
+TEST(Develop, VariancesArePooledOverNeighbours) {
+  constexpr int width = 10, height = 6;
+  std::vector<Pixel> pixels(width * height, with_variance(0));
+  pixels[2 * width + 4] = with_variance(49);
+  const auto image = develop(pixels, window(width, height), Scene{}, Layers::all());
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x) {
+      const int columns = std::min(x, 3) + 1 + std::min(width - 1 - x, 3),
+                rows = std::min(y, 3) + 1 + std::min(height - 1 - y, 3);
+      const bool near = std::abs(x - 4) <= 3 && std::abs(y - 2) <= 3;
+      EXPECT_NEAR(value(image, "variance.R", static_cast<std::size_t>(y * width + x)),
+                  near ? 49.0 / (columns * rows) : 0, 49 * rounding)
+          << x << ' ' << y;
+    }
+}
+
+// A constant sky beside an object has no variance and takes none away; a sky that varies has.
+TEST(Develop, VarianceIsNotThatOfAConstantSky) {
+  const Pixel sky = with_samples({{0.3, 0.7, 0.1}, {0.3, 0.7, 0.1}, {0.3, 0.7, 0.1}});
+  Pixel cloud = with_variance(4);
+  cloud.hits = 0;
+  const auto image = develop({sky, with_variance(1), sky, with_variance(3), cloud}, window(5, 1),
+                             Scene{}, Layers::all());
+  const double expected[5] = {0, (1 + 3 + 4) / 3.0, 0, (1 + 3 + 4) / 3.0, (1 + 3 + 4) / 3.0};
+  for (std::size_t i = 0; i < 5; ++i)
+    EXPECT_NEAR(value(image, "variance.R", i), expected[i], 10 * rounding) << i;
+}
+
+// Rows in the margins are neighbours, and nothing else.
+TEST(Develop, MarginsAreNeighboursAlone) {
+  std::vector<Pixel> pixels;
+  for (int i = 0; i < 10 * 6; ++i) pixels.push_back(with_variance(i * i % 17));
+  for (std::size_t i = 0; i < pixels.size(); ++i) pixels[i].object = static_cast<std::uint32_t>(i);
+  const Film film = film_of(pixels, window(10, 6));
+  NotFinite all, some;
+  const auto whole = caplet::develop(film, Scene{}.view.film, Layers::all(), all),
+             part = caplet::develop(film, Scene{}.view.film, Layers::all(), some, {2, 3});
+  EXPECT_EQ(part.data_height, 1);
+  EXPECT_EQ(part.y, whole.y + 2);
+  EXPECT_EQ(some.of, 10u);
+  for (const Channel& channel : part.channels) {
+    const Channel& of_whole = *whole.find(channel.name.c_str());
+    for (std::size_t x = 0; x < 10; ++x) {
+      if (!channel.floats.empty()) {
+        EXPECT_EQ(channel.floats.at(x), of_whole.floats.at(20 + x)) << channel.name;
+      }
+      if (!channel.uints.empty()) {
+        EXPECT_EQ(channel.uints.at(x), of_whole.uints.at(20 + x)) << channel.name;
+      }
+    }
+  }
 }
 
 TEST(Develop, VarianceOfOneSampleIsZeroAndOnRequest) {
@@ -346,18 +418,18 @@ TEST(Develop, ColorsAndAlbedoAreInTheFilmsSpace) {
 
 TEST(Develop, VarianceIsInTheFilmsSpace) {
   // Two samples of half and of one and a half times the same colour c: the variance of the mean is
-  // (c / 2)^2 in each component. The squares are the device's: here of the published colours.
+  // (c / 2)^2 in each component.
   const std::array<double, 3> xyz{0.4, 0.3, 0.2};
   for (const auto& [space, m] : spaces) {
     Scene scene;
     scene.view.film.space = space;
     Pixel record;
-    record.samples = 2;
+    record.samples = 2, record.first_samples = 1;
     std::array<double, 3> rgb{};
     for (std::size_t c = 0; c < 3; ++c) {
       rgb[c] = m[3 * c] * xyz[0] + m[3 * c + 1] * xyz[1] + m[3 * c + 2] * xyz[2];
       record.xyz[c] = 2 * xyz[c];
-      record.rgb_squared[c] = (0.25 + 2.25) * rgb[c] * rgb[c];
+      record.first_xyz[c] = 0.5 * xyz[c];
     }
     const auto image = develop({record}, window(1, 1), scene, Layers::all());
     for (std::size_t c = 0; c < 3; ++c)
@@ -365,6 +437,20 @@ TEST(Develop, VarianceIsInTheFilmsSpace) {
                   2e-3)
           << static_cast<int>(space) << ' ' << c;
   }
+}
+
+// What is balanced is balanced in the spread of its samples, too.
+TEST(Develop, VarianceHasTheWhiteBalance) {
+  Scene scene;
+  scene.view.film.white_balance = 3000;
+  const auto image = develop({with_samples({{0.5, 0.5, 0.5}, {1.5, 1.5, 1.5}})}, window(1, 1),
+                             scene, Layers::all());
+  for (const char* name : {"R", "G", "B"}) {
+    const float balanced = value(image, name);
+    EXPECT_NEAR(value(image, (std::string("variance.") + name).c_str()), balanced * balanced / 4,
+                rounding);
+  }
+  EXPECT_GT(std::abs(value(image, "B") / value(image, "R") - 1), 0.2);
 }
 
 TEST(Develop, NothingWrittenIsInfiniteOrNotANumber) {

@@ -71,10 +71,10 @@ bool same(const Film& a, const Film& b) {
 
 TEST(Film, WordsOfAPixelAreThoseOfItsLayers) {
   // Samples 1, R G B of two words each, A 1; Z 1, albedo, N and P 3 each, the two numbers 1 each;
-  // the variance of three words each.
+  // the first replicate's R G B of two words each.
   EXPECT_EQ(layout_of(1, 1, Layers::none()).words_per_pixel(), 8u);
   EXPECT_EQ(layout_of(1, 1, Layers::usual()).words_per_pixel(), 20u);
-  EXPECT_EQ(layout_of(1, 1, Layers::all()).words_per_pixel(), 29u);
+  EXPECT_EQ(layout_of(1, 1, Layers::all()).words_per_pixel(), 26u);
   EXPECT_EQ(layout_of(1, 1, Layers::none().with(Layer::normal)).first_word(Layer::normal), 8u);
   EXPECT_EQ(layout_of(1, 1, Layers::none()).floats_per_path(), 1u);
   EXPECT_EQ(layout_of(1, 1, Layers::all()).floats_per_path(), 13u);
@@ -91,9 +91,13 @@ TEST(Film, SumsHaveTheirUnits) {
   pixel[film.layout().first_word(Layer::depth)] = 3;
   EXPECT_EQ(film.sum(Layer::depth, 0, 1), 3 * 0x1p-38);
   EXPECT_EQ(film.sum(Layer::depth, 0, 0), 0);
-  // The variance's third word counts 2^128 units of 2^(2 * 3 - 100).
-  pixel[film.layout().first_word(Layer::variance) + 2] = 5;
-  EXPECT_EQ(film.sum(Layer::variance, 0, 1), 5 * 0x1p34);
+  // The second word of the first replicate's green counts 2^64 units of 2^(3 - 60).
+  pixel[film.layout().first_word(Layer::variance) + 3] = 5;
+  EXPECT_EQ(film.sum(Layer::variance, 1, 1), 5 * 0x1p7);
+  // Samples, and those of the first replicate.
+  pixel[0] = std::uint64_t{7} << 32 | 13;
+  EXPECT_EQ(film.samples(1), 13u);
+  EXPECT_EQ(film.first_replicate_samples(1), 7u);
   EXPECT_EQ(film.number(Layer::object, 1), CAPLET_NONE);
 }
 
@@ -307,7 +311,7 @@ TEST(Film, FilesThatAreNoneAreRefused) {
   save_film(folder / "film.exr", {film, "", "", 0, {}, {}});
   int number = 0;
   for (const auto& [name, wrong] : std::vector<std::pair<std::string, std::string>>{
-           {"caplet.film", "1"},
+           {"caplet.film", "2"},
            {"caplet.film.layers", "1000000"},
            {"caplet.film.layers", "7x"},
            {"caplet.film.color_exponent", "x"},
@@ -330,6 +334,19 @@ TEST(Film, FilesThatAreNoneAreRefused) {
     const auto file = folder / (std::to_string(number++) + ".exr");
     write_exr(file, image);
     EXPECT_THROW(load_film(file), InputError) << name << ' ' << wrong;
+  }
+  // Half of a word as floats.
+  for (const char* name : {"word01.low", "word01.high"}) {
+    LayeredImage halves = read_exr(folder / "film.exr");
+    std::erase_if(halves.metadata,
+                  [](const auto& entry) { return !entry.first.starts_with("caplet."); });
+    const auto half = std::ranges::find(halves.channels, name, &Channel::name);
+    half->floats.assign(half->uints.size(), 1);
+    half->uints.clear();
+    const auto file = folder / (std::string(name) + ".exr");
+    write_exr(file, halves);
+    EXPECT_THAT([&] { load_film(file); }, ThrowsMessage<InputError>(HasSubstr("word 1 is missing")))
+        << name;
   }
   LayeredImage image = read_exr(folder / "film.exr");
   std::erase_if(image.metadata,

@@ -106,7 +106,7 @@ TEST(Lens, IsIndependentOfTheFilter) {
 // An edge along the middle of a pixel's row or column: what a pixel holds is the part of the filter
 // that lies on the bright side.
 TEST(FilterOfPbrt, EdgesAreTheFiltersIntegral) {
-  constexpr int length = 24, rows = 64, samples = 256;
+  constexpr int length = 24, rows = 80, samples = 256;
   std::vector<PixelFilter> filters = {{.kind = PixelFilter::Kind::box},
                                       {.kind = PixelFilter::Kind::triangle},
                                       {.kind = PixelFilter::Kind::gaussian, .sigma = 0.5},

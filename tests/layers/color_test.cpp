@@ -12,7 +12,9 @@
 #include <memory>
 #include <string>
 
+#include "film/develop.h"
 #include "lower/color.h"
+#include "lower/lower.h"
 #include "scene_text.h"
 
 namespace caplet::test {
@@ -124,34 +126,83 @@ TEST(ColorOfFilm, AlbedoIsScaleFreeInTheFilmsSpace) {
     }
 }
 
-// One sample a pixel is independent from pixel to pixel: the pixels' spread is the variance V of a
-// sample. Of n samples in a pixel, stratified so that their mean is nearly exact, the layer is
-// (E[x^2] - mean^2) / (n - 1): V / (n - 1); if they were independent, V / n.
-TEST(ColorOfFilm, VarianceIsThatOfTheFilmsColors) {
-  constexpr int n = 64, side = 128;
+/// Spread is what pixels of the same mean show of their variance, beside what the layer states.
+struct Spread {
+  double true_variance = 0, stated = 0, within = 0;  // share of the 95 % intervals with the mean
+};
+
+Spread spread_of(const LayeredImage& image, const std::string& name) {
+  const std::vector<float>&values = channel(image, name).floats,
+        &variances = channel(image, "variance." + name).floats;
+  const double center = mean(channel(image, name)), pixels = static_cast<double>(values.size());
+  Spread out;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const double d = double{values[i]} - center;
+    out.true_variance += d * d / pixels;
+    out.stated += double{variances[i]} / pixels;
+    out.within += (std::abs(d) <= 1.96 * std::sqrt(double{variances[i]}) ? 1 : 0) / pixels;
+  }
+  return out;
+}
+
+// All pixels have the same mean, and their variance shows in their spread. Of 128 x 128 pixels of
+// normal errors, that spread and the mean of as many estimates of one degree of freedom are each
+// within sqrt(2) / 128 = 1.1 % (standard deviation) of the variance.
+constexpr double five_sigma = 5 * 1.6e-2;
+
+TEST(ColorOfFilm, VarianceIsThatOfTheMeansInTheFilmsSpace) {
   const dvec3 color(0.9, 0.4, 0.15);
   for (const Space& film : spaces) {
-    const std::string text = film_of(film.name, side) + glowing_plane(film.name, color);
-    const LayeredImage single = render_text(text, 1).image,
-                       many_samples = render_text(text, n, [](Scene&scene) {
-                                        scene.view.film.crop = std::array<int, 4>{0, 32, 0, 32};
-                                      }).image;
+    const LayeredImage image =
+        render_text(film_of(film.name, 128) + glowing_plane(film.name, color), 64).image;
     for (const char* name : {"R", "G", "B"}) {
-      const std::vector<float>& values = channel(single, name).floats;
-      const double center = mean(channel(single, name)), pixels = side * side;
-      double second = 0, fourth = 0;
-      for (const float v : values) {
-        const double d = double{v} - center;
-        second += d * d / pixels;
-        fourth += d * d * d * d / pixels;
-      }
-      const double slack = 5 * std::sqrt((fourth - second * second) / pixels);
-      const double layer = mean(channel(many_samples, std::string("variance.") + name)) * (n - 1);
-      EXPECT_GT(layer, second * (n - 1) / n - slack) << film.name << ' ' << name;
-      EXPECT_LT(layer, second + slack) << film.name << ' ' << name;
-      EXPECT_LT(slack, 0.2 * second) << film.name << ' ' << name;
+      const Spread spread = spread_of(image, name);
+      EXPECT_NEAR(spread.stated / spread.true_variance, 1, five_sigma) << film.name << ' ' << name;
     }
   }
+}
+
+// Whatever the sampler makes of the samples: 16 or, so that one replicate is larger, 9.
+TEST(ColorOfFilm, VarianceIsThatOfEverySampler) {
+  using Kind = SamplerSettings::Kind;
+  const std::string text = film_of("srgb", 128) + glowing_plane("srgb", dvec3(0.9, 0.4, 0.15));
+  for (const Kind kind : {Kind::sobol, Kind::independent, Kind::zsobol, Kind::stratified})
+    for (const int samples : {9, 16}) {
+      const LayeredImage image = render_text(text, samples, [&](Scene& scene) {
+                                   scene.view.sampler.kind = kind;
+                                   scene.view.sampler.samples_per_pixel = samples;
+                                 }).image;
+      const Spread spread = spread_of(image, "G");
+      const double ratio = spread.stated / spread.true_variance;
+      if (kind == Kind::stratified) {  // both replicates share its strata: an upper bound
+        EXPECT_GT(ratio, 1 + five_sigma) << samples;
+        continue;
+      }
+      EXPECT_NEAR(ratio, 1, five_sigma) << static_cast<int>(kind) << ' ' << samples;
+      // 49 estimates make intervals of Student's t with 49 degrees of freedom: 94.4 % lie within
+      // 1.96. Neighbours share estimates: some 128 x 128 / 49 intervals are independent.
+      EXPECT_NEAR(spread.within, 0.944, 5 * std::sqrt(0.944 * 0.056 * 49) / 128)
+          << static_cast<int>(kind) << ' ' << samples;
+    }
+}
+
+// Without the layer, all samples are one net of the sampler: their means spread less.
+TEST(ColorOfFilm, WithoutVarianceSamplesAreOneNet) {
+  const std::string text = film_of("srgb", 64) + glowing_plane("srgb", dvec3(0.9, 0.4, 0.15));
+  const auto spread = [&](Layers layers) {
+    const Scene scene = scene_of_text(text);
+    RenderOptions options;
+    options.samples_per_pixel = 16;
+    options.layers = layers;
+    const RenderResult result = render(lower(scene), lower_view(scene), test_device(), options, {});
+    const LayeredImage image = develop(result.film, scene.view.film, layers);
+    const double center = mean(channel(image, "G"));
+    double squares = 0;
+    for (const float v : channel(image, "G").floats) squares += std::pow(double{v} - center, 2);
+    return squares;
+  };
+  // The ratio of two spreads of 64 x 64 pixels is within 3.1 % (standard deviation).
+  EXPECT_GT(spread(Layers::none().with(Layer::variance)) / spread(Layers::none()), 1 + 5 * 3.1e-2);
 }
 
 /// What a scene's rendering says, and the picture.

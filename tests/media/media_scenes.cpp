@@ -5,19 +5,16 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <numbers>
 
 namespace caplet::test {
 
 std::string parallel_view(double half, int max_depth) {
-  constexpr double far = 1000;
   return fmt::format(
-      "Integrator \"volpath\" \"integer maxdepth\" {}\nLookAt 0 0 -{} 0 0 0 0 1 0\nCamera "
-      "\"perspective\" \"float fov\" "
-      "{}\nPixelFilter \"box\" "
+      "Integrator \"volpath\" \"integer maxdepth\" {0}\nLookAt 0 0 -1000 0 0 0 0 1 0\nCamera "
+      "\"orthographic\" \"float screenwindow\" [-{1} {1} -{1} {1}]\nPixelFilter \"box\" "
       "\"float xradius\" 0.5 \"float yradius\" 0.5\nFilm \"rgb\" \"integer xresolution\" 16 "
       "\"integer yresolution\" 16\n",
-      max_depth, far, 2 * std::atan(half / far) * 180 / std::numbers::pi);
+      max_depth, half);
 }
 
 std::string white_sky() { return "LightSource \"infinite\" \"rgb L\" [1 1 1]\n"; }

@@ -13,8 +13,7 @@
 
 namespace caplet::test {
 
-/// Rays that are as good as parallel, along +z through the square of half side `half` around the
-/// axis.
+/// Parallel rays along +z through the square of half side `half` around the axis.
 std::string parallel_view(double half = 1, int max_depth = 100);
 /// Light of 1 from everywhere, found by rays alone; the same from a sphere around all, which is
 /// sampled as well.

@@ -213,15 +213,23 @@ TEST(FilmSplit, SessionsEndAtTheirTimeLimitAfterOnePass) {
               testing::ElementsAre(FilmPart{session.film().layout().window, 0, 4}));
 }
 
-// A layer that is not asked for takes no room, and changes nothing of the others.
+// A layer that is not asked for takes no room, and changes nothing of the others. The variance
+// alone has other samples.
 TEST(FilmSplit, LayersDoNotSeeEachOther) {
   DeviceScene scene(test_device(), model().flat);
-  const LayeredImage all = develop(whole(), model().scene.view.film, Layers::all());
-  for (const Layers layers : {Layers::none(), Layers::usual(),
-                              Layers::none().with(Layer::variance).with(Layer::object)}) {
+  const auto film_with = [&](Layers layers) {
     Renderer renderer(scene, model().view, {.layers = layers});
     renderer.pass(whole().layout().window, 0, samples);
-    const Film film = renderer.film().read();
+    return renderer.film().read();
+  };
+  const LayeredImage with_variance = develop(whole(), model().scene.view.film, Layers::all()),
+                     usual = develop(film_with(Layers::usual()), model().scene.view.film,
+                                     Layers::usual());
+  EXPECT_NE(channel(with_variance, "R").floats, channel(usual, "R").floats);
+  for (const Layers layers : {Layers::none(), Layers::none().with(Layer::normal),
+                              Layers::none().with(Layer::variance).with(Layer::object)}) {
+    const LayeredImage& all = layers.has(Layer::variance) ? with_variance : usual;
+    const Film film = film_with(layers);
     EXPECT_EQ(film.words().size(), film.layout().window.pixels() * film.layout().words_per_pixel());
     const LayeredImage image = develop(film, model().scene.view.film, layers);
     EXPECT_EQ(image.channels.size(), layers.channels());

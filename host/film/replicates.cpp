@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+#include "film/replicates.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+namespace caplet {
+
+namespace {
+
+/// Estimate is the sum of the variances of `pixels` pixels.
+struct Estimate {
+  std::array<double, 3> variance{};
+  double pixels = 0;
+  void add(const Estimate& other) {
+    for (std::size_t c = 0; c < 3; ++c) variance[c] += other.variance[c];
+    pixels += other.pixels;
+  }
+};
+
+/// Returns a - b, or 0 where they differ by no more than their roundings: sums become doubles and
+/// are divided, each within 2^-53 of its value, and b is the difference of two of them, of which
+/// one is at most n / n2 times b.
+double difference(double a, double b, double sum_over_b) {
+  const double d = a - b, rounding = 0x1p-51 * (std::abs(a) + sum_over_b * std::abs(b));
+  return std::abs(d) <= rounding ? 0 : d;
+}
+
+Estimate estimate_of(const Film& film, const std::array<double, 9>& m, std::size_t pixel) {
+  const double n = film.samples(pixel), n1 = film.first_replicate_samples(pixel), n2 = n - n1;
+  Estimate out;
+  if (n1 == 0 || n2 == 0) return out;
+  std::array<double, 3> xyz{};
+  for (std::size_t c = 0; c < 3; ++c) {
+    const double first = film.sum(Layer::variance, c, pixel),
+                 all = film.sum(Layer::color, c, pixel);
+    xyz[c] = difference(first / n1, (all - first) / n2, n / n2);
+  }
+  if (xyz == std::array<double, 3>{} && film.sum(Layer::coverage, 0, pixel) == 0) return out;
+  out.pixels = 1;
+  for (std::size_t c = 0; c < 3; ++c) {
+    const double rgb = m[3 * c] * xyz[0] + m[3 * c + 1] * xyz[1] + m[3 * c + 2] * xyz[2];
+    out.variance[c] = rgb * rgb * n1 * n2 / (n * n);
+  }
+  return out;
+}
+
+/// Adds up `count` estimates `step` apart over those at most variance_radius away.
+void add_neighbours(Estimate* estimates, int count, std::size_t step,
+                    std::vector<Estimate>& scratch) {
+  scratch.assign(static_cast<std::size_t>(count), {});
+  for (int i = 0; i < count; ++i)
+    for (int j = std::max(0, i - variance_radius); j <= std::min(count - 1, i + variance_radius);
+         ++j)
+      scratch[static_cast<std::size_t>(i)].add(estimates[static_cast<std::size_t>(j) * step]);
+  for (int i = 0; i < count; ++i)
+    estimates[static_cast<std::size_t>(i) * step] = scratch[static_cast<std::size_t>(i)];
+}
+
+}  // namespace
+
+std::vector<std::array<double, 3>> variances_of_means(const Film& film,
+                                                      const std::array<double, 9>& rgb_from_xyz) {
+  const Window& window = film.layout().window;
+  const auto width = static_cast<std::size_t>(window.width);
+  std::vector<Estimate> estimates(window.pixels());
+  std::vector<bool> has_one(window.pixels());
+  for (std::size_t i = 0; i < estimates.size(); ++i) {
+    estimates[i] = estimate_of(film, rgb_from_xyz, i);
+    has_one[i] = estimates[i].pixels > 0;
+  }
+  std::vector<Estimate> scratch;
+  for (int y = 0; y < window.height; ++y)
+    add_neighbours(&estimates[static_cast<std::size_t>(y) * width], window.width, 1, scratch);
+  for (std::size_t x = 0; x < width; ++x)
+    add_neighbours(&estimates[x], window.height, width, scratch);
+  std::vector<std::array<double, 3>> out(window.pixels());
+  for (std::size_t i = 0; i < out.size(); ++i)
+    for (std::size_t c = 0; c < 3 && has_one[i]; ++c)
+      out[i][c] = estimates[i].variance[c] / estimates[i].pixels;
+  return out;
+}
+
+}  // namespace caplet
