@@ -71,17 +71,17 @@ def test_pictures_are_those_of_the_program(tmp_path, saved, scenes):
     for overlays, options in ((dict(scale_bar="0.5 cells", outline=True, axes=True), ["--scale-bar", "0.5 cells", "--outline", "--axes"]),
                               (dict(scale_bar=True, depth_cue=0.25), ["--scale-bar", "auto", "--depth-cue", "0.25"]), ({}, [])):
         made = saved(image, **overlays)
-        subprocess.run([program, "render", "balls.pbrt", "-q", "-o", "none", "--preview", "b.ppm", *options], cwd=tmp_path, check=True)
+        subprocess.run([program, "render", "balls.pbrt", "-q", "--variance", "-o", "none", "--preview", "b.ppm", *options], cwd=tmp_path, check=True)
         assert np.array_equal(made, pixels(tmp_path / "b.ppm")), options
     neuron = scenes / "neuron.swc"
     made = saved(caplet.render(caplet.load(neuron, least_width=4), spp=2, size=(96, 54)))  # thin branches, widened
-    subprocess.run([program, "render", neuron, "-q", "-o", "none", "--preview", "b.ppm", "--least-width", "4", "--spp", "2", "--size", "96x54"],
+    subprocess.run([program, "render", neuron, "-q", "--variance", "-o", "none", "--preview", "b.ppm", "--least-width", "4", "--spp", "2", "--size", "96x54"],
                    cwd=tmp_path, check=True)
     assert np.array_equal(made, pixels(tmp_path / "b.ppm"))
     file = tmp_path / "two.pdb"
     file.write_text("".join(f"ATOM  {i:5}  C   ALA A{i:4}    {2 * i:8.3f}{0:8.3f}{0:8.3f}  1.00{10 * i:6.2f}           C\n" for i in (1, 2, 3)))
     made = saved(caplet.render(caplet.load(file, color="bfactor"), spp=2, size=(96, 54)), color_bar=True)
-    subprocess.run([program, "render", "two.pdb", "-q", "-o", "none", "--preview", "b.ppm", "--color", "bfactor", "--color-bar", "--spp", "2",
+    subprocess.run([program, "render", "two.pdb", "-q", "--variance", "-o", "none", "--preview", "b.ppm", "--color", "bfactor", "--color-bar", "--spp", "2",
                     "--size", "96x54"], cwd=tmp_path, check=True)
     assert np.array_equal(made, pixels(tmp_path / "b.ppm"))
 
@@ -208,12 +208,12 @@ def test_images_are_textures():
                    material=materials.diffuse(reflectance=paint))
     scene.look_at((0.5, 0.5, 5), (0.5, 0.5, 0))
     scene.fov = 10  # 0.87 units across
-    got = caplet.render(scene, spp=4, size=(40, 40)).albedo
+    got = caplet.render(scene, spp=64, size=(40, 40)).albedo
     for (row, column), wanted in (((5, 5), image[0, 0]), ((5, 35), image[0, 1]), ((35, 5), image[1, 0]), ((35, 35), image[1, 1])):
         assert np.allclose(got[row, column], wanted, atol=0.02), (row, column)
     # Bytes are a screen's: 188 is 0.503 linear; one channel is grey.
     scene.set_material(0, materials.diffuse(reflectance=textures.imagemap(pixels=np.full((4, 8), 188, np.uint8))))
-    assert np.allclose(caplet.render(scene, spp=4, size=(40, 40)).albedo[5, 5], 0.503, atol=0.02)
+    assert np.allclose(caplet.render(scene, spp=64, size=(40, 40)).albedo[5, 5], 0.503, atol=0.02)
     # Alpha is no colour: 188 of 255 is 0.737 of what is there; within five standard errors of 64 * 64 * 16 samples, 0.0017.
     half = np.full((4, 4, 4), 188, np.uint8)
     veil = caplet.Scene()

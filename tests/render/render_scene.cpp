@@ -20,7 +20,7 @@ Rendered render_model(const Scene& scene, int samples_per_pixel, RenderOptions o
   options.samples_per_pixel = samples_per_pixel;
   Rendered out;
   out.result = render(flat, view, test_device(), options, {});
-  out.image = develop(out.result.film, scene.view.film, Layers::all());
+  out.image = develop(out.result.film, scene.view.film, options.layers);
   return out;
 }
 

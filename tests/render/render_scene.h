@@ -21,7 +21,8 @@ struct Rendered {
   RenderResult result;
 };
 
-/// `change` may edit the scene before it is lowered. The variance layer is always there.
+/// `change` may edit the scene before it is lowered. The picture has the layers of `options`: all,
+/// unless asked.
 Rendered render_file(const std::filesystem::path& file, int samples_per_pixel,
                      const std::function<void(Scene&)>& change = {}, RenderOptions options = {});
 Rendered render_model(const Scene& scene, int samples_per_pixel, RenderOptions options = {});
