@@ -48,7 +48,8 @@ static inline float3 sample_xyz(const Stage* g, uint path, int counted) {
 // radiance_layer_<name> returns the value of a sample.
 #define RADIANCE_LAYER(name, option, channels, how, count, words, unit, value) \
   static inline float4 radiance_layer_##name(float3 xyz, uint replicate) {     \
-    (void)replicate;                                                           \
+    const float3 first = replicate == 0u ? xyz : (float3)(0.0f);               \
+    (void)first;                                                               \
     return (float4)(value, 0.0f);                                              \
   }
 #define HIT_LAYER(name, option, channels, how, count, words, unit, value)
