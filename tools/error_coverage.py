@@ -9,6 +9,7 @@ PYTHON has numpy and caplet (PYTHONPATH=build/release/python). Each scene is ren
 the section is printed, not written."""
 import argparse
 import pathlib
+import textwrap
 
 import caplet
 import numpy as np
@@ -56,11 +57,12 @@ def main():
     parser.add_argument("--data", type=pathlib.Path, default=ROOT.parent / "shared/data")
     given = parser.parse_args()
     scenes = given.scenes or [ROOT / "scenes" / name for name in SCENES] + [given.data / name for name in OF_DATA]
+    text = (f"`tools/error_coverage.py` renders scenes, at most 128 pixels wide, with {given.seeds} seeds of {given.samples} samples a pixel. "
+            "\"Stated / true\" is the mean of the layer `variance` over the variance of the seeds: of the whole picture, and of the median pixel, "
+            "which states more than it has where it shares the estimates of noisier ones. \"Hold\" is the share of the pixels' 95 % intervals "
+            "(1.96 roots of `variance`) that hold the mean of all other seeds.")
     lines = [
-        f"`tools/error_coverage.py` renders scenes, at most 128 pixels wide, with {given.seeds} seeds of {given.samples} samples a pixel. \"Stated /",
-        "true\" is the mean of the layer `variance` over the variance of the seeds: of the whole picture, and",
-        "of the median pixel. \"Hold\" is the share of pixels' 95 % intervals (1.96 roots of `variance`) that",
-        "hold the mean of all other seeds.", "",
+        *textwrap.wrap(text, 100), "",
         "| scene | stated / true, mean | median pixel | hold |", "|---|---:|---:|---:|"]
     for scene in scenes:
         mean, typical, within = compared(*pictures(scene, given.samples, given.seeds))
