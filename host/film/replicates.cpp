@@ -47,16 +47,11 @@ Estimate estimate_of(const Film& film, const std::array<double, 9>& m, std::size
   return out;
 }
 
-/// Adds up `count` estimates `step` apart over those at most variance_radius away.
-void add_neighbours(Estimate* estimates, int count, std::size_t step,
-                    std::vector<Estimate>& scratch) {
-  scratch.assign(static_cast<std::size_t>(count), {});
-  for (int i = 0; i < count; ++i)
-    for (int j = std::max(0, i - variance_radius); j <= std::min(count - 1, i + variance_radius);
-         ++j)
-      scratch[static_cast<std::size_t>(i)].add(estimates[static_cast<std::size_t>(j) * step]);
-  for (int i = 0; i < count; ++i)
-    estimates[static_cast<std::size_t>(i) * step] = scratch[static_cast<std::size_t>(i)];
+/// Calls add(j) for each j of 0 to count - 1 that is at most variance_radius away from i.
+template <class Add>
+void for_neighbours(int i, int count, const Add& add) {
+  for (int j = std::max(0, i - variance_radius); j <= std::min(count - 1, i + variance_radius); ++j)
+    add(static_cast<std::size_t>(j));
 }
 
 }  // namespace
@@ -65,21 +60,30 @@ std::vector<std::array<double, 3>> variances_of_means(const Film& film,
                                                       const std::array<double, 9>& rgb_from_xyz) {
   const Window& window = film.layout().window;
   const auto width = static_cast<std::size_t>(window.width);
-  std::vector<Estimate> estimates(window.pixels());
+  std::vector<Estimate> along_rows(window.pixels());
   std::vector<bool> has_one(window.pixels());
-  for (std::size_t i = 0; i < estimates.size(); ++i) {
-    estimates[i] = estimate_of(film, rgb_from_xyz, i);
-    has_one[i] = estimates[i].pixels > 0;
+  std::vector<Estimate> row(width);
+  for (std::size_t begin = 0; begin < along_rows.size(); begin += width) {
+    for (std::size_t x = 0; x < width; ++x) {
+      row[x] = estimate_of(film, rgb_from_xyz, begin + x);
+      has_one[begin + x] = row[x].pixels > 0;
+    }
+    for (int x = 0; x < window.width; ++x)
+      for_neighbours(x, window.width, [&](std::size_t other) {
+        along_rows[begin + static_cast<std::size_t>(x)].add(row[other]);
+      });
   }
-  std::vector<Estimate> scratch;
-  for (int y = 0; y < window.height; ++y)
-    add_neighbours(&estimates[static_cast<std::size_t>(y) * width], window.width, 1, scratch);
-  for (std::size_t x = 0; x < width; ++x)
-    add_neighbours(&estimates[x], window.height, width, scratch);
   std::vector<std::array<double, 3>> out(window.pixels());
-  for (std::size_t i = 0; i < out.size(); ++i)
-    for (std::size_t c = 0; c < 3 && has_one[i]; ++c)
-      out[i][c] = estimates[i].variance[c] / estimates[i].pixels;
+  for (int y = 0; y < window.height; ++y) {
+    row.assign(width, {});
+    for_neighbours(y, window.height, [&](std::size_t other) {
+      for (std::size_t x = 0; x < width; ++x) row[x].add(along_rows[other * width + x]);
+    });
+    const std::size_t begin = static_cast<std::size_t>(y) * width;
+    for (std::size_t x = 0; x < width; ++x)
+      for (std::size_t c = 0; c < 3 && has_one[begin + x]; ++c)
+        out[begin + x][c] = row[x].variance[c] / row[x].pixels;
+  }
   return out;
 }
 

@@ -21,17 +21,14 @@ enum {
 
 // Traits of shapes (shapes.def).
 enum {
-  trait_solid =
-      1,  // closed and convex: a line is in it once or not at all; may be an operand of csg
-  trait_sheet = 2,        // open: its two sides are told apart by a normal alone
-  trait_compound = 4,     // made of other shapes
+  trait_solid = 1,     // closed and convex: a line is in it once or not at all; may be an operand of csg
+  trait_sheet = 2,     // open: its two sides are told apart by a normal alone
+  trait_compound = 4,  // made of other shapes
   trait_own_light = 8,    // as a light sampled by itself (lights/area.cl)
   trait_ball_light = 16,  // as a light sampled by a ball around it (lights/shapes/ball.cl)
   trait_kept_box = 32,    // its data do not tell its box: the host keeps it behind them
-  trait_stands_straight =
-      64,           // its data do not hold a rotation: turned it is placed by an instance
-  trait_rare = 128  // its test takes so many registers that it is done apart where rays are traced
-                    // one at a time (trace/single.cl)
+  trait_stands_straight = 64,  // its data do not hold a rotation: turned it is placed by an instance
+  trait_rare = 128  // its test takes so many registers that it is done apart where rays are traced one at a time (trace/single.cl)
 };
 
 enum {
@@ -43,11 +40,9 @@ enum {
 
 // Traits of materials (materials.def).
 enum {
-  trait_dispersive = 1,  // directions depend on its `index`: where that varies with wavelength,
-                         // CAPLET_MATERIAL_DISPERSIVE
+  trait_dispersive = 1,  // directions depend on its `index`: where that varies with wavelength, CAPLET_MATERIAL_DISPERSIVE
   trait_opaque = 2,      // it scatters light on the side alone that it comes from
-  trait_stochastic = 4,  // its values are estimates, by random numbers of its own (Bsdf.random),
-                         // and its densities approximate
+  trait_stochastic = 4,  // its values are estimates, by random numbers of its own (Bsdf.random), and its densities approximate
   trait_metal_base = 8,  // a coat over a metal (layered.cl)
   trait_passes = 16,     // light goes on as if there were nothing: it may bound a medium
   trait_sheer = 32       // opaque where its transmittance (Bsdf) is 0
@@ -119,32 +114,31 @@ enum {
 #define CAPLET_LEAF_KIND_BITS (shape_count <= 16 ? 4 : shape_count <= 32 ? 5 : 6)
 #endif
 #define CAPLET_LEAF_ROW_BITS (31 - CAPLET_LEAF_KIND_BITS)
-#define CAPLET_LEAF_KIND(reference) \
-  ((uint)(reference) >> CAPLET_LEAF_ROW_BITS & ((1u << CAPLET_LEAF_KIND_BITS) - 1u))
+#define CAPLET_LEAF_KIND(reference) ((uint)(reference) >> CAPLET_LEAF_ROW_BITS & ((1u << CAPLET_LEAF_KIND_BITS) - 1u))
 #define CAPLET_LEAF_ROW(reference) ((uint)(reference) & ((1u << CAPLET_LEAF_ROW_BITS) - 1u))
 
 // GeometryRecord.flags
-#define CAPLET_GEOMETRY_FLIP_NORMAL 1u  // ReverseOrientation, for meshes xor a mirroring transform
-#define CAPLET_GEOMETRY_EMIT_BOTH_SIDES 2u  // AreaLightSource "bool twosided"
-#define CAPLET_GEOMETRY_CHAIN 4u            // capsules with u at their ends
-#define CAPLET_GEOMETRY_OPEN 8u             // a sheet that encloses nothing
-#define CAPLET_GEOMETRY_NORMALS 16u         // a mesh with normals at its vertices
+#define CAPLET_GEOMETRY_FLIP_NORMAL 1u     // ReverseOrientation, for meshes xor a mirroring transform
+#define CAPLET_GEOMETRY_EMIT_BOTH_SIDES 2u // AreaLightSource "bool twosided"
+#define CAPLET_GEOMETRY_CHAIN 4u           // capsules with u at their ends
+#define CAPLET_GEOMETRY_OPEN 8u            // a sheet that encloses nothing
+#define CAPLET_GEOMETRY_NORMALS 16u        // a mesh with normals at its vertices
 // LightRecord.flags
 #define CAPLET_LIGHT_BOTH_SIDES 1u
-#define CAPLET_LIGHT_UNSEEN 2u  // of a shape with the number 0 for alpha: rays never meet it
+#define CAPLET_LIGHT_UNSEEN 2u             // of a shape with the number 0 for alpha: rays never meet it
 // This is the first bit of eight for each end of a capsule: how many 255ths of its cap, by height
 // from the top down, are not sampled (host/lower/detail/covered_ends.h).
 #define CAPLET_LIGHT_COVER_0 16
 #define CAPLET_LIGHT_COVER_1 24
 // InstanceRecord.flags
-#define CAPLET_INSTANCE_MIRRORED 1u     // negative determinant
-#define CAPLET_INSTANCE_NO_LEAVING 2u   // leaving hits within are not seen ("onesided")
-#define CAPLET_INSTANCE_NO_ENTERING 4u  // entering ones (open shapes of reversed orientation)
+#define CAPLET_INSTANCE_MIRRORED 1u        // negative determinant
+#define CAPLET_INSTANCE_NO_LEAVING 2u      // leaving hits within are not seen ("onesided")
+#define CAPLET_INSTANCE_NO_ENTERING 4u     // entering ones (open shapes of reversed orientation)
 // HitRecord.surface
-#define CAPLET_LEAVING 0x10000  // seen from inside; open shapes: along the normal
+#define CAPLET_LEAVING 0x10000             // seen from inside; open shapes: along the normal
 #define CAPLET_SURFACE_MASK 0xffffu
 // surface_materials
-#define CAPLET_SURFACE_DARK 0x80000000u  // this surface of an emitting shape does not emit
+#define CAPLET_SURFACE_DARK 0x80000000u    // this surface of an emitting shape does not emit
 // Ends of cylinders and cones, as floats in their rows
 #define CAPLET_CAP_FLAT 0.0f
 #define CAPLET_CAP_ROUND 1.0f
@@ -160,10 +154,8 @@ enum {
 #define CAPLET_ALPHA_SMOOTH 1e-3f
 #define CAPLET_ALPHA_MIN 1e-4f
 // MaterialRecord.flags
-#define CAPLET_MATERIAL_DISPERSIVE \
-  1u  // eta varies with wavelength: refraction keeps only the hero wavelength
-#define CAPLET_MATERIAL_MULTISCATTER \
-  2u  // what one scattering loses is made up for (bsdf/multiscatter.cl)
+#define CAPLET_MATERIAL_DISPERSIVE 1u      // eta varies with wavelength: refraction keeps only the hero wavelength
+#define CAPLET_MATERIAL_MULTISCATTER 2u    // what one scattering loses is made up for (bsdf/multiscatter.cl)
 
 // HitRecord.slot has this value for a path that has ended, or was scattered, before what it hit.
 #define CAPLET_SCATTERED 0xfffffffeu
@@ -174,10 +166,8 @@ enum {
 // MediumRecord.flags
 #define CAPLET_MEDIUM_SUBSURFACE 1u  // what scatters within counts as one with the boundary
 // BoundaryRecord.flags
-#define CAPLET_BOUNDARY_SHEET \
-  1u  // surfaces without an inside of their own: their normals say which side is in
-#define CAPLET_BOUNDARY_CLOSED \
-  2u  // solids, and sheets that are closed: the crossings of a ray tell whether a point is within
+#define CAPLET_BOUNDARY_SHEET 1u   // surfaces without an inside of their own: their normals say which side is in
+#define CAPLET_BOUNDARY_CLOSED 2u  // solids, and sheets that are closed: the crossings of a ray tell whether a point is within
 // These limit the boundaries that are told apart at a point, and the numbers of boundaries in a
 // scene.
 #define CAPLET_MEDIUM_STACK_SIZE 4
@@ -214,13 +204,12 @@ enum {
 }
 #endif
 // ViewRecord::strategy says which directions a path takes, and how it finds lights.
-#define CAPLET_STRATEGY_NO_MIS \
-  1u  // light samples and scattered rays are not weighted against each other
-#define CAPLET_STRATEGY_NO_LIGHTS 2u    // lights are not sampled
-#define CAPLET_STRATEGY_UNIFORM 4u      // directions are uniform, not those of the BSDF
-#define CAPLET_STRATEGY_SPHERE 8u       // uniform over the whole sphere, even of opaque surfaces
-#define CAPLET_STRATEGY_OCCLUSION 16u   // ambient occlusion
-#define CAPLET_STRATEGY_UNJITTERED 32u  // stratified samples lie in the middles of their strata
-#define CAPLET_STRATEGY_REPLICATES 64u  // even and odd samples are independent
+#define CAPLET_STRATEGY_NO_MIS 1u         // light samples and scattered rays are not weighted against each other
+#define CAPLET_STRATEGY_NO_LIGHTS 2u      // lights are not sampled
+#define CAPLET_STRATEGY_UNIFORM 4u        // directions are uniform, not those of the BSDF
+#define CAPLET_STRATEGY_SPHERE 8u         // uniform over the whole sphere, even of opaque surfaces
+#define CAPLET_STRATEGY_OCCLUSION 16u     // ambient occlusion
+#define CAPLET_STRATEGY_UNJITTERED 32u    // stratified samples lie in the middles of their strata
+#define CAPLET_STRATEGY_REPLICATES 64u    // samples of even and of odd number are independent
 
 #endif
