@@ -3,7 +3,7 @@
 # Copyright Caplet authors
 #
 # oclgrind.sh [SCENE...]: the built program in Oclgrind, which watches each access of the kernels. Three planted faults must be found;
-# then of every scene (by default all of the repository) a picture of 8 x 8 pixels in both encodings (the wide one traces many rays at once,
+# then of every scene (by default all of the repository) a picture of 8 x 8 pixels as GPUs and as processors make it (the latter in the wide encoding, which traces many rays at once,
 # without a processor's own instructions), the crossing behind a pixel, and all crossings of some rays must leave its log empty. ./run oclgrind builds and calls it. Output stays in build/oclgrind.
 set -euo pipefail
 
@@ -51,7 +51,7 @@ finds() {
 # scene NAME FILE
 scene() {
   local code=0
-  watched "$1-render" render "$2" -o "$folder/$1.exr" --size 8x8 --spp 2 --max-depth 4 --variance || code=1
+  CAPLET_PROFILE=gpu watched "$1-render" render "$2" -o "$folder/$1.exr" --size 8x8 --spp 2 --max-depth 4 --variance || code=1
   build_options="$build_options -DCAPLET_PORTABLE" \
     watched "$1-wide" render "$2" -o "$folder/$1-wide.exr" --size 8x8 --spp 2 --max-depth 4 --encoding wide || code=1
   watched "$1-pick" pick "$2" --size 8x8 --pixel 3,4 || code=1

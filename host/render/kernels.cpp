@@ -94,14 +94,17 @@ std::size_t buffer_count(Stage stage) {
   return counts[static_cast<std::size_t>(stage)];
 }
 
+bool is_counted(Stage stage) {
+  return std::string_view(row_of(stage).groups).find("GROUP_COUNTERS") != std::string_view::npos;
+}
+
 std::string stage_source(Stage stage, const RowMasks& rows) {
-  const std::string_view groups = row_of(stage).groups;
   return flatten_kernels(
       fmt::format("#define STAGE_NAME {0}\n{2}#define STAGE_GROUPS {1}\n#include "
                   "\"stages/arguments.cl\"\n#include "
                   "\"stages/{0}.cl\"\n#include \"stages/kernel.cl\"\n",
-                  row_of(stage).name, groups,
-                  groups.find("GROUP_COUNTERS") != groups.npos ? "#define STAGE_IS_COUNTED\n" : ""),
+                  row_of(stage).name, row_of(stage).groups,
+                  is_counted(stage) ? "#define STAGE_IS_COUNTED\n" : ""),
       rows);
 }
 
@@ -134,7 +137,7 @@ StageOptions StageOptions::together_with(const StageOptions& others) const {
 Kernels::Kernels(const Device& device, StageOptions options)
     : device_(device),
       options_(std::move(options)),
-      local_size_(launch_policy_of(device.profile()).local_size) {}
+      local_size_(launch_policy_of(device).local_size) {}
 
 bool Kernels::takes_shares(Stage stage) const {
   return row_of(stage).launch == Launch::shares && device_.encoding() == Encoding::wide;
@@ -168,6 +171,7 @@ void Kernels::run(Stage stage, const Bindings& bindings, std::size_t count, std:
   if (count == 0) return;
   auto& compiled = compiled_[static_cast<std::size_t>(stage)];
   CHECK_EQ_(compiled.has_value(), true);
+  CHECK_EQ_(counter == CAPLET_NONE || is_counted(stage), true);
   const cl_uint index = set_buffers(stage, bindings, compiled->kernel);
   compiled->kernel.setArg(index, narrow<cl_uint>(first + count));
   compiled->kernel.setArg(index + 1, counter);

@@ -2,7 +2,16 @@
 // Copyright Caplet authors
 #include "render/detail/launch_policy.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <bit>
+#include <charconv>
+#include <cstdlib>
+#include <string>
+#include <string_view>
+
+#include "base/error.h"
 
 namespace caplet {
 
@@ -17,22 +26,64 @@ constexpr LaunchPolicy of_cpus{.batch_paths = std::size_t{1} << 18,
                                .by_sample = false,
                                .layers_apart = false,
                                .sort_fan = 1u << 31,
-                               .first_chunk = 0};
-// GPUs need whole wavefronts, and a query from the host stops all of them.
-constexpr LaunchPolicy of_gpus{.batch_paths = std::size_t{1} << 20,
-                               .local_size = 64,
-                               .counts_on_device = true,
-                               .by_sample = true,
-                               .layers_apart = true,
-                               .sort_fan = 64,
-                               .first_chunk = std::size_t{1} << 16};
+                               .first_chunk = 0,
+                               .rounds_unasked = 1};
+// GPUs need whole wavefronts, and a query from the host stops all of them. A unit of a large GPU
+// holds some 2,000 work-items; a batch is 16 times that for each unit, so that rounds with few
+// paths left are few (docs/performance.md).
+LaunchPolicy of_gpus(std::uint32_t compute_units) {
+  const auto by_units = [&](std::size_t each, std::size_t least, std::size_t most) {
+    return std::clamp(std::bit_floor(std::size_t{compute_units} * each), least, most);
+  };
+  return {.batch_paths = by_units(1u << 15, 1u << 20, 1u << 22),
+          .local_size = 64,
+          .counts_on_device = true,
+          .by_sample = true,
+          .layers_apart = true,
+          .sort_fan = 64,
+          .first_chunk = by_units(1u << 13, 1u << 16, 1u << 20),
+          .rounds_unasked = 4};
+}
 
 constexpr std::size_t least_chunk = std::size_t{1} << 10, most_chunk = std::size_t{1} << 30;
 
+/// Changes the number that one "name=value" of CAPLET_LAUNCH names.
+void apply(std::string_view setting, LaunchPolicy& policy) {
+  const std::size_t sign = setting.find('=');
+  const std::string_view name = setting.substr(0, sign);
+  const std::string_view digits = sign == setting.npos ? "" : setting.substr(sign + 1);
+  std::uint64_t value = 0;
+  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+  const bool is_number = error == std::errc() && end == digits.data() + digits.size();
+  const auto within = [&](std::uint64_t least, std::uint64_t most) {
+    return is_number && least <= value && value <= most;
+  };
+  if (name == "paths" && within(std::uint64_t{1} << 8, std::uint64_t{1} << 28))
+    policy.batch_paths = value;
+  else if (name == "local" && within(1, 1024))
+    policy.local_size = value;
+  else if (name == "chunk" && within(0, most_chunk))
+    policy.first_chunk = value;
+  else if (name == "rounds" && within(1, 64))
+    policy.rounds_unasked = static_cast<int>(value);
+  else
+    throw InputError(SourceLocation{"CAPLET_LAUNCH"},
+                     fmt::format("'{}' is not paths=256...2^28, local=1...1024, chunk=0...2^30 or "
+                                 "rounds=1...64",
+                                 setting));
+}
+
 }  // namespace
 
-const LaunchPolicy& launch_policy_of(Profile profile) {
-  return profile == Profile::gpu ? of_gpus : of_cpus;
+LaunchPolicy launch_policy_of(Profile profile, std::uint32_t compute_units) {
+  LaunchPolicy policy = profile == Profile::gpu ? of_gpus(compute_units) : of_cpus;
+  const char* const named = std::getenv("CAPLET_LAUNCH");
+  for (std::string_view rest = named ? named : ""; !rest.empty();) {
+    const std::size_t comma = std::min(rest.find(','), rest.size());
+    apply(rest.substr(0, comma), policy);
+    rest.remove_prefix(std::min(comma + 1, rest.size()));
+  }
+  return policy;
 }
 
 std::size_t fitting_batch(std::size_t wanted, std::uint64_t bytes, std::uint64_t largest_bytes,

@@ -62,13 +62,13 @@ PathNeeds needs_of(const DeviceScene& scene, Layers layers) {
 
 StageNeeds stage_needs(const DeviceScene& scene) {
   return {scene.has_camera_stage(), scene.has_alpha(), scene.has_media(),
-          launch_policy_of(scene.device().profile()).counts_on_device};
+          launch_policy_of(scene.device()).counts_on_device};
 }
 
 std::size_t chosen_batch_paths(const DeviceScene& scene, const FlatView& view,
                                const RendererOptions& options) {
   const Device& device = scene.device();
-  const LaunchPolicy& policy = launch_policy_of(device.profile());
+  const LaunchPolicy policy = launch_policy_of(device);
   const std::size_t wanted =
       std::clamp<std::size_t>(options.batch_paths ? options.batch_paths : policy.batch_paths, 1,
                               std::max<std::size_t>(options.most_paths, 1));
@@ -93,7 +93,7 @@ PathBuffers path_buffers(const DeviceScene& scene, std::size_t& paths, Layers la
   const auto made = [&] {
     const std::size_t bins = bins_of(sort_bits_of(scene, paths));
     return PathBuffers(scene.device(), paths,
-                       sort_places(bins, launch_policy_of(scene.device().profile()).sort_fan),
+                       sort_places(bins, launch_policy_of(scene.device()).sort_fan),
                        needs_of(scene, layers));
   };
   while (paths > least_batch_paths) try {
@@ -125,7 +125,7 @@ Renderer::Renderer(DeviceScene& scene, const FlatView& view, const RendererOptio
       layers_(options.layers),
       paths_(path_buffers(scene, batch_paths_, layers_)),
       sort_bits_(sort_bits_of(scene, batch_paths_)),
-      chunk_(launch_policy_of(scene.device().profile()).first_chunk) {
+      chunk_(launch_policy_of(scene.device()).first_chunk) {
   reset(view);
 }
 
@@ -133,7 +133,7 @@ void Renderer::reset(const FlatView& view) {
   scene_.prepare_for(view);
   if (const uint sort_bits = sort_bits_of(scene_, batch_paths_); sort_bits != sort_bits_) {
     sort_bits_ = sort_bits;
-    const LaunchPolicy& policy = launch_policy_of(scene_.device().profile());
+    const LaunchPolicy policy = launch_policy_of(scene_.device());
     paths_.sort.sort_bins =
         Buffer<uint>(scene_.device(), sort_places(bins_of(sort_bits_), policy.sort_fan));
   }
@@ -184,7 +184,7 @@ void Renderer::pass(const Window& window, std::uint32_t sample_begin, std::uint3
   add_part(film_.parts, {window, sample_begin, sample_count});
   if (window != film_.layout.window) clear_film();
   const bool first_pass = std::exchange(is_old_, false);
-  const LaunchPolicy& policy = launch_policy_of(scene_.device().profile());
+  const LaunchPolicy policy = launch_policy_of(scene_.device());
   const std::size_t pixels = window.pixels(), per_batch = batch_paths_ / sample_count;
   for (std::size_t first = 0; first < pixels; first += per_batch) {
     const std::size_t count = std::min(per_batch, pixels - first);
@@ -216,7 +216,7 @@ void Renderer::pass(const Window& window, std::uint32_t sample_begin, std::uint3
 // kernels/stages/path.cl describes the algorithm.
 void Renderer::batch(const BatchRecord& record) {
   Kernels& kernels = scene_.kernels();
-  const LaunchPolicy& policy = launch_policy_of(scene_.device().profile());
+  const LaunchPolicy policy = launch_policy_of(scene_.device());
   Bindings bindings = scene_.bindings();
   sensor_.bind(bindings);
   paths_.bind(bindings);
@@ -281,9 +281,10 @@ void Renderer::rounds_on_device(Bindings& bindings, std::size_t paths) {
   std::array<uint, counter_count> counters{};
   uint bounces = 0, shadows = 0;
   Stage extend = stages_.extend_camera;
+  const int rounds = launch_policy_of(scene_.device()).rounds_unasked;
   while (paths > 0) {
     const Clock::time_point start = Clock::now();
-    for (int round = 0; round < rounds_unasked; ++round) {
+    for (int round = 0; round < rounds; ++round) {
       trace_and_shade(bindings, std::exchange(extend, stages_.extend), paths, counter_queued);
       connect_and_sort(bindings, {paths, counter_shadow}, {paths, counter_next});
       scene_.kernels().run(Stage::advance, bindings, 1);
@@ -302,7 +303,7 @@ void Renderer::rounds_on_device(Bindings& bindings, std::size_t paths) {
 void Renderer::sort(const Bindings& bindings, Launched paths) {
   Kernels& kernels = scene_.kernels();
   const std::vector<SortLevel> levels =
-      sort_levels(bins_of(sort_bits_), launch_policy_of(scene_.device().profile()).sort_fan);
+      sort_levels(bins_of(sort_bits_), launch_policy_of(scene_.device()).sort_fan);
   for (std::size_t i = 0; i + 1 < levels.size(); ++i)
     kernels.run(Stage::sort_sums, bindings, levels[i].count, levels[i].first);
   for (std::size_t i = levels.size(); i-- > 0;)

@@ -2,11 +2,13 @@
 // Copyright Caplet authors
 //
 // Prefetches on CPUs what is read soon. GPUs have other work while they wait, and compilers without
-// the builtin are not asked.
+// the builtin are not asked. NVIDIA's has it, for pointers of an address space that OpenCL C 1.2
+// cannot name.
 #ifndef CAPLET_MATH_AHEAD_CL
 #define CAPLET_MATH_AHEAD_CL
 
-#if CAPLET_REAL_WIDTH == 8 && defined(__has_builtin) && !defined(CAPLET_PORTABLE)
+#if CAPLET_REAL_WIDTH == 8 && defined(__has_builtin) && !defined(CAPLET_PORTABLE) && \
+    !defined(__NV_CL_C_VERSION)
 #if __has_builtin(__builtin_prefetch)
 #define CAPLET_PREFETCH 1
 #endif

@@ -98,8 +98,7 @@ TEST_P(Trace, KernelsForTheseShapesAloneAndWithMoreBitsForTheirKindSeeTheSame) {
   const Encoded scene = encode(primitives), roomy = encode(primitives, 6);
   for (const int width : {8, 1}) {
     DeviceTracer &all = width == 8 ? wide() : scalar(),
-                 own(Device::choose("cpu"), width, "-DCAPLET_LEAF_KIND_BITS=6",
-                     {{"shapes", shapes}});
+                 own(test_device(), width, "-DCAPLET_LEAF_KIND_BITS=6", {{"shapes", shapes}});
     all.upload(scene.nodes, scene.leaves, {}, scene.tree.root);
     own.upload(roomy.nodes, roomy.leaves, {}, roomy.tree.root);
     const auto expected = all.closest(rays), seen = own.closest(rays);

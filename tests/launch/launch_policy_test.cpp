@@ -6,6 +6,10 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdlib>
+
+#include "base/error.h"
+
 namespace caplet::test {
 namespace {
 
@@ -20,6 +24,53 @@ TEST(Batches, FitInAllAndInOneBuffer) {
   EXPECT_EQ(fitting_batch(1 << 20, 300, 52, 300ull << 14, 1ull << 40), std::size_t{1} << 14);
   EXPECT_EQ(fitting_batch(1 << 20, 300, 52, 0, 0), least_batch_paths);
   EXPECT_EQ(fitting_batch(100, 300, 52, 0, 0), 100u);
+}
+
+TEST(Policy, OfGpusGrowsWithTheirUnits) {
+  const auto of = [](std::uint32_t units) { return launch_policy_of(Profile::gpu, units); };
+  EXPECT_EQ(of(1).batch_paths, std::size_t{1} << 20);
+  EXPECT_EQ(of(63).batch_paths, std::size_t{1} << 20);
+  EXPECT_EQ(of(64).batch_paths, std::size_t{1} << 21);
+  EXPECT_EQ(of(132).batch_paths, std::size_t{1} << 22);
+  EXPECT_EQ(of(1000).batch_paths, std::size_t{1} << 22);
+  EXPECT_EQ(of(1).first_chunk, std::size_t{1} << 16);
+  EXPECT_EQ(of(20).first_chunk, std::size_t{1} << 17);
+  EXPECT_EQ(of(132).first_chunk, std::size_t{1} << 20);
+  EXPECT_EQ(launch_policy_of(Profile::cpu, 132).batch_paths, std::size_t{1} << 18);
+}
+
+LaunchPolicy policy_told(const char* text, Profile profile = Profile::gpu) {
+  ::setenv("CAPLET_LAUNCH", text, 1);
+  struct Unset {
+    ~Unset() { ::unsetenv("CAPLET_LAUNCH"); }
+  } unset;
+  return launch_policy_of(profile, 20);
+}
+
+TEST(LaunchVariable, ChangesTheNumbersItNames) {
+  const LaunchPolicy own = policy_told("");
+  LaunchPolicy told = policy_told("paths=4096,local=32,chunk=0,rounds=16");
+  EXPECT_EQ(told.batch_paths, 4096u);
+  EXPECT_EQ(told.local_size, 32u);
+  EXPECT_EQ(told.first_chunk, 0u);
+  EXPECT_EQ(told.rounds_unasked, 16);
+  EXPECT_EQ(told.counts_on_device, own.counts_on_device);
+  EXPECT_EQ(told.sort_fan, own.sort_fan);
+  told = policy_told("local=128", Profile::cpu);
+  EXPECT_EQ(told.local_size, 128u);
+  EXPECT_EQ(told.batch_paths, std::size_t{1} << 18);
+}
+
+TEST(LaunchVariable, IsRefusedWithItsName) {
+  for (const char* const wrong :
+       {"paths=255", "paths=268435457", "local=0", "local=1025", "chunk=1073741825", "chunk=-1",
+        "rounds=0", "rounds=65", "rounds", "rounds=", "rounds=4x", "width=8", "=", ","})
+    try {
+      policy_told(wrong);
+      ADD_FAILURE() << wrong << " is taken";
+    } catch (const InputError& error) {
+      EXPECT_NE(std::string(error.what()).find("CAPLET_LAUNCH"), std::string::npos) << wrong;
+    }
 }
 
 TEST(Chunks, GrowWhileLaunchesAreShortAndShrinkWhenTheyAreLong) {

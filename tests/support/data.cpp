@@ -12,7 +12,10 @@ namespace caplet::test {
 
 namespace fs = std::filesystem;
 
-fs::path source_folder() { return CAPLET_SOURCE_DIR; }
+fs::path source_folder() {
+  const char* const named = std::getenv("CAPLET_SOURCE");
+  return named && *named ? named : CAPLET_SOURCE_DIR;
+}
 
 fs::path data_folder() {
   if (const char* named = std::getenv("CAPLET_DATA"); named && fs::is_directory(named))

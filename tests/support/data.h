@@ -12,7 +12,7 @@ namespace caplet::test {
 
 /// The folder of shared data (".../shared/data"); empty when there is none.
 std::filesystem::path data_folder();
-/// The repository's root.
+/// The repository's root, or the folder that CAPLET_SOURCE names.
 std::filesystem::path source_folder();
 /// True where a run without the shared data is a failure (CAPLET_REQUIRE_DATA).
 bool data_required();

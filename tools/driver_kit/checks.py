@@ -92,7 +92,11 @@ def verify(tried, rays):
 
 
 def tests(tried, program):
-    code, out, err = tried.run(program)
+    return test_results(tried, *tried.run(program))
+
+
+def test_results(tried, code, out, err):
+    """What a program of GoogleTest printed, as numbers of tests and names of those that failed."""
     passed = len(re.findall(r"^\[       OK \]", out, re.MULTILINE))
     skipped = len(re.findall(r"^\[  SKIPPED \] .*\(\d+ ms\)$", out, re.MULTILINE))
     failed = sorted(set(re.findall(r"^\[  FAILED  \] ([\w/]+\.[\w/]+)", out, re.MULTILINE)))
@@ -103,7 +107,6 @@ def tests(tried, program):
     elif code == 1 and not failed:
         facts["fails"] = tried.how(code, err)
     return facts
-
 
 
 def rays_file(path, bounds, count):

@@ -65,9 +65,10 @@ def _unpacked(data, compression, size):
 
 
 class Picture:
-    """`channels`: name to array of width * height numbers, row by row. Raises ValueError for files that `caplet render` does not write."""
+    """`path` of the file; `channels`: name to array of width * height numbers, row by row. Raises ValueError for files that `caplet render` does not write."""
 
     def __init__(self, path):
+        self.path = path
         with open(path, "rb") as file:
             data = file.read()
         if data[:4] != b"v/1\x01":

@@ -24,11 +24,17 @@ struct LaunchPolicy {
   bool layers_apart;        // a work-item a layer of a pixel, not a pixel, adds samples to the film
   std::uint32_t sort_fan;   // sort bins that a work-item adds up
   std::size_t first_chunk;  // work-items of a launch in the beginning; 0: any number
+  int rounds_unasked;       // rounds of a batch between two queries for the number of paths left,
+                            // if they are counted on the device
 };
-const LaunchPolicy& launch_policy_of(Profile profile);
 
-/// This many rounds of a batch are launched between two queries for the number of paths left.
-inline constexpr int rounds_unasked = 4;
+/// Returns the policy for a device of `compute_units` units. The variable CAPLET_LAUNCH replaces
+/// numbers: "paths=N,local=N,chunk=N,rounds=N" or some of these. `paths` is 2^8 to 2^28, `local` 1
+/// to 1024, `chunk` 0 to 2^30, `rounds` 1 to 64. Throws InputError if it says anything else.
+LaunchPolicy launch_policy_of(Profile profile, std::uint32_t compute_units);
+inline LaunchPolicy launch_policy_of(const Device& device) {
+  return launch_policy_of(device.profile(), device.info().compute_units);
+}
 
 /// No batch is made smaller than this to fit a device.
 inline constexpr std::size_t least_batch_paths = std::size_t{1} << 12;
