@@ -82,6 +82,12 @@ TEST(Profile, OfGpusMakesThePicturesOfProcessors) {
   expect_same(made(scene, device_of("gpu", Encoding::wide), 9), expected, "wide");
 }
 
+TEST(Profile, OfGpusMakesThePicturesOfProcessorsAmongMedia) {
+  const Scene scene = scene_named("scenes/smoke.pbrt", 24, 16, 8);
+  ASSERT_FALSE(lower(scene).mediums.empty());
+  expect_same(made(scene, device_of("gpu"), 4), made(scene, device_of("cpu"), 4), "media");
+}
+
 // A batch of 2^20 paths, and so 2^18 sort bins in three levels of sums; launches begin with 2^16
 // work-items.
 TEST(Profile, OfGpusSortsAndLaunchesInChunks) {
