@@ -5,7 +5,7 @@
 
 usage: checks.py           test preset `default`, clang-format
        checks.py --fast    test preset `fast`
-       checks.py --all     all tests at their full size (tests/support/thorough.h), also clang-tidy, and the builds and test presets `asan` and `minimal`
+       checks.py --all     all tests at their full size (tests/support/thorough.h) with kernels for each scene's own rows, also clang-tidy, and the builds and test presets `asan` and `minimal`
 
 Each preset stands in CMakePresets.json. A check that fails does not keep those after it from being done.
 Exit status: 0 when all passed, 1 when not, 2 for wrong usage.
@@ -101,6 +101,8 @@ def main(arguments):
     totals = Totals()
     if arguments == ["--all"]:
         os.environ["CAPLET_THOROUGH"] = "1"
+    else:
+        os.environ.setdefault("CAPLET_ROWS", "all")  # tests share kernels
     if arguments == ["--fast"]:
         totals.ctest("fast", "release")
         return 0 if totals.summary() else 1

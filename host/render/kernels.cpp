@@ -6,10 +6,12 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstdlib>
 #include <iterator>
 #include <string_view>
 
 #include "base/check.h"
+#include "base/error.h"
 #include "render/detail/known_rays.h"
 #include "render/detail/launch_policy.h"
 
@@ -108,20 +110,38 @@ std::string stage_source(Stage stage, const RowMasks& rows) {
       rows);
 }
 
+namespace {
+
+/// Returns whether kernels are for all rows of the lists, not for those of the scene.
+bool for_all_rows() {
+  constexpr const char* variable = "CAPLET_ROWS";
+  const char* const named = std::getenv(variable);
+  const std::string_view text = named ? named : "";
+  if (!text.empty() && text != "all" && text != "scene")
+    throw InputError(SourceLocation{variable}, fmt::format("'{}' is not all or scene", text));
+  return text == "all";
+}
+
+}  // namespace
+
 StageOptions stage_options(const FlatScene& scene, const Device& device) {
-  return {fmt::format("-DCAPLET_REAL_WIDTH={} -DCAPLET_LEAF_KIND_BITS={}{}{}{}{}",
-                      device.encoding() == Encoding::wide ? 8 : 1, scene.leaf_kind_bits,
-                      !scene.light_nodes.empty() ? " -DCAPLET_LIGHT_TREE" : "",
-                      scene.sky_is_unseen ? " -DCAPLET_UNSEEN_SKY" : "",
-                      scene.has_chains ? " -DCAPLET_CHAINS" : "",
-                      scene.multiscatters() ? " -DCAPLET_MULTISCATTER" : ""),
-          {{"shapes", shapes_on_trial(scene.shapes)},
-           {"materials", scene.material_kinds()},
-           {"textures", scene.texture_kinds()},
-           {"lights", scene.light_kinds()},
-           {"media", scene.medium_kinds()},
-           {"samplers", 0},  // DeviceScene::prepare_for
-           {"cameras", 0}}};
+  const bool all = for_all_rows();
+  StageOptions out{fmt::format("-DCAPLET_REAL_WIDTH={} -DCAPLET_LEAF_KIND_BITS={}{}{}{}{}",
+                               device.encoding() == Encoding::wide ? 8 : 1, scene.leaf_kind_bits,
+                               !scene.light_nodes.empty() ? " -DCAPLET_LIGHT_TREE" : "",
+                               scene.sky_is_unseen ? " -DCAPLET_UNSEEN_SKY" : "",
+                               scene.has_chains || all ? " -DCAPLET_CHAINS" : "",
+                               scene.multiscatters() || all ? " -DCAPLET_MULTISCATTER" : ""),
+                   {{"shapes", shapes_on_trial(scene.shapes)},
+                    {"materials", scene.material_kinds()},
+                    {"textures", scene.texture_kinds()},
+                    {"lights", scene.light_kinds()},
+                    {"media", scene.medium_kinds()},
+                    {"samplers", 0},  // DeviceScene::prepare_for
+                    {"cameras", 0}}};
+  if (all)
+    for (auto& [list, rows] : out.rows) rows = ~std::uint64_t{0};
+  return out;
 }
 
 StageOptions StageOptions::together_with(const StageOptions& others) const {

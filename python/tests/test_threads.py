@@ -117,7 +117,7 @@ def test_the_same_kernels_are_compiled_by_several_threads(tmp_path):
 pictures = []
 together(*[lambda: pictures.append(picture())] * 2)
 assert equal(*pictures)
-""", environment={"POCL_CACHE_DIR": str(tmp_path), "CAPLET_CACHE": str(tmp_path)}.items())
+""", environment={"POCL_CACHE_DIR": str(tmp_path), "CAPLET_CACHE": str(tmp_path), "CAPLET_ROWS": "scene"}.items())
 
 
 def test_a_scene_is_rendered_asked_and_changed_by_several_threads():
@@ -473,7 +473,7 @@ picture(spp=1 << 24)
     for i in range(1, 3):
         cache = str(tmp_path / str(i))
         program = subprocess.Popen([sys.executable, "-c", script], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
-                                   env={**os.environ, "POCL_CACHE_DIR": cache, "CAPLET_CACHE": cache})
+                                   env={**os.environ, "POCL_CACHE_DIR": cache, "CAPLET_CACHE": cache, "CAPLET_ROWS": "scene"})
         assert program.stdout.readline() == "begun\n"
         time.sleep(0.5 + 4 * delay(i))
         program.send_signal(2)

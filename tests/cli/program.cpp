@@ -48,6 +48,9 @@ std::vector<std::string> on_test_device(std::vector<std::string> arguments,
 [[noreturn]] void become_program(const std::vector<std::string>& arguments, const fs::path& folder,
                                  const std::map<std::string, std::string>& environment) {
   if (::chdir(folder.c_str()) != 0) ::_exit(126);
+  // Kernels that no other test finds are those of the scene alone, which are quicker to build.
+  if (environment.contains("POCL_CACHE_DIR") || environment.contains("POCL_DEVICES"))
+    ::setenv("CAPLET_ROWS", "scene", 1);
   for (const auto& [name, value] : environment) ::setenv(name.c_str(), value.c_str(), 1);
   const char* other = std::getenv("CAPLET_TEST_PROGRAM");  // a mutant's
   std::vector<std::string> owned{other ? other : CAPLET_PROGRAM};

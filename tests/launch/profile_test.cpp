@@ -14,6 +14,7 @@
 #include <random>
 #include <string>
 
+#include "base/error.h"
 #include "import/import.h"
 #include "lower/lower.h"
 #include "render/detail/launch_policy.h"
@@ -25,6 +26,9 @@
 
 namespace caplet::test {
 namespace {
+
+// Few other tests compile for this profile: kernels of a scene alone are quicker to build.
+const bool rows_are_the_scenes = ::setenv("CAPLET_ROWS", "scene", 1) == 0;
 
 Device device_of(const char* profile, Encoding encoding = Encoding::automatic) {
   ::setenv("CAPLET_PROFILE", profile, 1);
@@ -80,6 +84,35 @@ TEST(Profile, OfGpusMakesThePicturesOfProcessors) {
   expect_same(made(scene, gpu, 9), expected, "whole");
   expect_same(made(scene, gpu, 9, 700), expected, "small batches");
   expect_same(made(scene, device_of("gpu", Encoding::wide), 9), expected, "wide");
+}
+
+Made made_for(const char* rows, const Scene& scene) {
+  ::setenv("CAPLET_ROWS", rows, 1);
+  const Made out = made(scene, device_of("cpu"), 3);
+  ::setenv("CAPLET_ROWS", "scene", 1);
+  return out;
+}
+
+// As tests share kernels, and as users have them.
+TEST(Rows, OfAllKindsMakeThePicturesOfTheScenesOwn) {
+  for (const char* const name : {"scenes/capsules.pbrt", "scenes/smoke.pbrt"}) {
+    const Scene scene = scene_named(name, 24, 16, 6);
+    expect_same(made_for("all", scene), made_for("scene", scene), name);
+  }
+}
+
+TEST(Rows, AreOfAllKindsOrTheScenesOwn) {
+  const FlatScene flat = lower(scene_named("scenes/capsules.pbrt", 8, 8, 2));
+  const Device device = test_device();
+  const auto materials = [&](const char* rows) {
+    ::setenv("CAPLET_ROWS", rows, 1);
+    return stage_options(flat, device).rows.at("materials");
+  };
+  EXPECT_EQ(materials("scene"), flat.material_kinds());
+  EXPECT_EQ(materials(""), flat.material_kinds());
+  EXPECT_EQ(materials("all"), ~std::uint64_t{0});
+  EXPECT_THROW(materials("some"), InputError);
+  ::setenv("CAPLET_ROWS", "scene", 1);
 }
 
 TEST(Profile, OfGpusMakesThePicturesOfProcessorsAmongMedia) {

@@ -5,6 +5,8 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <cstdlib>
+
 #include "lower/lower.h"
 #include "render/kernels.h"
 #include "render_scene.h"
@@ -44,6 +46,7 @@ TEST(Multiscatter, FurnacesOfMetalAndGlass) {
 
 // Kernels of a scene know of it only where a material has it.
 TEST(Multiscatter, CostsNothingWhereItIsOff) {
+  ::setenv("CAPLET_ROWS", "scene", 1);
   const auto knows = [](const std::string& material) {
     const FlatScene flat = lower(ball_under_a_sky(material));
     return stage_options(flat, test_device()).compiler.find("CAPLET_MULTISCATTER") !=
