@@ -51,8 +51,8 @@ struct StageOptions {
   /// also work.
   StageOptions together_with(const StageOptions& others) const;
 };
-/// Returns the options for a scene. With the variable CAPLET_ROWS=all the kernels are for all rows of
-/// the lists, so that tests of other scenes find them compiled; pictures are the same. Throws
+/// Returns the options for a scene. With the variable CAPLET_ROWS=all the kernels are for all rows
+/// of the lists, so that tests of other scenes find them compiled; pictures are the same. Throws
 /// InputError if the variable says anything else but `scene`.
 StageOptions stage_options(const FlatScene& scene, const Device& device);
 
