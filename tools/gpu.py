@@ -26,7 +26,7 @@ sys.path.insert(0, str(ROOT / "tools"))
 from driver_kit import checks, exr, homes  # noqa: E402
 from gpu_kit import pack, page, surroundings  # noqa: E402
 
-# Whole images: scene, size, and two numbers of samples whose difference in time leaves out start, compilation and writing.
+# Whole images: scene, size, and two numbers of samples. The difference of their times leaves out start, compilation and writing.
 IMAGES = [("walk", "512x512", 16, 528), ("capsules", "1280x720", 64, 1088), ("gallery", "960x540", 16, 528), ("cornell", "512x512", 16, 2064),
           ("many-lights", "512x512", 16, 2064), ("smoke", "960x540", 8, 72)]
 BENCHES = [("capsules", 1000000), ("triangles", 1000000), ("shapes", 100000)]
@@ -162,15 +162,18 @@ class Hour:
         seconds = second["wall"] - first["wall"]
         return {"seconds": seconds, "samples": many - few, "paths_per_second": width * height * (many - few) / max(seconds, 1e-3)}
 
+    def there(self, images):
+        """Those whose scenes are in the repository, or came along (--more)."""
+        return [image for image in images if pack.scene(ROOT, image[0]).exists()]
+
     def images(self):
-        for name, size, few, many in IMAGES:
-            # Both compiled before: their kernels are those of this size and without layers.
+        for name, size, few, many in self.there(IMAGES):
             self.part("images", f"{name}, by stage",
                       lambda: self.rendered(f"stages-{name}", pack.scene(ROOT, name), size, few, 120, "--layers", "none", "--stats", "-"))
             self.part("images", name, lambda: self.image(name, size, few, many))
 
     def sweep(self):
-        for name, size, few, many in IMAGES[:3:2]:
+        for name, size, few, many in self.there(IMAGES[:3:2]):
             for setting in self.options.launches or SWEEP:
                 self.part("sweep", f"{name} {setting or 'as it is'}",
                           lambda: self.image(name, size, few, many, {"CAPLET_LAUNCH": setting} if setting else None))

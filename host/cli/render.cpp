@@ -31,6 +31,7 @@
 #include "film/denoise.h"
 #include "film/develop.h"
 #include "film/image.h"
+#include "film/noise.h"
 #include "import/import.h"
 #include "lower/fingerprint.h"
 #include "lower/live_scene.h"
@@ -395,7 +396,13 @@ RenderResult written(const Work& work, RenderResult result, report::RunSeconds& 
   add_to(seconds, result);
   if (work.files.pictures.empty() && work.files.previews.empty()) return result;
   NotFinite not_finite;
-  const BandedImage picture = bands_of(work, result, not_finite);
+  BandedImage picture = bands_of(work, result, not_finite);
+  PictureNoise noise;
+  picture.band = [&noise, band = std::move(picture.band)](int first, int rows) {
+    LayeredImage out = band(first, rows);
+    noise.add(out);
+    return out;
+  };
   Stopwatch phase;
   const post::Overlays& overlays = work.options.overlays;
   report::Finish finish{overlays.layers(), work.layers, {}};
@@ -407,6 +414,7 @@ RenderResult written(const Work& work, RenderResult result, report::RunSeconds& 
     report::write_pictures(exr, preview, picture, channels_of(work), result.render_seconds, finish);
   });
   not_finite.warn();
+  result.noise = noise.relative();
   seconds.write += phase.lap();
   return result;
 }

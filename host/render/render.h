@@ -50,6 +50,7 @@ struct RenderResult {
   std::optional<DeviceFilm> device_film;  // the same, to be read in parts
   int samples_per_pixel = 0;              // in the film
   bool interrupted = false;               // cancelled
+  std::optional<double> noise;            // of the picture that was written, over its mean
   double compile_seconds = 0, render_seconds = 0, first_pass_seconds = 0;
   std::uint64_t camera_rays = 0, bounce_rays = 0, shadow_rays = 0;
   std::uint64_t peak_device_bytes = 0;

@@ -112,6 +112,7 @@ nlohmann::ordered_json run_summary(const RunSeconds& seconds, const RenderResult
     out["stage_seconds"][stage] = stage_seconds;
   out["samples_per_pixel"] = result.samples_per_pixel;
   out["interrupted"] = result.interrupted;
+  if (result.noise) out["noise"] = *result.noise;
   out["rays"] = {{"camera", result.camera_rays},
                  {"bounce", result.bounce_rays},
                  {"shadow", result.shadow_rays}};

@@ -2,11 +2,10 @@
 // Copyright Caplet authors
 #include "view/detail/snapshot.h"
 
-#include <algorithm>
 #include <array>
-#include <cmath>
 
 #include "film/chromaticities.h"
+#include "film/noise.h"
 
 namespace caplet::view {
 
@@ -29,14 +28,9 @@ Picture shown_of(const LayeredImage& image, bool ids) {
     out.objects = image.find("object.id")->uints;
     out.primitives = image.find("primitive.id")->uints;
   }
-  const Channel* variance = image.find("variance.G");
-  double sum = 0, square = 0;
-  for (std::size_t i = 0; i < g.size(); ++i) {
-    sum += g[i];
-    if (variance) square += variance->floats[i];
-  }
-  const auto count = static_cast<double>(std::max<std::size_t>(1, g.size()));
-  out.noise = sum > 0 ? static_cast<float>(std::sqrt(square / count) / (sum / count)) : 0.0f;
+  PictureNoise noise;
+  noise.add(image);
+  out.noise = static_cast<float>(noise.relative().value_or(0));
   return out;
 }
 

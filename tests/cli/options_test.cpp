@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "film/image.h"
@@ -169,6 +170,25 @@ TEST_F(Options, StatsTellHowLongWritingTook) {
   EXPECT_GT(seconds.at("write").get<double>(), 0);
   EXPECT_LE(seconds.at("write").get<double>() + seconds.at("render").get<double>(),
             seconds.at("total").get<double>());
+}
+
+// The noise is that of G, also where the picture is written twice.
+TEST_F(Options, StatsStateTheNoise) {
+  picture({"--stats", "stats.json"});
+  EXPECT_FALSE(nlohmann::json::parse(test::read_file(folder_ / "stats.json")).contains("noise"));
+  const LayeredImage image =
+      picture({"--stats", "stats.json", "--variance", "-o", "two.exr", "--preview", "out.png"});
+  const std::vector<float>&g = image.find("G")->floats, &v = image.find("variance.G")->floats;
+  double sum = 0, variance = 0;
+  for (std::size_t i = 0; i < g.size(); ++i) {
+    sum += g[i];
+    variance += v[i];
+  }
+  ASSERT_GT(variance, 0);
+  const double noise =
+      nlohmann::json::parse(test::read_file(folder_ / "stats.json")).at("noise").get<double>();
+  // Sums of the same values in the same order, but for the compiler's choice.
+  EXPECT_NEAR(noise, std::sqrt(variance * static_cast<double>(g.size())) / sum, 1e-9 * noise);
 }
 
 }  // namespace

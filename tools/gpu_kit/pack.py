@@ -15,7 +15,7 @@ TESTS = {"known_answers_tests": "render", "trace_tests": "bvh", "render_tests": 
          "list_tests": "bvh", "edits_tests": "edits", "layers_tests": "layers", "bsdf_tests": "bsdf", "lights_tests": "lights",
          "media_tests": "media", "texture_tests": "textures", "sampling_tests": "sampling", "closed_form_tests": "closed_forms"}
 PROGRAMS = {"caplet": "bin/caplet", "caplet_bench": "bin/caplet_bench", **{name: f"tests/{folder}/{name}" for name, folder in TESTS.items()}}
-# Of the machine itself: programs built on Debian 12 run with newer ones.
+# These libraries are the machine's own: programs built on Debian 12 run with newer ones.
 SYSTEMS = re.compile(r"^(ld-linux|linux-vdso|lib(c|m|dl|rt|pthread|resolv|gcc_s|stdc\+\+)\.so)")
 
 
@@ -75,7 +75,7 @@ def make(root, folder, more, workers):
     (folder / "scenes/more").mkdir()
     for file in more:
         shutil.copy(file, folder / "scenes/more")
-    # What tests read.
+    # Tests read these files.
     for name in subprocess.run(["git", "-C", str(root), "ls-files", "tests"], stdout=subprocess.PIPE, text=True, check=True).stdout.splitlines():
         if not name.endswith((".cpp", ".h", ".txt", ".py", ".toml")):
             (folder / name).parent.mkdir(parents=True, exist_ok=True)
