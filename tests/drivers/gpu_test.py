@@ -65,6 +65,15 @@ class Runs(unittest.TestCase):
         self.assertRegex(first["fails"], r"^no end in [23]")
         self.assertEqual(again["left out"], "no time was left")
 
+    def test_whole_images_are_differences_of_two_renders(self):
+        hour = self.hour([])
+        with mock.patch.object(hour, "rendered", side_effect=[{"wall": 1.0}, {"wall": 3.0}]) as rendered:
+            found = hour.image("walk", "40x30", 2, 8)
+        self.assertEqual(found, {"seconds": 2.0, "samples": 6, "paths_per_second": 40 * 30 * 6 / 2.0})
+        self.assertEqual([call.args[3] for call in rendered.call_args_list], [2, 8])
+        with mock.patch.object(hour, "rendered", side_effect=[{"wall": 1.0}, {"fails": "lost"}]):
+            self.assertEqual(hour.image("walk", "40x30", 2, 8), {"fails": "lost"})
+
     def test_nothing_is_tried_without_a_device(self):
         (self.folder / "caplet").write_text("#!/bin/sh\necho none >&2\nexit 1\n")
         self.assertEqual(self.hour(["device", "tests"]).all(), 1)
