@@ -13,7 +13,7 @@
 #include "coats.h"
 #include "trials.h"
 
-namespace caplet::test {
+namespace caplet::test::estimates_test {
 namespace {
 
 struct Mean {
@@ -193,4 +193,4 @@ TEST(BsdfEstimates, AreTheSameForTheSameKey) {
 }
 
 }  // namespace
-}  // namespace caplet::test
+}  // namespace caplet::test::estimates_test

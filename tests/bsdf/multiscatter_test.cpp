@@ -12,7 +12,7 @@
 
 #include "trials.h"
 
-namespace caplet::test {
+namespace caplet::test::multiscatter_test {
 namespace {
 
 BsdfParameters metal(float alpha_u, float alpha_v, float eta = 0, float k = 1e4f) {
@@ -160,4 +160,4 @@ TEST(Multiscatter, OfGlassSendsOnWhatAFlatInterfaceDoes) {
 }
 
 }  // namespace
-}  // namespace caplet::test
+}  // namespace caplet::test::multiscatter_test

@@ -11,7 +11,7 @@
 #include "lower/lower.h"
 #include "support/test_device.h"
 
-namespace caplet::test {
+namespace caplet::test::roughness_test {
 namespace {
 
 const char* const kernel_text = R"CL(
@@ -99,4 +99,4 @@ TEST(Roughness, HasTheFloorsOfPbrt) {
 }
 
 }  // namespace
-}  // namespace caplet::test
+}  // namespace caplet::test::roughness_test

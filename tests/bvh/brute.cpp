@@ -12,7 +12,7 @@
 namespace caplet::test {
 namespace {
 
-constexpr double inf = std::numeric_limits<double>::infinity();
+constexpr double never = std::numeric_limits<double>::infinity();
 constexpr double eps = 0x1p-24;
 
 double dot(const Vec& a, const Vec& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
@@ -64,7 +64,7 @@ double hull_distance(const Hull& h, const Vec& x) {
 }
 
 struct Span {
-  double enter = inf, exit = -inf;
+  double enter = never, exit = -never;
 };
 
 /// Where the ray is deeper than `depth` in the hull (negative depth: the hull grown).
@@ -161,30 +161,30 @@ double latest_hit(const FlatPrimitive& p, const DoubleRay& ray, double error) {
     const Hull h = hull(p);
     const double reach = length(sub(h.c1, h.c0)) + std::max(h.r0, h.r1) + error;
     const Vec w = sub(h.c0, ray.o);
-    if (length(cross(w, ray.d)) > reach * length(ray.d)) return inf;
+    if (length(cross(w, ray.d)) > reach * length(ray.d)) return never;
     const Span deep = span_of(h, ray, error);
     if (deep.enter > ray.t_min) return deep.enter;
-    return deep.exit > ray.t_min ? span_of(h, ray, -error).exit : inf;
+    return deep.exit > ray.t_min ? span_of(h, ray, -error).exit : never;
   }
   const Vec n = p.shape == shape_disk ? data3(p, 3) : triangle_normal(p);
   const double along = dot(ray.d, n);
-  if (std::abs(along) < 1e-9 * length(ray.d)) return inf;
+  if (std::abs(along) < 1e-9 * length(ray.d)) return never;
   const double t = dot(sub(data3(p, 0), ray.o), n) / along;
   const double slack = error / std::abs(along);         // in t
   const double margin = error + slack * length(ray.d);  // in the plane
   const Vec x = at(ray, t);
-  if (!(t - slack > ray.t_min)) return inf;
+  if (!(t - slack > ray.t_min)) return never;
   if (p.shape == shape_disk)
-    return length(sub(x, data3(p, 0))) < double(p.data[6]) - margin ? t + slack : inf;
+    return length(sub(x, data3(p, 0))) < double(p.data[6]) - margin ? t + slack : never;
   const auto edges = edge_distances(p, n, x);
-  return std::min({edges[0], edges[1], edges[2]}) > margin ? t + slack : inf;
+  return std::min({edges[0], edges[1], edges[2]}) > margin ? t + slack : never;
 }
 
 std::string disagreement(std::span<const FlatPrimitive> primitives,
                          std::span<const std::uint32_t> slots, const RayRecord& record,
                          const HitRecord& hit) {
   const DoubleRay ray = widen(record);
-  const double t = hit.slot == CAPLET_NONE ? inf : double(hit.t);
+  const double t = hit.slot == CAPLET_NONE ? never : double(hit.t);
   if (hit.slot != CAPLET_NONE) {
     if (!(hit.t > record.t_min && hit.t < record.t_max))
       return fmt::format("t {} outside ({}, {})", t, ray.t_min, ray.t_max);

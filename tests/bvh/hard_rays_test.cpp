@@ -12,7 +12,7 @@
 #include "shared/kinds.h"
 #include "support/test_device.h"
 
-namespace caplet::test {
+namespace caplet::test::hard_rays_test {
 namespace {
 
 constexpr float inf = std::numeric_limits<float>::infinity();
@@ -292,4 +292,4 @@ TEST_P(HardRays, NoHitAgainWhenLeaving) {
 }
 
 }  // namespace
-}  // namespace caplet::test
+}  // namespace caplet::test::hard_rays_test

@@ -21,7 +21,7 @@
 #include "shared/records.h"
 #include "support/test_device.h"
 
-namespace caplet::test {
+namespace caplet::test::nodes_test {
 namespace {
 
 constexpr std::size_t spare = 16;  // entries beyond the stack, to see whether they are written to
@@ -156,4 +156,4 @@ TEST(Stack, HoldsWhatTheDeepestTreesLeave) {
 }
 
 }  // namespace
-}  // namespace caplet::test
+}  // namespace caplet::test::nodes_test

@@ -14,7 +14,7 @@
 #include "shared/shapes.h"
 #include "support/test_device.h"
 
-namespace caplet::test {
+namespace caplet::test::trace_test {
 namespace {
 
 constexpr float inf = std::numeric_limits<float>::infinity();
@@ -230,4 +230,4 @@ TEST_P(Trace, InvalidRaysMiss) {
 }
 
 }  // namespace
-}  // namespace caplet::test
+}  // namespace caplet::test::trace_test

@@ -16,7 +16,7 @@
 #include "program.h"
 #include "small_disk.h"
 
-namespace caplet {
+namespace caplet::film_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -373,4 +373,4 @@ TEST(Checkpoints, AFullDiskKeepsTheOldOneAndTheRenderGoesOn) {
 }
 
 }  // namespace
-}  // namespace caplet
+}  // namespace caplet::film_test

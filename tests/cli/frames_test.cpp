@@ -14,7 +14,7 @@
 #include "program.h"
 #include "support/data.h"
 
-namespace caplet {
+namespace caplet::frames_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -264,4 +264,4 @@ TEST(Frames, SayWhatIsWrong) {
 }
 
 }  // namespace
-}  // namespace caplet
+}  // namespace caplet::frames_test

@@ -19,7 +19,7 @@
 #include "program.h"
 #include "support/data.h"
 
-namespace caplet {
+namespace caplet::pick_test {
 namespace {
 
 using test::Result;
@@ -435,4 +435,4 @@ TEST(Pick, MillionsOfRaysDoNotFillMemory) {
 }
 
 }  // namespace
-}  // namespace caplet
+}  // namespace caplet::pick_test

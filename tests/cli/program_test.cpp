@@ -12,7 +12,7 @@
 #include "program.h"
 #include "support/data.h"
 
-namespace caplet {
+namespace caplet::program_test {
 namespace {
 
 using test::Result;
@@ -300,4 +300,4 @@ TEST(Program, TimeLimitEndsARender) {
 }
 
 }  // namespace
-}  // namespace caplet
+}  // namespace caplet::program_test

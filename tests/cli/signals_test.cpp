@@ -10,7 +10,7 @@
 #include "program.h"
 #include "support/data.h"
 
-namespace caplet {
+namespace caplet::signals_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -77,4 +77,4 @@ TEST(NoDevice, IsAFailureNotAUsageError) {
 }
 
 }  // namespace
-}  // namespace caplet
+}  // namespace caplet::signals_test

@@ -13,7 +13,7 @@
 #include "support/data.h"
 #include "support/test_device.h"
 
-namespace caplet {
+namespace caplet::trial_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -88,4 +88,4 @@ TEST(Trial, IsMadeOnceForEachEncoding) {
 }
 
 }  // namespace
-}  // namespace caplet
+}  // namespace caplet::trial_test

@@ -15,7 +15,7 @@
 #include "support/data.h"
 #include "support/kinds.h"
 
-namespace caplet {
+namespace caplet::verify_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -182,4 +182,4 @@ TEST(Verify, CtrlCSaysWhatWasAsked) {
 }
 
 }  // namespace
-}  // namespace caplet
+}  // namespace caplet::verify_test

@@ -15,7 +15,7 @@
 #include "support/import_files.h"
 #include "support/log_of.h"
 
-namespace caplet {
+namespace caplet::embree_scenes_test {
 namespace {
 
 using glm::dvec3;
@@ -545,4 +545,4 @@ TEST(SharedEmbreeScenes, AreRead) {
 }
 
 }  // namespace
-}  // namespace caplet
+}  // namespace caplet::embree_scenes_test

@@ -14,7 +14,7 @@
 #include "support/import_files.h"
 #include "support/log_of.h"
 
-namespace caplet {
+namespace caplet::mistakes_test {
 namespace {
 
 using glm::dvec3;
@@ -337,4 +337,4 @@ TEST(EmbreeScenes, TheViewersDirectionAndLights) {
 }
 
 }  // namespace
-}  // namespace caplet
+}  // namespace caplet::mistakes_test

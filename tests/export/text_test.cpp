@@ -14,7 +14,7 @@
 #include "export/detail/text.h"
 #include "scene/edit.h"
 
-namespace caplet {
+namespace caplet::text_test {
 namespace {
 
 using namespace pbrt_text;
@@ -85,4 +85,4 @@ TEST(ExportText, StringsAreEscaped) {
 }
 
 }  // namespace
-}  // namespace caplet
+}  // namespace caplet::text_test

@@ -11,7 +11,7 @@
 
 #include "import_text.h"
 
-namespace caplet::test {
+namespace caplet::test::bad_shapes_test {
 namespace {
 
 struct Bad {
@@ -423,4 +423,4 @@ TEST(Model, BadMaterials) {
 }
 
 }  // namespace
-}  // namespace caplet::test
+}  // namespace caplet::test::bad_shapes_test

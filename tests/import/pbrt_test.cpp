@@ -14,7 +14,7 @@
 
 #include "import_text.h"
 
-namespace caplet::test {
+namespace caplet::test::pbrt_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -540,4 +540,4 @@ TEST(SharedScenes, MitsubaReferencesLoad) {
 }
 
 }  // namespace
-}  // namespace caplet::test
+}  // namespace caplet::test::pbrt_test

@@ -17,12 +17,12 @@
 
 #include "import_text.h"
 
-namespace caplet::test {
+namespace caplet::test::shapes_test {
 namespace {
 
 using glm::dvec3;
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 template <class T>
 const T& geometry_of(const Scene& scene, std::size_t shape = 0) {
@@ -584,4 +584,4 @@ TEST(SharedCurves, Load) {
 }
 
 }  // namespace
-}  // namespace caplet::test
+}  // namespace caplet::test::shapes_test

@@ -15,7 +15,7 @@
 #include "scene/media/homogeneous.h"
 #include "support/log_of.h"
 
-namespace caplet::test {
+namespace caplet::test::statements_test {
 namespace {
 
 using testing::ElementsAre, testing::HasSubstr, testing::IsEmpty;
@@ -635,4 +635,4 @@ TEST(Statements, ThatAreRefused) {
 }
 
 }  // namespace
-}  // namespace caplet::test
+}  // namespace caplet::test::statements_test

@@ -17,7 +17,7 @@
 #include "lower/lower.h"
 #include "scene_text.h"
 
-namespace caplet::test {
+namespace caplet::test::color_test {
 namespace {
 
 using glm::dvec3;
@@ -311,4 +311,4 @@ TEST(Limit, IsOfEachSampleAsItIsExposed) {
 }
 
 }  // namespace
-}  // namespace caplet::test
+}  // namespace caplet::test::color_test

@@ -17,13 +17,13 @@
 #include "support/chi_square.h"
 #include "support/kinds.h"
 
-namespace caplet::test {
+namespace caplet::test::area_test {
 
 namespace {
 
 using glm::dvec3;
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 constexpr std::size_t sample_count = 60000;
 
 struct AreaCase {
@@ -443,4 +443,4 @@ TEST(AreaLightEdges, SamplesAreFinitePointsOnTheRimOfTheRange) {
   }
 }
 
-}  // namespace caplet::test
+}  // namespace caplet::test::area_test

@@ -18,13 +18,13 @@
 #include "lower/detail/covered_ends.h"
 #include "support/thorough.h"
 
-namespace caplet::test {
+namespace caplet::test::chains_test {
 
 namespace {
 
 using glm::dvec3;
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 /// The union of the balls along an axis, with a radius that goes from r0 to r1.
 struct RoundSolid {
@@ -342,4 +342,4 @@ TEST(CoveredEnds, AreSampledWhereScatteredRaysWouldNotFindThem) {
 
 }  // namespace
 
-}  // namespace caplet::test
+}  // namespace caplet::test::chains_test

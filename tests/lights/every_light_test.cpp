@@ -17,7 +17,7 @@
 #include "light_trials.h"
 #include "support/kinds.h"
 
-namespace caplet::test {
+namespace caplet::test::every_light_test {
 
 namespace {
 
@@ -135,4 +135,4 @@ TEST(LightTrials, EveryLightOfTheModelIsOnTrial) {
   EXPECT_EQ(models.size(), std::variant_size_v<decltype(Light::model)>);
 }
 
-}  // namespace caplet::test
+}  // namespace caplet::test::every_light_test

@@ -12,11 +12,11 @@
 #include "light_bench.h"
 #include "light_scenes.h"
 
-namespace caplet::test {
+namespace caplet::test::lights_test {
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 std::vector<float> uneven_image(int texels) {
   std::mt19937 engine(5);
@@ -218,4 +218,4 @@ TEST(ImageLights, TwoAddUp) {
               1e-6 * one);
 }
 
-}  // namespace caplet::test
+}  // namespace caplet::test::lights_test

@@ -16,13 +16,13 @@
 #include "light_bench.h"
 #include "light_scenes.h"
 
-namespace caplet::test {
+namespace caplet::test::pictures_test {
 
 namespace {
 
 using glm::dvec3;
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 /// Radiance of an image's white at the wavelength that the bench tells.
 double white() {
@@ -593,4 +593,4 @@ TEST(LightTree, KnowsWhereLightsWithImagesShine) {
   }
 }
 
-}  // namespace caplet::test
+}  // namespace caplet::test::pictures_test

@@ -16,13 +16,13 @@
 #include "lower/lower.h"
 #include "scene/scene.h"
 
-namespace caplet::test {
+namespace caplet::test::power_test {
 
 namespace {
 
 using glm::dvec3;
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 /// A solid's point furthest along a direction (of any length).
 using Extreme = std::function<dvec3(const dvec3&)>;
@@ -278,4 +278,4 @@ TEST(LightPower, WithTwoSidesScaleAndSurfaces) {
   }
 }
 
-}  // namespace caplet::test
+}  // namespace caplet::test::power_test

@@ -13,11 +13,11 @@
 #include "lower/detail/light_table.h"
 #include "support/chi_square.h"
 
-namespace caplet::test {
+namespace caplet::test::selection_test {
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 Light point_light(double scale) {
   Light light;
@@ -148,4 +148,4 @@ TEST(LightSelection, ManyLights) {
   EXPECT_GT(chi_square(observed, expected).p_value, 0.001);
 }
 
-}  // namespace caplet::test
+}  // namespace caplet::test::selection_test

@@ -18,11 +18,11 @@
 #include "light_scenes.h"
 #include "support/chi_square.h"
 
-namespace caplet::test {
+namespace caplet::test::sky_test {
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 /// A grey image and what the sky is by it.
 struct Sky {
@@ -274,4 +274,4 @@ INSTANTIATE_TEST_SUITE_P(Layouts, ImageSky, testing::Bool(),
                            return row.param ? "square" : "latlong";
                          });
 
-}  // namespace caplet::test
+}  // namespace caplet::test::sky_test

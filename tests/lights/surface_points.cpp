@@ -18,7 +18,7 @@ namespace {
 
 using glm::dvec3;
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 using Map = std::function<dvec3(double, double)>;  // of [0, 1]^2, object space
 

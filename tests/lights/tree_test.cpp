@@ -17,13 +17,13 @@
 #include "lower/lower.h"
 #include "support/chi_square.h"
 
-namespace caplet::test {
+namespace caplet::test::tree_test {
 
 namespace {
 
 using glm::dvec3;
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 class Random {
  public:
@@ -494,4 +494,4 @@ TEST(LightTree, UnitedConesHoldBoth) {
   }
 }
 
-}  // namespace caplet::test
+}  // namespace caplet::test::tree_test

@@ -19,7 +19,7 @@
 #include "post/overlay_options.h"
 #include "support/import_files.h"
 
-namespace caplet::post {
+namespace caplet::post::overlay_test {
 namespace {
 
 using test::complaint;
@@ -498,4 +498,4 @@ TEST(Letters, AreOfAnyScript) {
 }
 
 }  // namespace
-}  // namespace caplet::post
+}  // namespace caplet::post::overlay_test

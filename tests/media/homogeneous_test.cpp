@@ -13,7 +13,7 @@
 namespace caplet::test {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 std::string medium(const std::string& parameters) {
   return "MakeNamedMedium \"m\" \"string type\" \"homogeneous\" " + parameters + "\n";

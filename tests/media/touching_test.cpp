@@ -14,7 +14,7 @@
 
 #include "media_scenes.h"
 
-namespace caplet::test {
+namespace caplet::test::touching_test {
 namespace {
 
 constexpr double near = 2e-4;
@@ -380,4 +380,4 @@ TEST(Touching, TheCameraAmongBoxesOnAGrid) {
 }
 
 }  // namespace
-}  // namespace caplet::test
+}  // namespace caplet::test::touching_test

@@ -12,10 +12,10 @@
 
 #include "media_scenes.h"
 
-namespace caplet::test {
+namespace caplet::test::varying_test {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 constexpr int n = 3;
 
 const std::vector<double> densities = {0.1, 1.9, 0.4, 0.7, 0.2, 1.1, 0.9, 0.3, 1.4,
@@ -281,4 +281,4 @@ TEST(Nanovdb, LetsThroughWhatItsVoxelsDo) {
 }
 
 }  // namespace
-}  // namespace caplet::test
+}  // namespace caplet::test::varying_test

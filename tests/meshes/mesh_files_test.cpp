@@ -14,7 +14,7 @@
 #include "support/data.h"
 #include "support/import_files.h"
 
-namespace caplet {
+namespace caplet::mesh_files_test {
 namespace {
 
 using test::complaint;
@@ -685,4 +685,4 @@ TEST(BadMeshes, OfMaterials) {
 }
 
 }  // namespace
-}  // namespace caplet
+}  // namespace caplet::mesh_files_test

@@ -14,7 +14,7 @@
 #include "support/import_files.h"
 #include "support/log_of.h"
 
-namespace caplet {
+namespace caplet::mistakes_test {
 namespace {
 
 using test::complaint;
@@ -284,4 +284,4 @@ TEST(Off, OfOtherThanThreeCoordinatesIsRefused) {
 }
 
 }  // namespace
-}  // namespace caplet
+}  // namespace caplet::mistakes_test

@@ -14,7 +14,7 @@
 #include "support/data.h"
 #include "support/import_files.h"
 
-namespace caplet {
+namespace caplet::vertex_colors_test {
 namespace {
 
 using glm::vec3;
@@ -217,4 +217,4 @@ TEST(VertexColors, OfGltf) {
 }
 
 }  // namespace
-}  // namespace caplet
+}  // namespace caplet::vertex_colors_test

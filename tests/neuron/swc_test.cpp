@@ -14,7 +14,7 @@
 #include "import/detail/importers.h"
 #include "support/import_files.h"
 
-namespace caplet {
+namespace caplet::swc_test {
 namespace {
 
 using test::capsules_of;
@@ -478,4 +478,4 @@ TEST(SwcSize, LongReversedChainIsRead) {
 }
 
 }  // namespace
-}  // namespace caplet
+}  // namespace caplet::swc_test

@@ -18,7 +18,7 @@
 namespace caplet::test {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 /// A placement as text and as a matrix.
 struct Placement {

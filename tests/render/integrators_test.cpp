@@ -10,7 +10,7 @@
 
 #include "render_scene.h"
 
-namespace caplet::test {
+namespace caplet::test::integrators_test {
 namespace {
 
 /// A narrow view of the floor around (2, 0, 0), from the side.
@@ -171,4 +171,4 @@ TEST(SimplePath, IsThePathTracersPictureInMedia) {
 }
 
 }  // namespace
-}  // namespace caplet::test
+}  // namespace caplet::test::integrators_test

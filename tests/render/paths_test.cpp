@@ -11,10 +11,10 @@
 
 #include "render_scene.h"
 
-namespace caplet::test {
+namespace caplet::test::paths_test {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 /// `view`: LookAt and what else comes before the world; 16 x 16 pixels.
 Scene scene_of(const std::string& view, const std::string& world,
@@ -163,4 +163,4 @@ TEST(AlbedoLayer, OfAMetalIsItsReflectance) {
 }
 
 }  // namespace
-}  // namespace caplet::test
+}  // namespace caplet::test::paths_test

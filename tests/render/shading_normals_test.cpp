@@ -19,10 +19,10 @@
 #include "lower/lower.h"
 #include "render_scene.h"
 
-namespace caplet::test {
+namespace caplet::test::shading_normals_test {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 const std::string sky = "LightSource \"infinite\" \"rgb L\" [1 1 1]\n";
 const std::string from_above =
@@ -366,4 +366,4 @@ TEST(ShadingNormals, ASmoothMeshOverAFloorIsTheBall) {
 }
 
 }  // namespace
-}  // namespace caplet::test
+}  // namespace caplet::test::shading_normals_test

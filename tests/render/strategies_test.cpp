@@ -12,7 +12,7 @@
 #include "lower/lower.h"
 #include "render_scene.h"
 
-namespace caplet::test {
+namespace caplet::test::strategies_test {
 namespace {
 
 const char* const at_the_shape = "LookAt 1.5 -4 1.2  0 0 0  0 0 1\n";
@@ -291,4 +291,4 @@ INSTANTIATE_TEST_SUITE_P(Cases, Strategies, testing::ValuesIn(cases()),
                          [](const testing::TestParamInfo<Case>& row) { return row.param.name; });
 
 }  // namespace
-}  // namespace caplet::test
+}  // namespace caplet::test::strategies_test

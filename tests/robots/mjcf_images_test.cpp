@@ -13,7 +13,7 @@
 #include "support/data.h"
 #include "support/import_files.h"
 
-namespace caplet {
+namespace caplet::mjcf_images_test {
 namespace {
 
 using test::complaint;
@@ -200,4 +200,4 @@ TEST(MjcfImages, LightsAreAsStrongAsMeantWithoutTheFloor) {
 }
 
 }  // namespace
-}  // namespace caplet
+}  // namespace caplet::mjcf_images_test

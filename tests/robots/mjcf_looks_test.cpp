@@ -11,7 +11,7 @@
 #include "support/data.h"
 #include "support/import_files.h"
 
-namespace caplet {
+namespace caplet::mjcf_looks_test {
 namespace {
 
 using test::complaint;
@@ -342,4 +342,4 @@ TEST(RobotMeshes, ColladaIsReadInItsUnit) {
 }
 
 }  // namespace
-}  // namespace caplet
+}  // namespace caplet::mjcf_looks_test

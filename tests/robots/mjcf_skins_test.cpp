@@ -12,7 +12,7 @@
 #include "import/import.h"
 #include "support/import_files.h"
 
-namespace caplet {
+namespace caplet::mjcf_skins_test {
 namespace {
 
 using test::complaint;
@@ -144,4 +144,4 @@ TEST(MjcfSkins, BadInput) {
 }
 
 }  // namespace
-}  // namespace caplet
+}  // namespace caplet::mjcf_skins_test

@@ -14,7 +14,7 @@
 #include "support/data.h"
 #include "support/import_files.h"
 
-namespace caplet {
+namespace caplet::mjcf_test {
 namespace {
 
 using test::complaint;
@@ -617,4 +617,4 @@ TEST(Mjcf, SharedFilesHaveTheirGeoms) {
 }
 
 }  // namespace
-}  // namespace caplet
+}  // namespace caplet::mjcf_test

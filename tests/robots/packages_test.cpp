@@ -8,7 +8,7 @@
 #include "support/data.h"
 #include "support/import_files.h"
 
-namespace caplet {
+namespace caplet::packages_test {
 namespace {
 
 // docs/formats/robots.md: of package://NAME/REST, REST beside the file or in a folder above it, or
@@ -37,4 +37,4 @@ TEST(Packages, AreFoundBesideTheFileAndAbove) {
 }
 
 }  // namespace
-}  // namespace caplet
+}  // namespace caplet::packages_test

@@ -10,7 +10,7 @@
 #include "support/data.h"
 #include "support/import_files.h"
 
-namespace caplet {
+namespace caplet::robots_test {
 namespace {
 
 using test::complaint;
@@ -187,4 +187,4 @@ TEST(Urdf, SharedFileLiesWhereMujocoPutsIt) {
 }
 
 }  // namespace
-}  // namespace caplet
+}  // namespace caplet::robots_test

@@ -24,7 +24,7 @@
 #include "support/filters.h"
 #include "support/test_device.h"
 
-namespace caplet::test {
+namespace caplet::test::sampling_test {
 
 namespace {
 
@@ -751,4 +751,4 @@ TEST(Camera, RaysOfTheLensMeetInTheFocalPlane) {
     EXPECT_LT(glm::length(at_focus(lens) - center), 1e-5);
 }
 
-}  // namespace caplet::test
+}  // namespace caplet::test::sampling_test

@@ -14,6 +14,7 @@
 #include <ostream>
 
 #include "faced.h"
+#include "floats.h"
 #include "lower/detail/flat_shapes.h"
 #include "lower/detail/shapes.h"
 #include "reference/from_scene.h"
@@ -25,12 +26,6 @@ namespace {
 
 using glm::dvec3;
 
-constexpr double eps = 0x1p-24;
-
-dvec3 point(const float* p) { return {p[0], p[1], p[2]}; }
-std::array<float, 3> floats(const dvec3& v) {
-  return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
-}
 dvec3 any_perpendicular(const dvec3& n) {
   return glm::normalize(glm::cross(n, std::abs(n.x) < 0.7 ? dvec3(1, 0, 0) : dvec3(0, 1, 0)));
 }

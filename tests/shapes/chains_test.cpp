@@ -9,8 +9,10 @@
 #include <glm/geometric.hpp>
 #include <glm/gtc/matrix_transform.hpp>
 #include <glm/matrix.hpp>
+#include <numbers>
 #include <random>
 
+#include "floats.h"
 #include "scene_probe.h"
 
 namespace caplet::test {
@@ -20,8 +22,7 @@ using glm::dmat4;
 using glm::dvec2;
 using glm::dvec3;
 
-constexpr double pi = 3.14159265358979323846;
-constexpr double eps = 0x1p-24;
+using std::numbers::pi;
 
 RayRecord ray_of(const dvec3& o, const dvec3& d) {
   return {static_cast<float>(o.x), static_cast<float>(o.y), static_cast<float>(o.z), 0,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 #include "csg_cases.h"
+#include "floats.h"
 
 #include <fmt/format.h>
 
@@ -17,8 +18,6 @@ namespace {
 
 using glm::dmat4;
 using glm::dvec3;
-
-constexpr double eps = 0x1p-24;
 
 dvec3 apply(const dmat4& m, const dvec3& p) { return dvec3(m * glm::dvec4(p, 1)); }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 #include "judge.h"
+#include "floats.h"
 
 #include <fmt/format.h>
 
@@ -15,8 +16,6 @@ namespace caplet::test {
 namespace {
 
 using glm::dvec3;
-
-constexpr double eps = 0x1p-24;
 
 bool is_leaving(const HitRecord& hit) { return (hit.surface & CAPLET_LEAVING) != 0; }
 

@@ -25,7 +25,7 @@ namespace {
 
 using glm::dvec3;
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 PolyhedronShape cube() {
   return {{dvec3(0), dvec3(1), dvec3(0), dvec3(1), dvec3(0), dvec3(1)},

@@ -3,6 +3,7 @@
 //
 // The probe's kernels and their host side.
 #include "probe.h"
+#include "floats.h"
 
 #include <bit>
 #include <cmath>
@@ -114,8 +115,6 @@ const Program& program_of(const Device& device, int width) {
   }
   return found->second;
 }
-
-glm::dvec3 point(const float* p) { return {p[0], p[1], p[2]}; }
 
 FlatPrimitive make(int shape, std::initializer_list<float> values) {
   FlatPrimitive p{static_cast<std::uint32_t>(shape), 0, {}};

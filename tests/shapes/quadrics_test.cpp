@@ -13,19 +13,18 @@
 #include <glm/geometric.hpp>
 
 #include "cases.h"
+#include "floats.h"
 #include "shared/kinds.h"
 #include "support/test_device.h"
 
-namespace caplet::test {
+namespace caplet::test::quadrics_test {
 namespace {
 
 using glm::dvec3;
 using reference::Frustum;
 
-constexpr double eps = 0x1p-24;
 constexpr float flat = CAPLET_CAP_FLAT, rounded = CAPLET_CAP_ROUND, open = CAPLET_CAP_OPEN;
 
-dvec3 point(const float* p) { return {p[0], p[1], p[2]}; }
 bool is_hit(const Probed& probed) { return probed.hit.slot != CAPLET_NONE; }
 std::uint32_t surface_number(const Probed& probed) {
   return probed.hit.surface & CAPLET_SURFACE_MASK;
@@ -499,4 +498,4 @@ TEST(QuadricParameters, AreRightHanded) {
 }
 
 }  // namespace
-}  // namespace caplet::test
+}  // namespace caplet::test::quadrics_test

@@ -25,7 +25,7 @@
 #include "support/test_scale.h"
 #include "verify/verify.h"
 
-namespace caplet::test {
+namespace caplet::test::scenes_test {
 namespace {
 
 using glm::dmat4;
@@ -297,4 +297,4 @@ TEST(Scenes, PolyhedraSeenFromAfarAreMetWhereTheyAre) {
 }
 
 }  // namespace
-}  // namespace caplet::test
+}  // namespace caplet::test::scenes_test

@@ -13,18 +13,17 @@
 #include <glm/matrix.hpp>
 
 #include "cases.h"
+#include "floats.h"
 #include "shared/kinds.h"
 #include "support/test_device.h"
 
-namespace caplet::test {
+namespace caplet::test::surface_test {
 namespace {
 
 using glm::dvec3;
 
-constexpr double eps = 0x1p-24;
 constexpr double two_pi = 6.283185307179586;
 
-dvec3 point(const float* p) { return {p[0], p[1], p[2]}; }
 bool is_hit(const Probed& probed) { return probed.hit.slot != CAPLET_NONE; }
 
 class SurfacePoints : public testing::TestWithParam<ShapeKind> {};
@@ -519,4 +518,4 @@ TEST(SurfaceParameters, Triangles) {
 }
 
 }  // namespace
-}  // namespace caplet::test
+}  // namespace caplet::test::surface_test

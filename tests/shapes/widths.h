@@ -11,14 +11,14 @@
 #include <numbers>
 #include <random>
 
+#include "floats.h"
 #include "probe.h"
 
 namespace caplet::test {
 
 using glm::dvec3;
 
-inline constexpr double pi = std::numbers::pi;
-inline constexpr double eps = 0x1p-24;
+using std::numbers::pi;
 
 class Random {
  public:

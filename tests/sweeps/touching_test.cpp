@@ -20,7 +20,7 @@
 #include "scene_probe.h"
 #include "shared/kinds.h"
 
-namespace caplet::test {
+namespace caplet::test::touching_test {
 namespace {
 
 using glm::dvec3;
@@ -319,4 +319,4 @@ INSTANTIATE_TEST_SUITE_P(Kinds, Leaks, testing::ValuesIn(rows),
                          [](const auto& instance) { return std::string(instance.param.name); });
 
 }  // namespace
-}  // namespace caplet::test
+}  // namespace caplet::test::touching_test

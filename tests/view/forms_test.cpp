@@ -20,7 +20,7 @@
 #include "support/test_device.h"
 #include "view/editor.h"
 
-namespace caplet::view {
+namespace caplet::view::forms_test {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -510,4 +510,4 @@ TEST(Hiding, IsolatesAndRefusesToShowNothing) {
 }
 
 }  // namespace
-}  // namespace caplet::view
+}  // namespace caplet::view::forms_test

@@ -23,7 +23,7 @@
 #include "view/detail/keeping.h"
 #include "view/detail/shown_view.h"
 
-namespace caplet::view {
+namespace caplet::view::keep_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -684,4 +684,4 @@ TEST(Keeping, FiveHundredChangesAreInTheSavedFile) {
 }
 
 }  // namespace
-}  // namespace caplet::view
+}  // namespace caplet::view::keep_test
