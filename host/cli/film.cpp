@@ -33,6 +33,7 @@ nlohmann::ordered_json summary(const SavedFilm& saved) {
   const std::vector<SampleSpan> samples = samples_of(saved.film);
   out["samples"] = spans(samples);
   out["samples_wanted"] = saved.samples_wanted;
+  out["mean_samples"] = saved.film.mean_samples();
   out["missing"] = spans(missing(samples, saved.samples_wanted));
   out["scene_hash"] = saved.scene;
   out["view_hash"] = saved.view;
@@ -53,6 +54,8 @@ void print_text(const SavedFilm& saved) {
                window.y + window.height);
   fmt::print("\nsamples      {}", text_of(samples));
   if (saved.samples_wanted > 0) fmt::print(" of {}", saved.samples_wanted);
+  if (!saved.film.is_even())
+    fmt::print(", of a pixel {:.1f} in the mean", saved.film.mean_samples());
   fmt::print("\n");
   if (!left.empty()) fmt::print("missing      {}\n", text_of(left));
   for (const auto& [label, name] : {std::pair{"scene", "caplet.scene"},

@@ -6,6 +6,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <memory>
 
@@ -133,7 +134,7 @@ void run_merge(const MergeFlags& flags, const Invocation& invocation) {
             !targets.pictures.empty()   ? targets.pictures.front().string()
             : !targets.previews.empty() ? targets.previews.front().string()
                                         : targets.film.string(),
-            sum.film.samples(0), flags.films.size());
+            std::lround(sum.film.mean_samples()), flags.films.size());
 }
 
 }  // namespace

@@ -238,6 +238,18 @@ std::string scene_extensions() {
   return fmt::format("{}", fmt::join(all, " "));
 }
 
+double parse_noise(const std::string& text) {
+  const bool is_percent = text.ends_with('%');
+  const char* const end = text.data() + text.size() - (is_percent ? 1 : 0);
+  double value = 0;
+  const auto [last, error] = std::from_chars(text.data(), end, value);
+  const double noise = is_percent ? value / 100 : value;
+  if (error != std::errc() || last != end || !(noise >= 1e-5 && noise <= 1))
+    throw InputError(SourceLocation{"--noise"},
+                     fmt::format("'{}' is not a share from 0.001% to 100%, such as 5%", text));
+  return noise;
+}
+
 std::string usual_samples() {
   const SamplerSettings usual;
   std::string out = std::to_string(usual.samples_per_pixel);

@@ -58,6 +58,8 @@ std::string scene_extensions();
 /// Returns the defaults of pictures if neither the scene nor the user sets them, for help: samples
 /// per pixel of all formats ("16, 64 of swc"), least widths of capsules, and the size.
 std::string usual_samples();
+/// Parses "5%" or "0.05". Throws InputError that names --noise.
+double parse_noise(const std::string& text);
 std::string usual_least_width();
 std::string usual_size();
 

@@ -22,6 +22,7 @@
 #include "cli/description.h"
 #include "cli/film_output.h"
 #include "cli/frames.h"
+#include "cli/noise_options.h"
 #include "cli/options.h"
 #include "cli/overlays.h"
 #include "cli/render_flags.h"
@@ -195,6 +196,7 @@ Overrides check_options(const RenderFlags& options, Files& files) {
   }
   check_frame_options(options, files);
   check_film_options(options);
+  noise_target(options);
   return overrides;
 }
 
@@ -272,9 +274,12 @@ RenderResult with_progress(const std::vector<Device>& devices, const RenderOptio
         guard(devices);  // once more, because the kernels' compiler may have set signal handlers
       reporter.update(
           progress.fraction, progress.samples_per_second,
-          fmt::format("{:.0f}/{} samples",
-                      std::floor(progress.fraction * render_options.samples_per_pixel + 1e-6),
-                      render_options.samples_per_pixel));
+          progress.noise
+              ? fmt::format("{} samples, noise {:.1f} %", progress.samples_done,
+                            100 * *progress.noise)
+              : fmt::format("{:.0f}/{} samples",
+                            std::floor(progress.fraction * render_options.samples_per_pixel + 1e-6),
+                            render_options.samples_per_pixel));
     });
   } catch (const RunError&) {
     // A driver's compiler may fail because of the signal; the interrupt is then the reason, not the
@@ -319,7 +324,7 @@ Look checkpoints(const Work& work) {
   const Clock::time_point start = Clock::now();
   return {interval, [&work, interval, start](const Film& film) {
             const RenderResult result =
-                so_far(work, narrow<int>(film.samples(0)), seconds_since(start));
+                so_far(work, narrow<int>(std::lround(film.mean_samples())), seconds_since(start));
             work.film->checkpoint(film, notes_of(work, result), interval);
           }};
 }
@@ -398,9 +403,13 @@ RenderResult written(const Work& work, RenderResult result, report::RunSeconds& 
   NotFinite not_finite;
   BandedImage picture = bands_of(work, result, not_finite);
   PictureNoise noise;
-  picture.band = [&noise, band = std::move(picture.band)](int first, int rows) {
+  int added = 0;  // rows: each pair of files develops all of them
+  picture.band = [&noise, &added, band = std::move(picture.band)](int first, int rows) {
     LayeredImage out = band(first, rows);
-    noise.add(out);
+    if (first == added) {
+      noise.add(out);
+      added += rows;
+    }
     return out;
   };
   Stopwatch phase;
@@ -617,6 +626,7 @@ RenderResult render_frames(const Work& of_all, const FrameSource& source,
     } else if (session || frame != source.range.first) {
       Scene next = scene_of_frame(options, source, frame);
       apply(overrides, next);
+      if (options.noise) next.view.sampler.kind = live.scene().view.sampler.kind;
       if (is_automatic) {
         next.view.camera = camera;
         next.lights = lights;
@@ -649,11 +659,13 @@ RenderResult render_frames(const Work& of_all, const FrameSource& source,
 }
 
 /// Returns what a film's file says besides its samples.
-SavedFilm saved_like(const Scene& scene, const FlatScene& flat, const FlatView& view) {
+SavedFilm saved_like(const Scene& scene, const FlatScene& flat, const FlatView& view,
+                     bool to_noise) {
   SavedFilm out;
   out.scene = fingerprint(flat);
   out.view = fingerprint(view);
-  out.samples_wanted = static_cast<std::uint32_t>(scene.view.sampler.samples_per_pixel);
+  if (!to_noise)
+    out.samples_wanted = static_cast<std::uint32_t>(scene.view.sampler.samples_per_pixel);
   out.settings = scene.view.film;
   return out;
 }
@@ -665,7 +677,8 @@ void run_render(const RenderFlags& options, const Invocation& invocation) {
   Files files;
   const Overrides overrides = check_options(options, files);
   if (!options.display.empty()) parse_tev_address(options.display, "--display");
-  const Layers layers = parse_layers(options.layers, options.variance);
+  const Layers layers =
+      parse_layers(options.layers, options.variance || (options.noise && !options.layers));
   const Layers film_layers = Layers::of_bits(layers.bits() | options.overlays.layers().bits());
   install_interrupt_handlers();
   std::vector<Device> devices = choose_devices(options.device, options.encoding);
@@ -678,6 +691,7 @@ void run_render(const RenderFlags& options, const Invocation& invocation) {
   Scene scene = frames ? scene_of_frame(options, *frames, frames->range.first)
                        : import_files(options.scenes, options.import_options);
   apply(overrides, scene);
+  if (options.noise) take_open_sampler(scene.view.sampler);
   if (frames && frames->kind != FrameSource::Kind::turntable)
     frame_all(options, *frames, overrides, scene);
   if (scene.view.film.denoise && !options.denoise) check_denoiser("Film \"denoise\"");
@@ -698,15 +712,19 @@ void run_render(const RenderFlags& options, const Invocation& invocation) {
   devices = tried_apart(devices, {.shapes = flat.shapes, .render = true});
   guard(devices);
   if (!options.quiet)
-    log::info("{}: {} primitives, {} x {} pixels, {} samples per pixel on {}",
-              scene_names(options.scenes), flat.primitive_count, view.view.crop_width,
-              view.view.crop_height, samples.end - samples.begin, names_of(devices));
+    log::info("{}: {} primitives, {} x {} pixels, {} on {}", scene_names(options.scenes),
+              flat.primitive_count, view.view.crop_width, view.view.crop_height,
+              options.noise ? fmt::format("noise {:g} %", 100 * *options.noise)
+                            : fmt::format("{} samples per pixel", samples.end - samples.begin),
+              names_of(devices));
   std::optional<FilmOutput> film;
   if (!files.film.empty())
-    film.emplace(files.film, saved_like(scene, flat, view), options.film.resume);
+    film.emplace(files.film, saved_like(scene, flat, view, options.noise.has_value()),
+                 options.film.resume);
   RenderOptions render_options;
   render_options.sample_begin = samples.begin;
   render_options.samples_per_pixel = narrow<int>(samples.end - samples.begin);
+  render_options.noise = noise_target(options);
   render_options.time_limit = options.time_limit;
   render_options.batch_paths = options.batch_paths;
   render_options.time_stages = !options.stats.empty();
@@ -715,6 +733,7 @@ void run_render(const RenderFlags& options, const Invocation& invocation) {
   render_options.layers = film_layers;
   if (scene.view.film.denoise)
     render_options.layers = Layers::of_bits(film_layers.bits() | report::denoising_layers().bits());
+  if (options.noise) render_options.layers = render_options.layers.with(Layer::variance);
   render_options.patience = options.patience;
   const Work work{options, invocation,  scene, flat,           devices,
                   layers,  film_layers, files, render_options, film ? &*film : nullptr};
@@ -725,12 +744,17 @@ void run_render(const RenderFlags& options, const Invocation& invocation) {
   if (!files.stats.empty())
     write_bytes(files.stats, report::to_text(report::run_summary(seconds, result)));
   const fs::path first = frames && !files.movie.empty() ? files.movie : files.first();
+  if (result.reached) tell_of(*result.reached, *render_options.noise);
   if (result.interrupted)
-    log::warn("interrupted: {} holds {} of {} samples per pixel", first.string(),
-              result.samples_per_pixel, render_options.samples_per_pixel);
+    log::warn("interrupted: {} holds {} samples per pixel", first.string(),
+              options.noise ? fmt::format("{}", result.samples_per_pixel)
+                            : fmt::format("{} of {}", result.samples_per_pixel,
+                                          render_options.samples_per_pixel));
   log::info("wrote {}", first.string());
   if (film && first != files.film) log::info("wrote {}", files.film.string());
-  if (film && result.interrupted && result.samples_per_pixel < render_options.samples_per_pixel)
+  if (film && result.interrupted &&
+      (result.reached ? result.reached->noise > *options.noise
+                      : result.samples_per_pixel < render_options.samples_per_pixel))
     throw CLI::RuntimeError(exit_stopped);
 }
 

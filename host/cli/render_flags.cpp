@@ -9,6 +9,7 @@
 #include <cstdlib>
 
 #include "cli/overlays.h"
+#include "film/sample_plan.h"
 #include "report/stereo.h"
 
 namespace caplet::cli {
@@ -61,8 +62,19 @@ void add_size(CLI::App& command, RenderFlags& o) {
   command.option_defaults()->group("Size and quality");
   command
       .add_option("--spp", o.samples_per_pixel,
-                  "Samples per pixel; unless asked the scene's, else " + usual_samples())
+                  "Samples per pixel; unless asked the scene's, else " + usual_samples() +
+                      "; with --noise the most that a pixel gets, else " +
+                      std::to_string(NoiseTarget{}.most))
       ->check(CLI::Range(1, 1 << 24))
+      ->type_name("N");
+  command
+      .add_option_function<std::string>(
+          "--noise", [&o](const std::string& text) { o.noise = parse_noise(text); },
+          "Render to this noise: pixels get as many samples as they need for it")
+      ->type_name("PERCENT%");
+  command.add_option("--min-spp", o.least_samples, "With --noise: the fewest samples of a pixel")
+      ->check(CLI::Range(2, 1 << 24))
+      ->default_str(std::to_string(NoiseTarget{}.least))
       ->type_name("N");
   command
       .add_option("--size", o.size,

@@ -26,9 +26,9 @@ struct RenderFlags {
   ImportOptions import_options;
   post::Overlays overlays;
   std::optional<std::string> layers;
-  std::optional<int> samples_per_pixel, max_depth;
+  std::optional<int> samples_per_pixel, least_samples, max_depth;
   std::optional<std::uint32_t> seed;
-  std::optional<double> time_limit, clamp, separation, convergence;
+  std::optional<double> noise, time_limit, clamp, separation, convergence;
   std::string layout, display;
   FilmFlags film;
   double patience = 60;

@@ -136,6 +136,19 @@ Film::Film(const FilmLayout& layout, std::vector<std::uint64_t> words, std::vect
   }
 }
 
+bool Film::is_even() const {
+  for (std::size_t pixel = 1; pixel < layout_.window.pixels(); ++pixel)
+    if (samples(pixel) != samples(0)) return false;
+  return true;
+}
+
+double Film::mean_samples() const {
+  const std::size_t pixels = layout_.window.pixels();
+  double sum = 0;
+  for (std::size_t pixel = 0; pixel < pixels; ++pixel) sum += samples(pixel);
+  return pixels > 0 ? sum / static_cast<double>(pixels) : 0;
+}
+
 double Film::sum(Layer layer, std::size_t c, std::size_t pixel) const {
   const auto row = static_cast<std::size_t>(layer);
   CHECK_LT_(0u, first_words_[row]);

@@ -81,6 +81,10 @@ class Film {
   std::uint32_t samples(std::size_t pixel) const {
     return static_cast<std::uint32_t>(words_[pixel * words_per_pixel_]);
   }
+  /// Returns whether all pixels have as many.
+  bool is_even() const;
+  /// Returns their mean over the pixels; 0 without pixels.
+  double mean_samples() const;
   /// Returns how many of them are of the first replicate: those of even number.
   std::uint32_t first_replicate_samples(std::size_t pixel) const {
     return static_cast<std::uint32_t>(words_[pixel * words_per_pixel_] >> 32);

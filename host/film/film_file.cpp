@@ -374,7 +374,7 @@ void add(SavedFilm& to, const SavedFilm& other) {
   if (to.view.empty()) to.view = other.view;
   to.samples_wanted = std::max(to.samples_wanted, other.samples_wanted);
   to.notes = notes_together(to.notes, other.notes);
-  to.notes["caplet.samples_per_pixel"] = fmt::format("{}", to.film.samples(0));
+  to.notes["caplet.samples_per_pixel"] = fmt::format("{}", std::lround(to.film.mean_samples()));
 }
 
 std::vector<SampleSpan> samples_of(const Film& film) {

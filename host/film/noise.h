@@ -6,23 +6,36 @@
 
 #include <cstddef>
 #include <optional>
+#include <vector>
 
 #include "film/image.h"
 
 namespace caplet {
 
-/// Adds up the rows of a picture.
+/// The luminance that noise is relative to is that around a pixel plus this share of the picture's
+/// mean: dark places may have more noise for their luminance, much as with sRGB's curve, whose
+/// slope is 11.2 at a hundredth of a grey of 0.18 where that is 1.2; 1 / (Y + 0.045) goes from 4.4
+/// to 21.
+inline constexpr double noise_floor = 0.25;
+
+/// PictureNoise is the noise of a picture: the root of the mean, over the pixels that show
+/// something, of the variance over the square of floor and mean luminance, which is that of such
+/// pixels at most variance_radius away.
 class PictureNoise {
  public:
-  /// Adds the pixels of an image with the channels G and variance.G; another image adds nothing.
+  /// Adds the next rows of a picture with the channels G, which stands for luminance, A and
+  /// variance.G; another image adds nothing.
   void add(const LayeredImage& rows);
-  /// Returns the root of the mean variance of G over the mean of G. It is empty if no variance was
-  /// added, or the mean is not positive.
+  /// Returns the noise of the pixels with coverage or variance, and empty if there are none.
   std::optional<double> relative() const;
 
  private:
-  double sum_ = 0, variance_ = 0;
-  std::size_t count_ = 0;
+  struct Pixel {
+    float luminance = 0, variance = 0;
+    bool seen = false;
+  };
+  std::size_t width_ = 0;
+  std::vector<Pixel> pixels_;
 };
 
 }  // namespace caplet

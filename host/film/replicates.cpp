@@ -6,11 +6,13 @@
 #include <cmath>
 #include <cstddef>
 
+#include "film/replicate_estimate.h"
+
 namespace caplet {
 
 namespace {
 
-/// Estimate is the sum of the variances of `pixels` pixels.
+/// Estimate is the sum of the variances of a sample of `pixels` pixels.
 struct Estimate {
   std::array<double, 3> variance{};
   double pixels = 0;
@@ -20,38 +22,16 @@ struct Estimate {
   }
 };
 
-/// Returns a - b, or 0 where they differ by no more than their roundings: sums become doubles and
-/// are divided, each within 2^-53 of its value, and b is the difference of two of them, of which
-/// one is at most n / n2 times b.
-double difference(double a, double b, double sum_over_b) {
-  const double d = a - b, rounding = 0x1p-51 * (std::abs(a) + sum_over_b * std::abs(b));
-  return std::abs(d) <= rounding ? 0 : d;
-}
-
 Estimate estimate_of(const Film& film, const std::array<double, 9>& m, std::size_t pixel) {
-  const double n = film.samples(pixel), n1 = film.first_replicate_samples(pixel), n2 = n - n1;
   Estimate out;
-  if (n1 == 0 || n2 == 0) return out;
   std::array<double, 3> xyz{};
-  for (std::size_t c = 0; c < 3; ++c) {
-    const double first = film.sum(Layer::variance, c, pixel),
-                 all = film.sum(Layer::color, c, pixel);
-    xyz[c] = difference(first / n1, (all - first) / n2, n / n2);
-  }
-  if (xyz == std::array<double, 3>{} && film.sum(Layer::coverage, 0, pixel) == 0) return out;
+  if (!replicates_differ(film, pixel, xyz)) return out;
   out.pixels = 1;
   for (std::size_t c = 0; c < 3; ++c) {
     const double rgb = m[3 * c] * xyz[0] + m[3 * c + 1] * xyz[1] + m[3 * c + 2] * xyz[2];
-    out.variance[c] = rgb * rgb * n1 * n2 / (n * n);
+    out.variance[c] = rgb * rgb * sample_variance_factor(film, pixel);
   }
   return out;
-}
-
-/// Calls add(j) for each j of 0 to count - 1 that is at most variance_radius away from i.
-template <class Add>
-void for_neighbours(int i, int count, const Add& add) {
-  for (int j = std::max(0, i - variance_radius); j <= std::min(count - 1, i + variance_radius); ++j)
-    add(static_cast<std::size_t>(j));
 }
 
 }  // namespace
@@ -82,7 +62,8 @@ std::vector<std::array<double, 3>> variances_of_means(const Film& film,
     const std::size_t begin = static_cast<std::size_t>(y) * width;
     for (std::size_t x = 0; x < width; ++x)
       for (std::size_t c = 0; c < 3 && has_one[begin + x]; ++c)
-        out[begin + x][c] = row[x].variance[c] / row[x].pixels;
+        out[begin + x][c] =
+            row[x].variance[c] / (row[x].pixels * static_cast<double>(film.samples(begin + x)));
   }
   return out;
 }

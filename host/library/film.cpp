@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <thread>
 
 #include "base/spelling.h"
@@ -54,7 +55,9 @@ int Film::width() const { return data_->saved.film.layout().window.width; }
 int Film::height() const { return data_->saved.film.layout().window.height; }
 int Film::x() const { return data_->saved.film.layout().window.x; }
 int Film::y() const { return data_->saved.film.layout().window.y; }
-int Film::samples_per_pixel() const { return static_cast<int>(data_->saved.film.samples(0)); }
+int Film::samples_per_pixel() const {
+  return static_cast<int>(std::lround(data_->saved.film.mean_samples()));
+}
 
 std::vector<SampleRange> Film::samples() const {
   std::vector<SampleRange> out;

@@ -13,14 +13,19 @@ Film render(const Scene& scene, const Device& device, const RenderOptions& optio
   Scene drawn = scene;
   drawn.widen_to_least();
   const caplet::Scene& model = *Inside::model(drawn);
+  if (options.noise) check_noise(*options.noise, model.view.sampler);
   const caplet::Device& on = Inside::device(device);
   const FlatScene flat = lower(model);
   try_device(on, {.shapes = flat.shapes, .render = true});
   const auto samples = static_cast<std::uint32_t>(model.view.sampler.samples_per_pixel);
   const FlatView view = lower_view(model);
-  caplet::Session session(flat, view, {on}, {.layers = Layers::all(), .most_samples = samples});
+  caplet::Session session(flat, view, {on},
+                          {.layers = Layers::all(), .most_samples = options.noise ? 0 : samples});
   SessionRuns runs;
-  runs.render(session, samples, options);
+  if (options.noise)
+    runs.render_to(session, *options.noise, options);
+  else
+    runs.render(session, samples, options);
   return runs.film(session, model, flat, view);
 }
 

@@ -3,6 +3,7 @@
 #include "caplet/session.h"
 
 #include <chrono>
+#include <cmath>
 
 #include "device/forked.h"
 #include "library/detail/inside.h"
@@ -12,6 +13,7 @@
 #include "lower/live_scene.h"
 #include "lower/lower.h"
 #include "render/known_answers.h"
+#include "render/render.h"
 #include "report/picture.h"
 
 namespace caplet::v0 {
@@ -48,6 +50,35 @@ std::uint32_t SessionRuns::render(caplet::Session& session, std::uint32_t sample
   return done;
 }
 
+void check_noise(const NoiseTarget& target, const SamplerSettings& sampler) {
+  if (!(target.noise >= 1e-5 && target.noise <= 1))
+    throw InputError(fmt::format("noise: {} is not from 1e-5 to 1", target.noise));
+  check_range("the least samples", target.least_samples, 2, 1 << 24);
+  check_range("the most samples", target.most_samples, target.least_samples, 1 << 24);
+  if (!is_open_ended(sampler.kind))
+    throw InputError(fmt::format(
+        "noise: the sampler is {}, whose points are even at one number of samples alone; sobol and "
+        "independent go with a noise",
+        sampler_names.at(static_cast<std::size_t>(sampler.kind))));
+}
+
+double SessionRuns::render_to(caplet::Session& session, const NoiseTarget& target,
+                              const RenderOptions& options) {
+  caplet::RenderOptions inner;
+  inner.noise = {target.noise, static_cast<std::uint32_t>(target.least_samples),
+                 static_cast<std::uint32_t>(target.most_samples)};
+  inner.time_limit = options.time_limit;
+  const auto told = [&](const Progress& progress) {
+    options.progress({progress.fraction, progress.samples_per_second});
+  };
+  const RenderResult result = caplet::render(
+      session, {}, inner, options.progress ? told : std::function<void(const Progress&)>());
+  seconds += result.render_seconds;
+  interrupted = result.reached->noise > target.noise && !options.time_limit &&
+                result.reached->mean_samples < target.most_samples;
+  return result.reached->noise;
+}
+
 FilmOrigin SessionRuns::origin(const caplet::Session& session, const FlatScene& flat,
                                const FlatView& view) {
   if (scene_hash_.empty()) {
@@ -69,7 +100,7 @@ Film SessionRuns::film(caplet::Session& session, const caplet::Scene& scene, con
   saved.view = of.view;
   saved.settings = scene.view.film;
   RenderResult result;
-  result.samples_per_pixel = static_cast<int>(saved.film.samples(0));
+  result.samples_per_pixel = static_cast<int>(std::lround(saved.film.mean_samples()));
   result.render_seconds = seconds;
   result.interrupted = interrupted;
   result.devices = session.work();
@@ -146,6 +177,11 @@ int Session::render(int samples, const RenderOptions& options) {
   check_range("samples", samples, 1, 1 << 24);
   return static_cast<int>(
       data_->runs.render(data_->session, static_cast<std::uint32_t>(samples), options));
+}
+
+double Session::render_to(const NoiseTarget& target, const RenderOptions& options) {
+  check_noise(target, data_->live.scene().view.sampler);
+  return data_->runs.render_to(data_->session, target, options);
 }
 
 void Session::cancel() { data_->session.cancel(); }

@@ -3,9 +3,12 @@
 #include "render/render.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 #include "base/check.h"
 #include "base/clock.h"
+#include "base/error.h"
 
 namespace caplet {
 
@@ -26,62 +29,159 @@ RenderResult render(const FlatScene& scene, const FlatView& view, std::span<cons
   return render(session, devices, options, progress);
 }
 
+namespace {
+
+/// Course is one render of a session.
+class Course {
+ public:
+  Course(Session& session, const RenderOptions& options,
+         const std::function<void(const Progress&)>& progress)
+      : session_(session),
+        options_(options),
+        progress_(progress),
+        looked_(options.looks.size(), start_) {
+    for (const Look& look : options.looks) shortest_ = std::min(shortest_, look.seconds);
+  }
+
+  /// Renders until every pixel has `total` samples, or until it is stopped; returns how many it
+  /// has.
+  std::uint32_t to_samples(std::uint32_t total) {
+    std::uint32_t done = session_.samples();
+    // A pass has as many samples as take up to half the time between two looks.
+    for (std::uint32_t samples = options_.looks.empty() ? total : 1; done < total;) {
+      const Clock::time_point begin = Clock::now();
+      samples = std::min(samples, total - done);
+      const std::uint32_t more = session_.render(
+          samples,
+          [&](const SessionProgress& now) {
+            heard(now);
+            if (progress_) {
+              Progress told{(done + now.fraction * samples) / total,
+                            narrow<int>(done + now.samples_done),
+                            now.samples_per_second,
+                            {}};
+              if (options_.noise) told.fraction = 0;  // how much will follow is not known yet
+              progress_(told);
+            }
+          },
+          time_left());
+      done += more;
+      if (more < samples || stopped()) break;
+      const double seconds = seconds_since(begin);
+      if (seconds < shortest_ / 4) samples *= 2;
+      if (seconds > shortest_ / 2) samples = std::max<std::uint32_t>(1, samples / 2);
+      if (done < total) look({});
+    }
+    return done;
+  }
+
+  /// Renders until each pixel has what its target wants, or until it is stopped; returns the film.
+  Film to_noise(const NoiseTarget& target, NoiseReached& reached) {
+    const bool begun =
+        session_.samples() >= target.least || to_samples(target.least) == target.least;
+    while (true) {
+      Film film = session_.film();
+      if (film.parts().size() > 1)
+        throw InputError("the film has gaps between its samples: it has no next ones");
+      SamplePlan plan =
+          plan_samples(film, film.parts().empty() ? 0 : film.parts().front().sample_begin, target);
+      const auto pixels = static_cast<double>(film.layout().window.pixels());
+      reached = {plan.noise, film.mean_samples()};
+      const double done = pixels * reached.mean_samples, all = done + plan.paths_left;
+      if (plan.empty() || !begun || stopped()) return film;
+      look(film);
+      double here = 0;  // of the plan's paths
+      while (!plan.empty()) {
+        const Clock::time_point begin = Clock::now();
+        std::vector<PixelSamples> next =
+            plan.take(options_.looks.empty() ? plan.paths : speed_ * shortest_ / 2);
+        double paths = 0;
+        for (const PixelSamples& each : next)
+          paths += static_cast<double>(each.pixels.size()) * each.count;
+        const bool complete = session_.render(
+            std::move(next),
+            [&](const SessionProgress& now) {
+              heard(now);
+              const double more = done + here + now.fraction * paths;
+              if (progress_)
+                progress_({more / all, static_cast<int>(more / pixels), now.samples_per_second,
+                           reached.noise});
+            },
+            time_left());
+        here += paths;
+        speed_ = paths / std::max(1e-3, seconds_since(begin));
+        if (!complete || stopped()) return session_.film();
+        if (!plan.empty()) look({});
+      }
+    }
+  }
+
+  double seconds() const { return seconds_since(start_); }
+  double first_pass_seconds() const { return first_pass_seconds_; }
+  bool cancelled() const { return options_.cancelled && options_.cancelled(); }
+
+ private:
+  bool stopped() const {
+    return cancelled() || (options_.time_limit && seconds() >= *options_.time_limit);
+  }
+  std::optional<double> time_left() const {
+    if (!options_.time_limit) return {};
+    return std::max(0.0, *options_.time_limit - seconds());
+  }
+  /// A pass of one batch hears of an interrupt when it is complete.
+  void heard(const SessionProgress& now) {
+    if (now.samples_done > 0 && first_pass_seconds_ == 0) first_pass_seconds_ = seconds();
+    speed_ = now.samples_per_second;
+    if (cancelled()) session_.cancel();
+  }
+  /// Calls the looks whose time has come, with the film if it is at hand.
+  void look(const std::optional<Film>& at_hand) {
+    std::optional<Film> film;
+    for (std::size_t i = 0; i < looked_.size(); ++i) {
+      if (seconds_since(looked_[i]) < options_.looks[i].seconds) continue;
+      if (!at_hand && !film) film = session_.film();
+      options_.looks[i].show(at_hand ? *at_hand : *film);
+      looked_[i] = Clock::now();
+    }
+  }
+
+  Session& session_;
+  const RenderOptions& options_;
+  const std::function<void(const Progress&)>& progress_;
+  const Clock::time_point start_ = Clock::now();
+  std::vector<Clock::time_point> looked_;
+  double shortest_ = std::numeric_limits<double>::infinity();
+  double speed_ = 1e6;  // paths a second
+  double first_pass_seconds_ = 0;
+};
+
+}  // namespace
+
 RenderResult render(Session& session, std::span<const Device> devices, const RenderOptions& options,
                     const std::function<void(const Progress&)>& progress) {
-  const auto total = static_cast<std::uint32_t>(options.samples_per_pixel);
   RenderResult result;
   result.compile_seconds = session.compile_seconds();
   result.stage_compile_seconds = session.compile_seconds_by_stage();
-  const Clock::time_point start = Clock::now();
-  if (progress) progress({0, 0, 0});
-  std::uint32_t done = session.samples();
-  const auto pass = [&](std::uint32_t samples) {
-    std::optional<double> time_left = options.time_limit;
-    if (time_left) *time_left = std::max(0.0, *time_left - seconds_since(start));
-    const std::uint32_t more = session.render(
-        samples,
-        [&](const SessionProgress& now) {
-          if (now.samples_done > 0 && result.first_pass_seconds == 0)
-            result.first_pass_seconds = seconds_since(start);
-          if (options.cancelled && options.cancelled()) session.cancel();
-          if (progress)
-            progress({(done + now.fraction * samples) / total, narrow<int>(done + now.samples_done),
-                      now.samples_per_second});
-        },
-        time_left);
-    done += more;
-    // A pass of one batch hears of it when it is complete.
-    return more == samples && !(options.cancelled && options.cancelled());
-  };
-  if (!options.looks.empty()) {
-    const double shortest = std::ranges::min(options.looks, {}, &Look::seconds).seconds;
-    std::vector<Clock::time_point> last(options.looks.size(), start);
-    // A pass has as many samples as take up to half the time between two looks.
-    for (std::uint32_t samples = 1; done < total;) {
-      const Clock::time_point begin = Clock::now();
-      if (!pass(std::min(samples, total - done)) ||
-          (options.time_limit && seconds_since(start) >= *options.time_limit))
-        break;
-      const double seconds = seconds_since(begin);
-      if (seconds < shortest / 4) samples *= 2;
-      if (seconds > shortest / 2) samples = std::max<std::uint32_t>(1, samples / 2);
-      if (done >= total) break;
-      std::optional<Film> film;
-      for (std::size_t i = 0; i < last.size(); ++i) {
-        if (seconds_since(last[i]) < options.looks[i].seconds) continue;
-        if (!film) film = session.film();
-        options.looks[i].show(*film);
-        last[i] = Clock::now();
-      }
-    }
-  } else if (done < total) {
-    pass(total - done);
+  Course course(session, options, progress);
+  if (progress) progress({0, 0, 0, {}});
+  if (options.noise) {
+    result.film = course.to_noise(*options.noise, result.reached.emplace());
+  } else if (!session.is_even()) {
+    const auto all = static_cast<std::uint32_t>(options.samples_per_pixel);
+    NoiseReached ignored;
+    result.film = course.to_noise({0, all, all}, ignored);
   }
-  result.interrupted = options.cancelled && options.cancelled();
-  if (options.film_on_device) result.device_film = session.film_on_device();
-  if (!result.device_film) result.film = session.film();
-  result.render_seconds = seconds_since(start);
-  result.samples_per_pixel = narrow<int>(done);
+  if (options.noise || !result.film.parts().empty()) {
+    result.samples_per_pixel = static_cast<int>(std::lround(result.film.mean_samples()));
+  } else {
+    result.samples_per_pixel =
+        narrow<int>(course.to_samples(static_cast<std::uint32_t>(options.samples_per_pixel)));
+    if (options.film_on_device) result.device_film = session.film_on_device();
+    if (!result.device_film) result.film = session.film();
+  }
+  result.interrupted = course.cancelled();
+  result.first_pass_seconds = course.first_pass_seconds();
+  result.render_seconds = course.seconds();
   const RayCounts rays = session.rays();
   result.camera_rays = rays.camera;
   result.bounce_rays = rays.bounce;

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "device/device.h"
+#include "film/sample_plan.h"
 #include "lower/flat_scene.h"
 #include "render/renderer.h"
 #include "render/session.h"
@@ -26,8 +27,10 @@ struct Look {
 };
 
 struct RenderOptions {
-  std::uint32_t sample_begin = 0;    // the first sample of every pixel
-  int samples_per_pixel = 16;        // from that one on
+  std::uint32_t sample_begin = 0;  // the first sample of every pixel
+  int samples_per_pixel = 16;      // from that one on
+  std::optional<NoiseTarget>
+      noise;  // in its place: samples of each pixel until it has little noise
   std::optional<double> time_limit;  // seconds; the pass under way is finished
   std::function<bool()> cancelled;   // asked after each batch: no more passes when true
   std::size_t batch_paths = 0;       // 0: chosen for the device
@@ -43,14 +46,22 @@ struct Progress {
   double fraction = 0;  // 0..1
   int samples_done = 0;
   double samples_per_second = 0;  // paths
+  std::optional<double> noise;    // of the picture, when it is rendered to a noise and it is known
+};
+
+/// NoiseReached is how far a render to a NoiseTarget came.
+struct NoiseReached {
+  double noise = 0;  // as its pixels' neighbours say
+  double mean_samples = 0;
 };
 
 struct RenderResult {
   Film film;
   std::optional<DeviceFilm> device_film;  // the same, to be read in parts
-  int samples_per_pixel = 0;              // in the film
-  bool interrupted = false;               // cancelled
-  std::optional<double> noise;            // of the picture that was written, over its mean
+  int samples_per_pixel = 0;              // in the film; in the mean, where it is one of a target
+  std::optional<NoiseReached> reached;
+  bool interrupted = false;     // cancelled
+  std::optional<double> noise;  // of the picture that was written, over its mean
   double compile_seconds = 0, render_seconds = 0, first_pass_seconds = 0;
   std::uint64_t camera_rays = 0, bounce_rays = 0, shadow_rays = 0;
   std::uint64_t peak_device_bytes = 0;

@@ -184,33 +184,64 @@ void Renderer::pass(const Window& window, std::uint32_t sample_begin, std::uint3
   add_part(film_.parts, {window, sample_begin, sample_count});
   if (window != film_.layout.window) clear_film();
   const bool first_pass = std::exchange(is_old_, false);
-  const LaunchPolicy policy = launch_policy_of(scene_.device());
   const std::size_t pixels = window.pixels(), per_batch = batch_paths_ / sample_count;
   for (std::size_t first = 0; first < pixels; first += per_batch) {
     const std::size_t count = std::min(per_batch, pixels - first);
-    BatchRecord record{};
+    BatchRecord record = batch_of(count, sample_count);
     record.window_x = narrow<uint>(window.x);
     record.window_y = narrow<uint>(window.y);
     record.window_width = narrow<uint>(window.width);
     record.window_height = narrow<uint>(window.height);
     record.pixel_begin = narrow<uint>(first);
-    record.pixel_count = narrow<uint>(count);
     record.sample_begin = sample_begin;
-    record.sample_count = sample_count;
-    record.path_count = narrow<uint>(count * sample_count);
-    record.sort_bits = sort_bits_;
-    record.layers = layers_.bits();
-    record.layer_floats = narrow<uint>(film_.layout.floats_per_path());
-    record.film_words = narrow<uint>(film_.layout.words_per_pixel());
-    record.color_exponent = film_.layout.color_exponent;
-    record.length_exponent = film_.layout.length_exponent;
     record.first = first_pass ? 1 : 0;
-    record.by_sample = policy.by_sample ? 1 : 0;
-    record.layers_apart = policy.layers_apart ? 1 : 0;
-    record.sort_fan = policy.sort_fan;
     batch(record);
     if (batch_done) batch_done(first + count);
   }
+}
+
+void Renderer::pass(std::span<const PixelRecord> pixels, std::uint32_t sample_count,
+                    const std::function<void(std::size_t)>& batch_done) {
+  CHECK_LT_(0u, sample_count);
+  clear_film();
+  const auto most_samples =
+      static_cast<std::uint32_t>(std::min<std::size_t>(sample_count, batch_paths_));
+  const std::size_t per_batch = std::min(batch_paths_ / most_samples, pixels.size());
+  Buffer<PixelRecord>& listed = paths_.batch.batch_pixels;
+  if (listed.size() < per_batch) listed = Buffer<PixelRecord>(scene_.device(), per_batch);
+  for (std::size_t first = 0; first < pixels.size(); first += per_batch) {
+    const std::span<const PixelRecord> now =
+        pixels.subspan(first, std::min(per_batch, pixels.size() - first));
+    std::vector<PixelRecord> records(now.begin(), now.end());
+    for (std::uint32_t done = 0; done < sample_count;) {
+      const std::uint32_t samples = std::min(most_samples, sample_count - done);
+      listed.write(records);
+      BatchRecord record = batch_of(records.size(), samples);
+      record.listed = 1;
+      batch(record);
+      for (PixelRecord& each : records) each.sample_begin += samples;
+      done += samples;
+    }
+    if (batch_done) batch_done(first + now.size());
+  }
+}
+
+BatchRecord Renderer::batch_of(std::size_t count, std::uint32_t sample_count) const {
+  const LaunchPolicy policy = launch_policy_of(scene_.device());
+  BatchRecord record{};
+  record.pixel_count = narrow<uint>(count);
+  record.sample_count = sample_count;
+  record.path_count = narrow<uint>(count * sample_count);
+  record.sort_bits = sort_bits_;
+  record.layers = layers_.bits();
+  record.layer_floats = narrow<uint>(film_.layout.floats_per_path());
+  record.film_words = narrow<uint>(film_.layout.words_per_pixel());
+  record.color_exponent = film_.layout.color_exponent;
+  record.length_exponent = film_.layout.length_exponent;
+  record.by_sample = policy.by_sample ? 1 : 0;
+  record.layers_apart = policy.layers_apart ? 1 : 0;
+  record.sort_fan = policy.sort_fan;
+  return record;
 }
 
 // kernels/stages/path.cl describes the algorithm.

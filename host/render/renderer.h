@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <span>
 #include <vector>
 
 #include "device/device.h"
@@ -60,6 +61,11 @@ class Renderer {
   void pass(const Window& window, std::uint32_t sample_begin, std::uint32_t sample_count,
             const std::function<void(std::size_t)>& batch_done = {});
 
+  /// Adds the next `sample_count` samples of each of these pixels, which lie within the film's
+  /// window, each at most once. The film's parts do not tell of them. Throws RunError.
+  void pass(std::span<const PixelRecord> pixels, std::uint32_t sample_count,
+            const std::function<void(std::size_t)>& batch_done = {});
+
   /// Returns the film so far. It is valid until the next pass or reset.
   const DeviceFilm& film() const;
   const FilmLayout& layout() const { return film_.layout; }
@@ -70,6 +76,8 @@ class Renderer {
   std::uint64_t beats() const { return beats_; }
 
  private:
+  /// Returns a batch of `count` pixels with so many samples each, of no window.
+  BatchRecord batch_of(std::size_t count, std::uint32_t sample_count) const;
   void batch(const BatchRecord& record);
   /// These render the rounds of a batch until no path is left: the host queries the number in each
   /// round, or launches several rounds at a time for the most paths there may be.

@@ -36,8 +36,7 @@ struct Session::Worker {
   DeviceWork work() const {
     DeviceWork out = work_of(device.info());
     out.paths_a_second = speed.paths_a_second();
-    for (const FilmPart& part : had)
-      out.paths += static_cast<double>(part.window.pixels()) * part.sample_count;
+    for (const Work& work : had) out.paths += work.paths();
     return out;
   }
   Device device;
@@ -45,7 +44,7 @@ struct Session::Worker {
   FlatView view;
   Renderer renderer;
   Speed speed;
-  std::vector<FilmPart>
+  std::vector<Work>
       had;  // what is in its film; unlike the renderer's own list, never changed while it hangs
 };
 
@@ -63,6 +62,25 @@ std::string text_of(const std::exception_ptr& failure, double patience) {
 void warn_of_lost(const Device& device, const std::exception_ptr& failure, double patience) {
   log::warn("device {} '{}' {}: the others do its work again", device.info().index,
             device.info().name, text_of(failure, patience));
+}
+
+void warn_of_not_finite(std::uint64_t samples) {
+  if (samples > 0) log::warn("{} samples were not finite and count as black", samples);
+}
+
+/// Adds work that is done to the list of it; parts of windows are joined where possible.
+void add_work(std::vector<Work>& had, const Work& work) {
+  if (!work.samples) {
+    std::vector<FilmPart> parts;
+    std::erase_if(had, [&](const Work& each) {
+      if (!each.samples) parts.push_back(each.part);
+      return !each.samples;
+    });
+    add_part(parts, work.part);
+    for (const FilmPart& part : parts) had.push_back({part, nullptr});
+  } else {
+    had.push_back(work);
+  }
 }
 
 StageSeconds& add(StageSeconds& to, const StageSeconds& more) {
@@ -92,13 +110,13 @@ struct Session::Run {
 
   void tell(std::size_t member, double paths) {
     under_way[member] = paths;
-    if (!progress || fatal || asked == 0) return;
+    if (!progress || fatal || asked_paths == 0) return;
     double done = shares.paths_done();
     for (const double each : under_way) done += each;
-    const auto samples = std::min(shares.paths_done() / pixels, static_cast<double>(asked));
+    const double samples = std::clamp(shares.paths_done(), 0.0, asked_paths) / pixels;
     try {
-      progress({static_cast<std::uint32_t>(std::max(0.0, samples)), asked,
-                std::clamp(done / pixels / asked, 0.0, 1.0),
+      progress({static_cast<std::uint32_t>(samples), asked,
+                std::clamp(done / asked_paths, 0.0, 1.0),
                 done / std::max(1e-9, seconds_since(start))});
     } catch (...) {
       fatal = std::current_exception();
@@ -110,6 +128,7 @@ struct Session::Run {
   std::vector<double> under_way;  // paths of finished batches of unfinished parts
   double pixels = 1;
   std::uint32_t asked = 0;
+  double asked_paths = 0;
   Clock::time_point start = Clock::now();
   std::function<void(const SessionProgress&)> progress;
   std::exception_ptr fatal;  // of the caller's function
@@ -194,6 +213,7 @@ void Session::clear() {
   }
   before_.reset();
   again_.clear();
+  has_lists_ = false;
   first_ = next_ = options_.sample_begin;
 }
 
@@ -234,6 +254,7 @@ void Session::update(const FlatScene& scene, const SceneChanges& changes, const 
   part_with(gone, failure);
   before_.reset();
   again_.clear();
+  has_lists_ = false;
   first_ = next_ = options_.sample_begin;
 }
 
@@ -256,18 +277,40 @@ std::uint32_t Session::render(std::uint32_t sample_count,
                               const std::function<void(const SessionProgress&)>& progress,
                               std::optional<double> time_limit) {
   sample_count = std::min(sample_count, std::numeric_limits<std::uint32_t>::max() - next_);
+  if (sample_count > 0 && !is_even()) {
+    const Film now = film();
+    const std::uint32_t begin =
+        now.parts().empty() ? options_.sample_begin : now.parts().front().sample_begin;
+    return render({next_samples(now, begin, sample_count)}, progress, time_limit) ? sample_count
+                                                                                  : 0;
+  }
   const std::uint64_t not_finite = rays().not_finite;
-  const std::uint32_t done = run(sample_count, progress, time_limit);
+  const std::uint32_t done = run({sample_count}, progress, time_limit)->shares.samples();
   *cancelled_ = false;
-  if (rays().not_finite > not_finite)
-    log::warn("{} samples were not finite and count as black", rays().not_finite - not_finite);
+  warn_of_not_finite(rays().not_finite - not_finite);
   next_ += done;
   return done;
 }
 
-std::uint32_t Session::run(std::uint32_t sample_count,
-                           const std::function<void(const SessionProgress&)>& progress,
-                           std::optional<double> time_limit) {
+bool Session::render(std::vector<PixelSamples> samples,
+                     const std::function<void(const SessionProgress&)>& progress,
+                     std::optional<double> time_limit) {
+  const std::uint64_t not_finite = rays().not_finite;
+  std::uint32_t end = next_;
+  for (const PixelSamples& each : samples)
+    for (const PixelRecord& pixel : each.pixels)
+      end = std::max(end, pixel.sample_begin + each.count);
+  const auto done = run({0, std::move(samples)}, progress, time_limit);
+  *cancelled_ = false;
+  warn_of_not_finite(rays().not_finite - not_finite);
+  next_ = end;
+  has_lists_ = true;
+  return done->shares.paths_done() == done->asked_paths;
+}
+
+std::shared_ptr<Session::Run> Session::run(
+    Asked asked, const std::function<void(const SessionProgress&)>& progress,
+    std::optional<double> time_limit) {
   const Window window = layout().window;
   const std::size_t pixels = std::max<std::size_t>(1, window.pixels());
   std::vector<WorkQueue::Worker> members;
@@ -279,10 +322,17 @@ std::uint32_t Session::run(std::uint32_t sample_count,
                                                        : fill;
     members.push_back({worker->speed, batch, static_cast<std::uint32_t>(std::min(most, batch))});
   }
+  double asked_paths = static_cast<double>(pixels) * asked.samples;
+  for (const PixelSamples& each : asked.lists)
+    asked_paths += static_cast<double>(each.pixels.size()) * each.count;
+  std::vector<Work> again = std::exchange(again_, {});
   const auto run = std::make_shared<Run>(
-      workers_, WorkQueue(window, next_, sample_count, std::exchange(again_, {}), members));
+      workers_, asked.lists.empty()
+                    ? WorkQueue(window, next_, asked.samples, std::move(again), members)
+                    : WorkQueue(std::move(asked.lists), std::move(again), members));
   run->pixels = static_cast<double>(pixels);
-  run->asked = sample_count;
+  run->asked = asked.samples;
+  run->asked_paths = asked_paths;
   run->progress = progress;
   const auto beats = [run](std::size_t i) { return run->workers[i]->renderer.beats(); };
   const auto lost = [run, patience = options_.patience](std::size_t i,
@@ -303,29 +353,34 @@ std::uint32_t Session::run(std::uint32_t sample_count,
       const bool late =
           time_limit && run->shares.begun() && seconds_since(run->start) >= *time_limit;
       if (*cancelled || late) run->shares.close();
-      const std::optional<FilmPart> part = run->shares.take(i);
-      if (!part) {
+      const std::optional<Work> work = run->shares.take(i);
+      if (!work) {
         if (run->shares.complete() || run->shares.workers_there() == 0) break;
         pool_of->wait(lock);
         continue;
       }
       const Clock::time_point start = Clock::now();
       const bool there = pool_of->attempt(i, lock, [&] {
+        const std::uint32_t samples =
+            work->samples ? work->samples->count : work->part.sample_count;
+        const auto batch_done = [&](std::size_t pixels_done) {
+          const WorkerPool::Lock telling(pool_of->mutex());
+          if (!pool_of->gone(i)) run->tell(i, static_cast<double>(pixels_done) * samples);
+          if (run->fatal) throw PassGivenUp();
+        };
         try {
-          worker.renderer.pass(
-              part->window, part->sample_begin, part->sample_count, [&](std::size_t pixels_done) {
-                const WorkerPool::Lock telling(pool_of->mutex());
-                if (!pool_of->gone(i))
-                  run->tell(i, static_cast<double>(pixels_done) * part->sample_count);
-                if (run->fatal) throw PassGivenUp();
-              });
+          if (work->samples)
+            worker.renderer.pass(std::span(work->samples->pixels).subspan(work->first, work->count),
+                                 samples, batch_done);
+          else
+            worker.renderer.pass(work->part.window, work->part.sample_begin, samples, batch_done);
         } catch (const PassGivenUp&) {  // the film is cleared below
         }
       });
       if (!there || run->fatal) break;
       run->shares.done(i, seconds_since(start));
       worker.speed = run->shares.speed(i);
-      add_part(worker.had, *part);
+      add_work(worker.had, *work);
       run->tell(i, 0);
       pool_of->notify();
     }
@@ -342,7 +397,7 @@ std::uint32_t Session::run(std::uint32_t sample_count,
     std::rethrow_exception(fatal);
   }
   part_with(run->gone, run->last_failure);
-  return run->shares.samples();
+  return run;
 }
 
 /// Returns the sum of the workers' films; nothing when one of them could not be read.
@@ -373,15 +428,16 @@ std::optional<Film> Session::gather() {
   for (std::size_t i = 1; i < run->films.size(); ++i) out.add(*run->films[i]);
   // Whatever worker rendered what, it is all samples of the window, though its parts may not be
   // such that join.
-  if (out.parts().size() < 2) return out;
-  return Film(out.layout(), {out.words().begin(), out.words().end()},
-              {{out.layout().window, first_, next_ - first_}});
+  if (out.parts().size() < 2 && !has_lists_) return out;
+  std::vector<FilmPart> parts;
+  if (next_ > first_) parts.push_back({out.layout().window, first_, next_ - first_});
+  return Film(out.layout(), {out.words().begin(), out.words().end()}, std::move(parts));
 }
 
 Film Session::film() {
   std::optional<Film> film = gather();
   while (!film) {
-    run(0, {}, {});
+    run({}, {}, {});
     film = gather();
   }
   if (before_) film->add(*before_);
@@ -389,7 +445,7 @@ Film Session::film() {
 }
 
 std::optional<DeviceFilm> Session::film_on_device() const {
-  if (workers_.size() > 1 || before_ || !again_.empty()) return {};
+  if (workers_.size() > 1 || before_ || has_lists_ || !again_.empty()) return {};
   return workers_.front()->renderer.film();
 }
 

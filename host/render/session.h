@@ -15,12 +15,15 @@
 
 #include "device/device.h"
 #include "film/film.h"
+#include "film/sample_plan.h"
 #include "lower/changes.h"
 #include "lower/flat_scene.h"
 #include "render/device_scene.h"
 #include "render/renderer.h"
 
 namespace caplet {
+
+struct Work;
 
 struct SessionOptions {
   std::uint32_t sample_begin = 0;  // the first that is rendered of every pixel
@@ -35,8 +38,8 @@ struct SessionOptions {
 };
 
 struct SessionProgress {
-  std::uint32_t samples_done = 0;  // of every pixel, by all devices
-  std::uint32_t sample_count = 0;  // asked for
+  std::uint32_t samples_done = 0;  // of every pixel, by all devices; the mean of listed pixels
+  std::uint32_t sample_count = 0;  // asked for; 0 for listed pixels
   double fraction = 0;             // of all paths, those of batches that are done counted
   double samples_per_second = 0;   // of all pixels
 };
@@ -76,15 +79,24 @@ class Session {
   /// it is not of this scene's layout.
   void resume(Film film);
 
-  /// Adds the next `sample_count` samples of every pixel, on a thread a device (a device alone: on
-  /// this one), and returns how many of them were finished: fewer when it is cancelled, or its time
-  /// limit (seconds) is over, which some are always begun before. Samples that are begun are
-  /// finished for every pixel. `progress`, when there is one, is called from these threads, one at
-  /// a time, after each batch; what it throws ends the render after the batches under way, and is
-  /// thrown. Throws RunError when the last device fails. After either the film is empty.
+  /// Adds the next `sample_count` samples of every pixel (of pixels with different numbers: the
+  /// next of each, all of them or as when lists are stopped, which returns 0), on a thread a device
+  /// (a device alone: on this one), and returns how many of them were finished: fewer when it is
+  /// cancelled, or its time limit (seconds) is over, which some are always begun before. Samples
+  /// that are begun are finished for every pixel. `progress`, when there is one, is called from
+  /// these threads, one at a time, after each batch; what it throws ends the render after the
+  /// batches under way, and is thrown. Throws RunError when the last device fails. After either the
+  /// film is empty.
   std::uint32_t render(std::uint32_t sample_count,
                        const std::function<void(const SessionProgress&)>& progress = {},
                        std::optional<double> time_limit = {});
+
+  /// Adds these samples, which the pixels do not have yet, likewise, and returns whether all of
+  /// them were finished. When it is stopped, parts that are begun are finished, and other pixels
+  /// have none of their samples. The film is that of samples up to the last of any pixel.
+  bool render(std::vector<PixelSamples> samples,
+              const std::function<void(const SessionProgress&)>& progress = {},
+              std::optional<double> time_limit = {});
 
   /// Returns the sum of all films. A device that fails now is left out as well, and its work is
   /// rendered again. Throws RunError.
@@ -93,8 +105,11 @@ class Session {
   /// samples that it was resumed with.
   std::optional<DeviceFilm> film_on_device() const;
   FilmLayout layout() const;
-  /// Returns how many samples of every pixel its film has, those before its own among them.
+  /// Returns how many samples of every pixel its film has, those before its own among them; where
+  /// pixels have different numbers, the largest that any may have.
   std::uint32_t samples() const { return next_ - options_.sample_begin; }
+  /// Returns whether all pixels have as many.
+  bool is_even() const { return !has_lists_ && (!before_ || before_->is_even()); }
 
   /// Stops the render under way after the samples that are begun; if there is none, stops the next
   /// one. It may be called from any thread, and from a progress function.
@@ -119,18 +134,23 @@ class Session {
   using Workers = std::vector<std::shared_ptr<Worker>>;
   void clear();
   void part_with(const Workers& gone, const std::exception_ptr& last_failure);
-  std::uint32_t run(std::uint32_t sample_count,
-                    const std::function<void(const SessionProgress&)>& progress,
-                    std::optional<double> time_limit);
+  /// Asked is samples of every pixel, or those of lists.
+  struct Asked {
+    std::uint32_t samples = 0;
+    std::vector<PixelSamples> lists{};
+  };
+  std::shared_ptr<Run> run(Asked asked, const std::function<void(const SessionProgress&)>& progress,
+                           std::optional<double> time_limit);
   std::optional<Film> gather();
 
   SessionOptions options_;
   Workers workers_;
   std::vector<DeviceWork> lost_;
-  std::vector<FilmPart> again_;  // what was lost with devices and is in no film now
-  std::optional<Film> before_;   // what it was resumed with
+  std::vector<Work> again_;     // what was lost with devices and is in no film now
+  std::optional<Film> before_;  // what it was resumed with
   std::uint32_t first_,
       next_;  // the samples that its devices have rendered: up to, and without, the latter
+  bool has_lists_ = false;  // not of every pixel
   std::shared_ptr<std::atomic<bool>> cancelled_ = std::make_shared<std::atomic<bool>>(false);
 };
 

@@ -3,6 +3,7 @@
 #include "render/detail/work_queue.h"
 
 #include <algorithm>
+#include <limits>
 #include <numeric>
 #include <utility>
 
@@ -13,13 +14,14 @@ namespace {
 // Camera rays are numbered in tiles of 8 x 8 pixels (kernels/stages/path.cl).
 constexpr int tile_rows = 8;
 
-double paths_of(const FilmPart& part) {
-  return static_cast<double>(part.window.pixels()) * part.sample_count;
-}
-
 std::uint32_t end_of(const FilmPart& part) { return part.sample_begin + part.sample_count; }
 
 }  // namespace
+
+double Work::paths() const {
+  return samples ? static_cast<double>(count) * samples->count
+                 : static_cast<double>(part.window.pixels()) * part.sample_count;
+}
 
 void Speed::measured(double paths, double seconds) {
   paths_ = 0.5 * paths_ + paths;
@@ -61,22 +63,53 @@ FilmPart cut_part(const FilmPart& from, double paths, std::uint32_t most_samples
   return part;
 }
 
-WorkQueue::WorkQueue(const Window& window, std::uint32_t begin, std::uint32_t count,
-                     std::vector<FilmPart> again, std::vector<Worker> workers)
-    : begin_(begin),
-      end_(begin + count),
-      begun_end_(begin),
-      open_(again.begin(), again.end()),
-      workers_(std::move(workers)) {
-  if (count > 0) open_.push_back({window, begin, count});
+Work cut_work(const Work& from, double paths, std::uint32_t most_samples, std::vector<Work>& rest) {
+  Work out = from;
+  if (from.samples) {
+    const double pixels = std::max(1.0, paths / from.samples->count);
+    if (pixels >= static_cast<double>(from.count)) return out;
+    out.count = static_cast<std::size_t>(pixels);
+    Work other = from;
+    other.first += out.count;
+    other.count -= out.count;
+    rest.push_back(std::move(other));
+    return out;
+  }
+  std::vector<FilmPart> parts;
+  out.part = cut_part(from.part, paths, most_samples, parts);
+  for (const FilmPart& part : parts) {
+    rest.push_back(from);
+    rest.back().part = part;
+  }
+  return out;
 }
 
-std::optional<FilmPart> WorkQueue::take(std::size_t worker) {
+WorkQueue::WorkQueue(const Window& window, std::uint32_t begin, std::uint32_t count,
+                     std::vector<Work> again, std::vector<Worker> workers)
+    : begin_(begin), end_(begin + count), begun_end_(begin), workers_(std::move(workers)) {
+  open_again(std::move(again));
+  if (count > 0) open_.push_back({{window, begin, count}, nullptr});
+}
+
+WorkQueue::WorkQueue(std::vector<PixelSamples> samples, std::vector<Work> again,
+                     std::vector<Worker> workers)
+    : begin_(std::numeric_limits<std::uint32_t>::max()),  // no sample of the window is new
+      end_(begin_),
+      begun_end_(begin_),
+      workers_(std::move(workers)) {
+  open_again(std::move(again));
+  for (PixelSamples& each : samples) {
+    const std::size_t count = each.pixels.size();
+    lists_.push_back(std::make_shared<const PixelSamples>(std::move(each)));
+    open_.push_back({{}, lists_.back(), 0, count});
+  }
+}
+
+std::optional<Work> WorkQueue::take(std::size_t worker) {
   Worker& to = workers_[worker];
   if (open_.empty() || !to.there) return {};
-  const FilmPart from = open_.front();
-  std::uint32_t most_samples = to.most_samples;
-  double paths = paths_of(from);
+  const Work from = open_.front();
+  double paths = from.paths();
   if (workers_.size() > 1) {
     double known = 0, there = 0, fastest = 0;
     for (const Worker& each : workers_)
@@ -91,7 +124,7 @@ std::optional<FilmPart> WorkQueue::take(std::size_t worker) {
       const double all = known / there * static_cast<double>(workers_there());
       paths = part_paths(open_paths(), speed, all);
       // A worker gets nothing if it is so slow that the others would finish before it had one row.
-      const double least = from.window.width;
+      const double least = from.samples ? 1 : from.part.window.width;
       if (speed < fastest && least / speed > open_paths() / (known - speed) + least_part_seconds)
         return {};
     } else {
@@ -99,39 +132,46 @@ std::optional<FilmPart> WorkQueue::take(std::size_t worker) {
                        0.5 * open_paths() / static_cast<double>(workers_there()));
     }
   }
-  std::vector<FilmPart> rest;
-  const FilmPart part = cut_part(from, paths, most_samples, rest);
+  // A list, of few samples a pixel or many, is stopped only between parts.
+  if (from.samples) paths = std::min(paths, static_cast<double>(to.batch_paths));
+  std::vector<Work> rest;
+  const Work work = cut_work(from, paths, to.most_samples, rest);
   open_.pop_front();
   open_.insert(open_.begin(), rest.begin(), rest.end());
-  begun_end_ = std::max(begun_end_, std::min(end_of(part), end_));
-  to.under_way = part;
-  return part;
+  if (work.samples)
+    list_begun_ |= !work.again;
+  else
+    begun_end_ = std::max(begun_end_, std::min(end_of(work.part), end_));
+  to.under_way = work;
+  return work;
 }
 
 void WorkQueue::done(std::size_t worker, double seconds) {
   Worker& by = workers_[worker];
-  by.speed.measured(paths_of(*by.under_way), seconds);
+  by.speed.measured(by.under_way->paths(), seconds);
   paths_done_ += new_paths(*by.under_way);
   by.under_way.reset();
 }
 
-void WorkQueue::lose(std::size_t worker, std::span<const FilmPart> had) {
+void WorkQueue::lose(std::size_t worker, std::span<const Work> had) {
   Worker& lost = workers_[worker];
   lost.there = false;
-  for (const FilmPart& part : had) paths_done_ -= new_paths(part);
+  for (const Work& work : had) paths_done_ -= new_paths(work);
   open_.insert(open_.begin(), had.begin(), had.end());
+  for (std::size_t i = 0; i < had.size(); ++i) open_[i].again = true;
   if (lost.under_way) open_.push_front(*lost.under_way);
   lost.under_way.reset();
-  std::ranges::stable_sort(open_, {}, &FilmPart::sample_begin);
+  std::ranges::stable_sort(open_, {}, [](const Work& work) { return work.part.sample_begin; });
 }
 
 void WorkQueue::close() {
   end_ = begun_end_;
-  std::deque<FilmPart> left;
-  for (FilmPart part : open_) {
-    if (part.sample_begin >= end_) continue;
-    part.sample_count = std::min(part.sample_count, end_ - part.sample_begin);
-    left.push_back(part);
+  std::deque<Work> left;
+  for (Work& work : open_) {
+    if (!work.again && (work.samples || work.part.sample_begin >= end_)) continue;
+    if (!work.again)
+      work.part.sample_count = std::min(work.part.sample_count, end_ - work.part.sample_begin);
+    left.push_back(std::move(work));
   }
   open_ = std::move(left);
 }
@@ -149,13 +189,23 @@ std::size_t WorkQueue::workers_there() const {
 
 double WorkQueue::open_paths() const {
   return std::accumulate(open_.begin(), open_.end(), 0.0,
-                         [](double sum, const FilmPart& part) { return sum + paths_of(part); });
+                         [](double sum, const Work& work) { return sum + work.paths(); });
 }
 
-double WorkQueue::new_paths(const FilmPart& part) const {
+double WorkQueue::new_paths(const Work& work) const {
+  if (work.samples)
+    return std::ranges::find(lists_, work.samples) == lists_.end() ? 0 : work.paths();
+  const FilmPart& part = work.part;
   const std::uint32_t end = end_of(part),
                       first = std::min(end, std::max(part.sample_begin, begin_));
   return static_cast<double>(part.window.pixels()) * (end - first);
+}
+
+void WorkQueue::open_again(std::vector<Work> again) {
+  for (Work& work : again) {
+    work.again = true;
+    open_.push_back(std::move(work));
+  }
 }
 
 }  // namespace caplet

@@ -42,8 +42,20 @@ BandedImage developed_in_bands(const DeviceFilm& film, const FilmSettings& setti
 
 BandedImage developed_in_bands(const Film& film, const FilmSettings& settings, Layers layers,
                                NotFinite& not_finite) {
-  return in_bands(film.layout(), settings, layers, not_finite,
-                  [&film](int first, int count) { return film.rows(first, count); });
+  BandedImage out = in_bands(film.layout(), settings, layers, not_finite,
+                             [&film](int first, int count) { return film.rows(first, count); });
+  if (film.is_even()) return out;
+  out.band = [&film, band = std::move(out.band)](int first, int count) {
+    LayeredImage rows = band(first, count);
+    Channel samples{"samples", {}, {}};
+    const auto width = static_cast<std::size_t>(rows.data_width),
+               begin = static_cast<std::size_t>(first) * width;
+    for (std::size_t i = 0; i < static_cast<std::size_t>(count) * width; ++i)
+      samples.uints.push_back(film.samples(begin + i));
+    rows.channels.push_back(std::move(samples));
+    return rows;
+  };
+  return out;
 }
 
 LayeredImage whole_of(const BandedImage& picture) {

@@ -16,7 +16,8 @@ namespace caplet::report {
 /// `film`, `settings`, `not_finite`.
 BandedImage developed_in_bands(const DeviceFilm& film, const FilmSettings& settings, Layers layers,
                                NotFinite& not_finite);
-/// Does the same for a film in memory.
+/// Does the same for a film in memory, with a channel `samples` where pixels have different numbers
+/// of them.
 BandedImage developed_in_bands(const Film& film, const FilmSettings& settings, Layers layers,
                                NotFinite& not_finite);
 

@@ -37,6 +37,12 @@ struct SamplerSettings {
   }
 };
 
+/// Returns whether the first samples of a pixel are as even as any number of them: those of the
+/// others are so at the number alone that they are made for.
+constexpr bool is_open_ended(SamplerSettings::Kind kind) {
+  return kind == SamplerSettings::Kind::sobol || kind == SamplerSettings::Kind::independent;
+}
+
 /// Lists the names in scene files, in the order of SamplerSettings::Kind.
 inline constexpr std::array sampler_names = {
 #define SAMPLER(name) #name,

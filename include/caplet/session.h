@@ -43,6 +43,11 @@ class CAPLET_API Session {
   /// Adds the next `samples` samples of every pixel to the film, and returns how many were
   /// finished. Blocks.
   int render(int samples, const RenderOptions& options = {});
+  /// Gives each pixel of the film the samples that it still needs for a noise (options.noise does
+  /// not count), and returns the noise that the film has. Blocks. Throws InputError when the target
+  /// is out of range, when the film was resumed with gaps between its samples, and with samplers
+  /// whose points are even at one number of samples alone (zsobol, stratified).
+  double render_to(const NoiseTarget& target, const RenderOptions& options = {});
   /// May be called from any thread: the render in progress, or else the next one, finishes its
   /// passes and starts no more.
   void cancel();

@@ -75,11 +75,11 @@ static inline uint path_hash(PathSample at, uint depth) {
   return hash_combine(hash_combine(at.seed ^ HASHED_SAMPLE(scattering), at.sample), depth);
 }
 
-// Returns the place of pixel number `pixel` of a batch in the full image. A window's pixels are
+// Returns the place of pixel number `pixel` of a window in the full image. A window's pixels are
 // numbered tile by tile of 8 x 8, so that camera rays of near numbers are neighbours: tiles in rows
 // from the top left, and pixels within each likewise; those at the right and lower edges are
 // smaller.
-static inline uint2 batch_pixel(__global const BatchRecord* batch, uint pixel) {
+static inline uint2 window_pixel(__global const BatchRecord* batch, uint pixel) {
   const uint width = batch->window_width, in_window = batch->pixel_begin + pixel;
   const uint band = in_window / (8u * width), in_band = in_window - band * 8u * width;
   const uint rows = min(8u, batch->window_height - 8u * band);
@@ -89,6 +89,17 @@ static inline uint2 batch_pixel(__global const BatchRecord* batch, uint pixel) {
                  batch->window_y + 8u * band + in_tile / columns);
 }
 
+// Returns pixel number `pixel` of a batch: its place in the full image, and its first sample.
+static inline PixelRecord batch_pixel(const Batch* g, uint pixel) {
+  if (g->batch->listed) return g->batch_pixels[pixel];
+  const uint2 place = window_pixel(g->batch, pixel);
+  PixelRecord out;
+  out.x = place.x;
+  out.y = place.y;
+  out.sample_begin = g->batch->sample_begin;
+  return out;
+}
+
 // Returns the number of a path of a batch: that of sample number `sample` of pixel number `pixel`.
 static inline uint path_number(__global const BatchRecord* batch, uint pixel, uint sample) {
   return batch->by_sample ? sample * batch->pixel_count + pixel
@@ -96,13 +107,13 @@ static inline uint path_number(__global const BatchRecord* batch, uint pixel, ui
 }
 
 // Returns the sample of path number `path` of a batch.
-static inline PathSample path_sample(__global const BatchRecord* batch,
-                                     __global const ViewRecord* view, uint path) {
-  const uint2 pixel =
-      batch_pixel(batch, batch->by_sample ? path % batch->pixel_count : path / batch->sample_count);
+static inline PathSample path_sample(const Batch* g, __global const ViewRecord* view, uint path) {
+  __global const BatchRecord* batch = g->batch;
+  const PixelRecord pixel =
+      batch_pixel(g, batch->by_sample ? path % batch->pixel_count : path / batch->sample_count);
   return sample_of_pixel(view, pixel.x, pixel.y,
-                         batch->sample_begin + (batch->by_sample ? path / batch->pixel_count
-                                                                 : path % batch->sample_count));
+                         pixel.sample_begin + (batch->by_sample ? path / batch->pixel_count
+                                                                : path % batch->sample_count));
 }
 
 // Returns the ray of a path that goes on from a point.

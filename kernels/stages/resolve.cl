@@ -59,10 +59,11 @@ static inline float3 sample_xyz(const Stage* g, uint path, int counted) {
 #undef HIT_LAYER
 #undef ID_LAYER
 
-// Returns the samples of a pixel of the batch, and in the upper half those of its first replicate.
-static inline ulong sample_counts(__global const BatchRecord* batch) {
-  const uint begin = batch->sample_begin, end = begin + batch->sample_count;
-  return (ulong)(end / 2u + end % 2u - (begin / 2u + begin % 2u)) << 32 | batch->sample_count;
+// Returns the number of samples [begin, begin + count), and in the upper half that of those of the
+// first replicate.
+static inline ulong sample_counts(uint begin, uint count) {
+  const uint end = begin + count;
+  return (ulong)(end / 2u + end % 2u - (begin / 2u + begin % 2u)) << 32 | count;
 }
 
 static inline float4 layer_at(__global const float* values, const int count) {
@@ -75,11 +76,12 @@ static void stage_item(const Stage* g, uint item) {
   const uint apart = batch->layers_apart, number = apart ? item % batch->pixel_count : item;
   uint left = apart ? item / batch->pixel_count : 0u;  // layers before the one that is this item's
 #define TAKES_LAYER (!apart || left-- == 0u)
-  const uint2 pixel = batch_pixel(batch, number);
+  const PixelRecord pixel = batch_pixel(&g->batch, number);
   const uint place = (pixel.y - view->crop_y) * view->crop_width + (pixel.x - view->crop_x);
   __global ulong* film = g->film.film + (size_t)place * batch->film_words;
   const int first = batch->first != 0u;
-  if (left == 0u) *film = (first ? 0ul : *film) + sample_counts(batch);
+  if (left == 0u)
+    *film = (first ? 0ul : *film) + sample_counts(pixel.sample_begin, batch->sample_count);
   ++film;
   const uint layers = batch->layers;
   const int color = batch->color_exponent, length = batch->length_exponent;
@@ -89,7 +91,7 @@ static void stage_item(const Stage* g, uint item) {
     if (TAKES_LAYER)                                                                      \
       ADD_SAMPLES(count, words, unit,                                                     \
                   radiance_layer_##name(sample_xyz(g, path, layer_##name == layer_color), \
-                                        replicate_of(batch->sample_begin + i)))           \
+                                        replicate_of(pixel.sample_begin + i)))            \
     film += (count) * (words);                                                            \
   }
 #define HIT_LAYER(name, option, channels, how, count, words, unit, value)                       \
@@ -107,7 +109,7 @@ static void stage_item(const Stage* g, uint item) {
     for (uint i = 0; takes && i < batch->sample_count; ++i) {                              \
       const uint path = path_number(batch, number, i);                                     \
       const uint id = as_uint(layers_of_path(batch, path, g->layers.path_layers)[offset]); \
-      *film = max(*film, ~(((ulong)(batch->sample_begin + i) << 32) | id));                \
+      *film = max(*film, ~(((ulong)(pixel.sample_begin + i) << 32) | id));                 \
     }                                                                                      \
     ++film;                                                                                \
     ++offset;                                                                              \

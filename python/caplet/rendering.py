@@ -122,6 +122,33 @@ class Session:
         finally:
             told.close()
 
+    def render_to(self, noise=0.05, min_spp=16, max_spp=16384, time_limit=None, progress=None):
+        """Gives each pixel the samples that it still needs for a noise; returns the noise that the picture has.
+
+        noise: the root of the mean, over the pixels that show something, of the variance of a pixel over the square of the luminance
+        around it, with a quarter of the picture's mean luminance added. min_spp, max_spp: samples a pixel, at least and at most.
+        Others as of `render`.
+
+        >>> scene = Scene()
+        >>> ball = scene.add_spheres((0, 0, 0), 1)
+        >>> session = Session(scene, size=(16, 9))
+        >>> session.render_to(0.1) <= 0.1
+        True
+        """
+        noise, min_spp, max_spp = float(noise), _count(min_spp, "min_spp", 1 << 24), _count(max_spp, "max_spp", 1 << 24)
+        told = _Progress(progress, max_spp)
+        try:
+            reached = self._native.render_to(noise, min_spp, max_spp, time_limit, told.part(0, max_spp))
+            if self._cancelled:  # of an interrupt that came when the render before had ended
+                reached = self._native.render_to(noise, min_spp, max_spp, time_limit, told.part(0, max_spp))
+            self._cancelled = False
+            return reached
+        except KeyboardInterrupt:
+            self._cancelled = True
+            raise
+        finally:
+            told.close()
+
     def cancel(self):
         """From any thread: the render under way finishes its passes and begins no more."""
         self._native.cancel()
@@ -155,10 +182,11 @@ def _count(value, name, most):
     return int(value)
 
 
-def render(scene, spp=None, size=None, device=None, seed=None, time_limit=None, progress=None, samples=None):
+def render(scene, spp=None, size=None, device=None, seed=None, time_limit=None, progress=None, samples=None, noise=None, min_spp=16):
     """Renders a scene. Returns an Image.
 
-    spp: samples a pixel; None: the scene's. samples: (A, B), only samples A to B - 1 of every pixel, in place of spp: images of
+    spp: samples a pixel; None: the scene's. noise: what the picture is rendered to (Session.render_to), where min_spp is the fewest and
+    spp the most samples a pixel (None: 16384). samples: (A, B), only samples A to B - 1 of every pixel, in place of spp: images of
     different samples add to that of all. size: (width, height) in pixels. Others as of Session. After Ctrl-C there is no image:
     a Session keeps what was done.
     """
@@ -178,6 +206,11 @@ def render(scene, spp=None, size=None, device=None, seed=None, time_limit=None, 
     session._native, session._cancelled, session._size = _caplet.Session(native, _devices(device)), False, None
     if first:
         session._native.begin_at(first)
+    if noise is not None:
+        if samples is not None:
+            raise InputError("noise: does not go with samples")
+        session.render_to(noise, min_spp, 16384 if spp is None else spp, time_limit, progress)
+        return session.image()
     told = _Progress(progress, spp or native.spp)
     try:
         session._native.render(_count(native.spp if spp is None else spp, "spp", 1 << 24), time_limit, told.part(0, spp or native.spp))

@@ -176,6 +176,41 @@ void bind_film(nb::module_& m) {
   });
 }
 
+/// Calls `work` with options of a session's render, on its turn, and lets signals cancel it.
+template <class Work>
+void run_session(HeldSession& held, std::optional<double> time_limit, const nb::object& progress,
+                 const Work& work) {
+  std::atomic<double> fraction = 0, speed = 0;
+  std::mutex mutex;  // of these two
+  bool is_stopped = false, is_under_way = false;
+  const auto now_under_way = [&](bool is) {
+    const std::lock_guard lock(mutex);
+    is_under_way = is;
+    return !is_stopped;
+  };
+  run_interruptibly(
+      [&] {
+        const auto turn = turn_of(held);
+        if (!now_under_way(true)) return;
+        caplet::RenderOptions options;
+        options.time_limit = time_limit;
+        options.progress = [&](const caplet::RenderProgress& now) {
+          fraction = now.fraction;
+          speed = now.samples_per_second;
+        };
+        work(options);
+        now_under_way(false);
+      },
+      [&] {  // the render of another thread, which this one waits for, goes on
+        const std::lock_guard lock(mutex);
+        is_stopped = true;
+        if (is_under_way) held.session.cancel();
+      },
+      [&] {
+        if (!progress.is_none()) progress(fraction.load(), speed.load());
+      });
+}
+
 void bind_session(nb::module_& m) {
   nb::class_<HeldSession>(m, "Session")
       .def("__init__",
@@ -200,38 +235,24 @@ void bind_session(nb::module_& m) {
           [](HeldSession& held, int samples, std::optional<double> time_limit,
              const nb::object& progress) {
             int done = 0;
-            std::atomic<double> fraction = 0, speed = 0;
-            std::mutex mutex;  // of these two
-            bool is_stopped = false, is_under_way = false;
-            const auto now_under_way = [&](bool is) {
-              const std::lock_guard lock(mutex);
-              is_under_way = is;
-              return !is_stopped;
-            };
-            run_interruptibly(
-                [&] {
-                  const auto turn = turn_of(held);
-                  if (!now_under_way(true)) return;
-                  caplet::RenderOptions options;
-                  options.time_limit = time_limit;
-                  options.progress = [&](const caplet::RenderProgress& now) {
-                    fraction = now.fraction;
-                    speed = now.samples_per_second;
-                  };
-                  done = held.session.render(samples, options);
-                  now_under_way(false);
-                },
-                [&] {  // the render of another thread, which this one waits for, goes on
-                  const std::lock_guard lock(mutex);
-                  is_stopped = true;
-                  if (is_under_way) held.session.cancel();
-                },
-                [&] {
-                  if (!progress.is_none()) progress(fraction.load(), speed.load());
-                });
+            run_session(held, time_limit, progress, [&](const caplet::RenderOptions& options) {
+              done = held.session.render(samples, options);
+            });
             return done;
           },
           nb::arg("samples"), nb::arg("time_limit").none(), nb::arg("progress").none())
+      .def(
+          "render_to",
+          [](HeldSession& held, double noise, int least, int most, std::optional<double> time_limit,
+             const nb::object& progress) {
+            double reached = 0;
+            run_session(held, time_limit, progress, [&](const caplet::RenderOptions& options) {
+              reached = held.session.render_to({noise, least, most}, options);
+            });
+            return reached;
+          },
+          nb::arg("noise"), nb::arg("least"), nb::arg("most"), nb::arg("time_limit").none(),
+          nb::arg("progress").none())
       .def("cancel", [](HeldSession& held) { held.session.cancel(); })
       .def("film",
            [](HeldSession& held) {

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <map>
 #include <random>
 #include <stdexcept>
 #include <string>
@@ -82,6 +83,40 @@ TEST(FilmSplit, WindowsAndSamplesInAnyOrder) {
     for (const FilmPart& part : random_parts(random))
       renderer.pass(part.window, part.sample_begin, part.sample_count);
     EXPECT_TRUE(std::ranges::equal(renderer.film().read().words(), whole().words())) << i;
+  }
+}
+
+// Samples of listed pixels, in batches that hold a few of them or a part of one's samples, are
+// those of the window.
+TEST(FilmSplit, ListedPixelsInAnyOrder) {
+  const Window window = whole().layout().window;
+  for (const std::size_t batch_paths : {3000UL, 7UL}) {
+    DeviceScene scene(test_device(), model().flat);
+    Renderer renderer(scene, model().view, {.layers = Layers::all(), .batch_paths = batch_paths});
+    std::mt19937 random(3);
+    for (int i = 0; i < (batch_paths > 100 ? 4 : 1); ++i) {
+      renderer.reset(model().view);
+      std::map<std::uint32_t, std::vector<PixelRecord>> next;  // by the number of samples they get
+      for (int y = 0; y < window.height; ++y)
+        for (int x = 0; x < window.width; ++x)
+          next[1 + random() % samples].push_back(
+              {static_cast<uint>(window.x + x), static_cast<uint>(window.y + y), 0, 0});
+      for (auto& [count, pixels] : next) {
+        std::ranges::shuffle(pixels, random);
+        std::size_t done = 0;
+        renderer.pass(pixels, count, [&](std::size_t now) {
+          EXPECT_GT(now, done);
+          done = now;
+        });
+        EXPECT_EQ(done, pixels.size());
+        if (count == samples) continue;
+        for (PixelRecord& pixel : pixels) pixel.sample_begin = count;
+        renderer.pass(pixels, samples - count);
+      }
+      const Film film = renderer.film().read();
+      EXPECT_TRUE(std::ranges::equal(film.words(), whole().words())) << batch_paths << " " << i;
+      EXPECT_TRUE(film.parts().empty());
+    }
   }
 }
 

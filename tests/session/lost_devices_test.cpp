@@ -119,6 +119,122 @@ TEST_F(LostDevices, FilmsThatCannotBeReadAreRenderedAgain) {
   wait_for_all();
 }
 
+/// All pixels of the film in two lists: every third one from its sample 20 on to 30, the others
+/// from 20 to 24.
+std::vector<PixelSamples> two_lists(const Window& window) {
+  std::vector<PixelSamples> out{{4, {}}, {10, {}}};
+  for (int y = 0; y < window.height; ++y)
+    for (int x = 0; x < window.width; ++x)
+      out[(x + y) % 3 == 0 ? 1 : 0].pixels.push_back(
+          {static_cast<uint>(window.x + x), static_cast<uint>(window.y + y), 20, 0});
+  return out;
+}
+
+// The lists of a lost device are rendered again, those of an earlier call too.
+TEST_F(LostDevices, ListsAreThoseOfOneDevice) {
+  const auto rendered = [](Session& by, const std::function<void()>& between) {
+    EXPECT_EQ(by.render(20), 20u);
+    std::vector<PixelSamples> lists = two_lists(by.layout().window);
+    EXPECT_TRUE(by.render(lists));
+    between();
+    for (PixelRecord& pixel : lists[1].pixels) pixel.sample_begin = 30;
+    double last = 0;
+    EXPECT_TRUE(by.render({{18, lists[1].pixels}}, [&last](const SessionProgress& now) {
+      EXPECT_LE(now.fraction, 1);
+      last = now.fraction;
+    }));
+    EXPECT_EQ(last, 1);
+    EXPECT_EQ(by.samples(), 48u);
+    EXPECT_FALSE(by.film_on_device());
+    return by.film();
+  };
+  Session one(model().flat, model().view, {test_device()}, {.layers = Layers::all()});
+  const Film film = rendered(one, [] {});
+  ASSERT_EQ(film.parts().size(), 1u);
+  EXPECT_EQ(film.parts()[0], (FilmPart{film.layout().window, 0, 48}));
+  EXPECT_EQ(film.samples(0), 48u);
+  EXPECT_EQ(film.samples(1), 24u);
+  // Every third pixel is that of all samples, as a render of windows makes them.
+  const std::size_t words = film.layout().words_per_pixel();
+  for (std::size_t pixel = 0; pixel < film.layout().window.pixels(); pixel += 3) {
+    const auto width = static_cast<std::size_t>(film.layout().window.width);
+    if ((pixel % width + pixel / width) % 3 != 0) continue;
+    EXPECT_TRUE(std::ranges::equal(film.words().subspan(pixel * words, words),
+                                   by_one().words().subspan(pixel * words, words)))
+        << pixel;
+  }
+  EXPECT_TRUE(same(rendered(*session, [] {}), film));
+  SessionOptions small = options;  // batches, so that each device has some of a list
+  small.batch_paths = 200;
+  for (const int launches : {0, 3, 12}) {
+    session.emplace(model().flat, model().view, devices, small);
+    std::optional<BrokenDriver> broken;
+    EXPECT_TRUE(
+        same(rendered(*session, [&] { broken.emplace(devices[1], Fault::launch_fails, launches); }),
+             film))
+        << launches;
+    EXPECT_EQ(session->device_count(), 1u) << launches;
+  }
+}
+
+// A film of lists is gone on with where it was, and what it had stays.
+TEST_F(LostDevices, ListsGoOnWithAFilm) {
+  Session one(model().flat, model().view, {test_device()}, {.layers = Layers::all()});
+  EXPECT_EQ(one.render(20), 20u);
+  EXPECT_TRUE(one.render(two_lists(one.layout().window)));
+  Session other(model().flat, model().view, {test_device()}, {.layers = Layers::all()});
+  other.resume(one.film());
+  EXPECT_EQ(other.samples(), 30u);
+  std::vector<PixelSamples> lists = two_lists(one.layout().window);
+  for (PixelRecord& pixel : lists[0].pixels) pixel.sample_begin = 24;
+  EXPECT_TRUE(other.render({{6, lists[0].pixels}}));
+  Session straight(model().flat, model().view, {test_device()}, {.layers = Layers::all()});
+  EXPECT_EQ(straight.render(30), 30u);
+  EXPECT_TRUE(same(other.film(), straight.film()));
+}
+
+// The next samples of every pixel are those after its own last one.
+TEST_F(LostDevices, ListsAreFollowedByTheNextOfEachPixel) {
+  Session one(model().flat, model().view, {test_device()}, {.layers = Layers::all()});
+  EXPECT_EQ(one.render(20), 20u);
+  EXPECT_TRUE(one.is_even());
+  EXPECT_TRUE(one.render(two_lists(one.layout().window)));
+  EXPECT_FALSE(one.is_even());
+  EXPECT_EQ(one.render(5), 5u);
+  EXPECT_EQ(one.samples(), 35u);
+  const Film film = one.film();
+  const std::size_t words = film.layout().words_per_pixel();
+  const auto width = static_cast<std::size_t>(film.layout().window.width);
+  for (const std::uint32_t n : {29U, 35U}) {
+    Session straight(model().flat, model().view, {test_device()}, {.layers = Layers::all()});
+    EXPECT_EQ(straight.render(n), n);
+    const Film other = straight.film();
+    for (std::size_t pixel = 0; pixel < film.layout().window.pixels(); ++pixel)
+      EXPECT_TRUE(((pixel % width + pixel / width) % 3 == 0) != (n == 35) ||
+                  std::ranges::equal(film.words().subspan(pixel * words, words),
+                                     other.words().subspan(pixel * words, words)))
+          << pixel;
+  }
+}
+
+// A cancelled one has whole pixels, and says that it is not complete.
+TEST_F(LostDevices, CancelledListsEndBetweenParts) {
+  Session one(model().flat, model().view, {test_device()},
+              {.layers = Layers::all(), .batch_paths = 1000});
+  EXPECT_EQ(one.render(20), 20u);
+  EXPECT_FALSE(
+      one.render(two_lists(one.layout().window), [&](const SessionProgress&) { one.cancel(); }));
+  const Film film = one.film();
+  std::size_t done = 0;
+  for (std::size_t pixel = 0; pixel < film.layout().window.pixels(); ++pixel) {
+    const std::uint32_t n = film.samples(pixel);
+    EXPECT_TRUE(n == 20 || n == 24 || n == 30) << n;
+    done += n > 20 ? 1 : 0;
+  }
+  EXPECT_GT(done, 0u);
+  EXPECT_LT(done, film.layout().window.pixels());
+}
+
 TEST_F(LostDevices, TheLastOnesFailureIsTheSessions) {
   Session alone(model().flat, model().view, {devices[0]}, options);
   {

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <map>
+#include <memory>
 #include <random>
 #include <tuple>
 
@@ -73,7 +74,7 @@ class Simulation {
           continue;
         }
         ++parts;
-        busy_[i].seconds = paths_of(*busy_[i].part) / speeds_[i];
+        busy_[i].seconds = busy_[i].part->paths() / speeds_[i];
         busy_[i].until = time + busy_[i].seconds;
       }
       if (!any_idle) idle_since = 1e30;
@@ -86,15 +87,15 @@ class Simulation {
         time = at;
         lost_[loses] = true;
         shares_.lose(loses, films_[loses]);
-        for (const FilmPart& part : films_[loses]) count.add(part, -1);
+        for (const Work& work : films_[loses]) count.add(work.part, -1);
         continue;
       }
       if (next == SIZE_MAX) return {idle_since, time};
       time = busy_[next].until;
       shares_.done(next, busy_[next].seconds);
-      count.add(*busy_[next].part);
+      count.add(busy_[next].part->part);
       films_[next].push_back(*busy_[next].part);
-      done[next] += paths_of(*busy_[next].part);
+      done[next] += busy_[next].part->paths();
       busy_[next].part.reset();
     }
   }
@@ -104,17 +105,14 @@ class Simulation {
   int parts = 0;
 
  private:
-  static double paths_of(const FilmPart& part) {
-    return static_cast<double>(part.window.pixels()) * part.sample_count;
-  }
   struct Busy {
-    std::optional<FilmPart> part;
+    std::optional<Work> part;
     double seconds = 0, until = 0;
   };
   WorkQueue& shares_;
   std::vector<double> speeds_;
   std::vector<Busy> busy_;
-  std::vector<std::vector<FilmPart>> films_;
+  std::vector<std::vector<Work>> films_;
   std::vector<bool> lost_;
 };
 
@@ -162,15 +160,15 @@ TEST(WorkQueue, SpeedsForgetWhatWas) {
 
 TEST(WorkQueue, AWorkerAloneTakesWholePasses) {
   WorkQueue shares(picture, 5, 10, {}, {{{}, 1 << 17, 4}});
-  EXPECT_EQ(shares.take(0), (FilmPart{picture, 5, 4}));
+  EXPECT_EQ(shares.take(0)->part, (FilmPart{picture, 5, 4}));
   EXPECT_FALSE(shares.complete());
   shares.done(0, 1);
   EXPECT_EQ(shares.paths_done(), 4.0 * picture.width * picture.height);
-  EXPECT_EQ(shares.take(0), (FilmPart{picture, 9, 4}));
+  EXPECT_EQ(shares.take(0)->part, (FilmPart{picture, 9, 4}));
   shares.done(0, 1);
-  EXPECT_EQ(shares.take(0), (FilmPart{picture, 13, 2}));
+  EXPECT_EQ(shares.take(0)->part, (FilmPart{picture, 13, 2}));
   shares.done(0, 1);
-  EXPECT_EQ(shares.take(0), std::nullopt);
+  EXPECT_FALSE(shares.take(0).has_value());
   EXPECT_TRUE(shares.complete());
   EXPECT_EQ(shares.samples(), 10u);
 }
@@ -224,14 +222,14 @@ TEST(WorkQueue, WhatALostWorkerHadIsDoneAgain) {
 // Samples of earlier renders, which a lost worker's film had, come back as well; they do not count
 // as this render's.
 TEST(WorkQueue, WhatIsToBeDoneAgainComesFirst) {
-  WorkQueue shares(picture, 20, 1, {{picture, 3, 2}}, {worker(), worker()});
+  WorkQueue shares(picture, 20, 1, {{{picture, 3, 2}, nullptr}}, {worker(), worker()});
   Simulation simulation(shares, {1e5, 1e5});
   simulation.run();
   EXPECT_DOUBLE_EQ(shares.paths_done(), static_cast<double>(picture.pixels()));
   Count again;
-  WorkQueue others(picture, 20, 0, {{picture, 3, 2}}, {worker()});
+  WorkQueue others(picture, 20, 0, {{{picture, 3, 2}, nullptr}}, {worker()});
   while (const auto part = others.take(0)) {
-    again.add(*part);
+    again.add(part->part);
     others.done(0, 1);
   }
   again.expect_once(3, 5);
@@ -243,7 +241,7 @@ TEST(WorkQueue, WhatIsToBeDoneAgainComesFirst) {
 TEST(WorkQueue, ClosedOnesFinishWhatIsBegun) {
   WorkQueue shares(picture, 7, 100, {}, {worker(1000), worker(1000)});
   EXPECT_FALSE(shares.begun());
-  const FilmPart first = *shares.take(0);
+  const FilmPart first = shares.take(0)->part;
   EXPECT_TRUE(shares.begun());
   EXPECT_EQ(first.sample_count, 1u);
   EXPECT_LT(first.window.height, picture.height);
@@ -253,15 +251,107 @@ TEST(WorkQueue, ClosedOnesFinishWhatIsBegun) {
   count.add(first);
   shares.done(0, 0.1);
   while (const auto part = shares.take(0)) {
-    count.add(*part);
+    count.add(part->part);
     shares.done(0, 0.1);
   }
   EXPECT_TRUE(shares.complete());
   count.expect_once(7, 8);
   WorkQueue none(picture, 7, 100, {}, {worker()});
   none.close();
-  EXPECT_EQ(none.take(0), std::nullopt);
+  EXPECT_FALSE(none.take(0).has_value());
   EXPECT_EQ(none.samples(), 0u);
+}
+
+/// A list of `pixels` pixels, numbered by x, of `count` samples each.
+PixelSamples list_of(std::uint32_t pixels, std::uint32_t count) {
+  PixelSamples out{count, {}};
+  for (std::uint32_t x = 0; x < pixels; ++x) out.pixels.push_back({x, count, 0, 0});
+  return out;
+}
+
+/// How often each pixel of each list was rendered, by the list's count.
+using Rendered = std::map<std::pair<std::uint32_t, std::uint32_t>, int>;
+
+void add(Rendered& to, const Work& work, int times) {
+  for (std::size_t i = work.first; i < work.first + work.count; ++i)
+    to[{work.samples->count, work.samples->pixels.at(i).x}] += times;
+}
+
+// Workers of different speeds take lists to their ends; what a lost one had of them is done again.
+TEST(WorkQueue, ListedPixelsAreRenderedOnceWhoeverIsLost) {
+  for (int seed = 0; seed < 40; ++seed) {
+    std::mt19937 random(static_cast<unsigned>(seed));
+    WorkQueue shares({list_of(5000, 8), list_of(300, 96), list_of(1, 4)}, {},
+                     {worker(700), worker(700), worker(700)});
+    Rendered rendered;
+    std::vector<std::vector<Work>> had(3);
+    std::vector<bool> lost(3);
+    std::size_t parts = 0;
+    while (!shares.complete()) {
+      const std::size_t i = random() % 3;
+      if (lost[i]) continue;
+      const std::optional<Work> work = shares.take(i);
+      if (!work) continue;
+      ASSERT_LT(++parts, 1000u);
+      if (random() % 20 == 0 && shares.workers_there() > 1) {  // before it is done
+        shares.lose(i, had[i]);
+        lost[i] = true;
+        for (const Work& each : had[i]) add(rendered, each, -1);
+        continue;
+      }
+      shares.done(i, work->paths() / (1e5 * static_cast<double>(i + 1)));
+      add(rendered, *work, 1);
+      had[i].push_back(*work);
+    }
+    EXPECT_EQ(rendered.size(), 5301u);
+    for (const auto& [pixel, times] : rendered)
+      EXPECT_EQ(times, 1) << pixel.first << " " << pixel.second;
+    EXPECT_EQ(shares.paths_done(), 5000 * 8 + 300 * 96 + 4);
+    EXPECT_EQ(shares.samples(), 0u);
+  }
+}
+
+// What a lost worker had of a list is done again even then; what was not begun is not.
+TEST(WorkQueue, ClosedListsEndWithWhatIsBegun) {
+  WorkQueue shares({list_of(5000, 8)}, {}, {worker(800), worker(800)});
+  EXPECT_FALSE(shares.begun());
+  const Work first = *shares.take(0);
+  EXPECT_TRUE(shares.begun());
+  EXPECT_EQ(first.count, 100u);
+  shares.done(0, 0.01);
+  EXPECT_TRUE(shares.take(1).has_value());
+  shares.lose(0, std::vector{first});
+  shares.close();
+  EXPECT_FALSE(shares.complete());
+  shares.done(1, 0.01);
+  const std::optional<Work> again = shares.take(1);
+  ASSERT_TRUE(again.has_value());
+  EXPECT_EQ(again->first, first.first);
+  EXPECT_EQ(again->count, first.count);
+  shares.done(1, 0.01);
+  EXPECT_FALSE(shares.take(1).has_value());
+  EXPECT_TRUE(shares.complete());
+  EXPECT_EQ(shares.paths_done(), 1600);
+}
+
+// Lists of earlier renders, which a lost worker's film had, do not count as this render's.
+TEST(WorkQueue, EarlierListsComeFirstAndDoNotCount) {
+  const auto earlier = std::make_shared<const PixelSamples>(list_of(10, 8));
+  WorkQueue shares({list_of(20, 4)}, {{{}, earlier, 2, 5}, {{picture, 3, 2}, nullptr}},
+                   {worker(1 << 20)});
+  const Work first = *shares.take(0);
+  EXPECT_EQ(first.samples, earlier);
+  EXPECT_EQ(first.first, 2u);
+  EXPECT_EQ(first.count, 5u);
+  shares.done(0, 1);
+  EXPECT_FALSE(shares.begun());
+  EXPECT_EQ(shares.take(0)->part, (FilmPart{picture, 3, 2}));
+  shares.done(0, 1);
+  EXPECT_EQ(shares.paths_done(), 0);
+  EXPECT_EQ(shares.take(0)->count, 20u);
+  shares.done(0, 1);
+  EXPECT_TRUE(shares.complete());
+  EXPECT_EQ(shares.paths_done(), 80);
 }
 
 // One that needs longer for a row than the others for everything leaves it to them, until they are
@@ -271,7 +361,7 @@ TEST(WorkQueue, TheSlowLeaveTheEndToOthers) {
   slow.speed.measured(10, 1);
   fast.speed.measured(1e6, 1);
   WorkQueue shares(picture, 0, 2, {}, {slow, fast});
-  EXPECT_EQ(shares.take(0), std::nullopt);
+  EXPECT_FALSE(shares.take(0).has_value());
   EXPECT_FALSE(shares.complete());
   EXPECT_TRUE(shares.take(1).has_value());
   shares.lose(1, {});

@@ -19,6 +19,9 @@
 
 namespace caplet::v0 {
 
+/// Throws InputError when a target is out of range, or does not go with the sampler.
+void check_noise(const NoiseTarget& target, const SamplerSettings& sampler);
+
 /// The work of a session since its film was empty.
 struct SessionRuns {
   double seconds = 0;
@@ -27,6 +30,9 @@ struct SessionRuns {
   /// Adds the next samples and returns how many were finished.
   std::uint32_t render(caplet::Session& session, std::uint32_t samples,
                        const RenderOptions& options);
+  /// Gives pixels what they need for a noise and returns the noise that the film has.
+  double render_to(caplet::Session& session, const NoiseTarget& target,
+                   const RenderOptions& options);
   /// Returns the present film of `scene`, whose flat arrays and view these are.
   Film film(caplet::Session& session, const caplet::Scene& scene, const FlatScene& flat,
             const FlatView& view);

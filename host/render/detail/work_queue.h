@@ -8,11 +8,13 @@
 #include <cstddef>
 #include <cstdint>
 #include <deque>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
 
 #include "film/film.h"
+#include "film/sample_plan.h"
 
 namespace caplet {
 
@@ -33,14 +35,27 @@ class Speed {
 /// most the second, since films only contain finished parts.
 inline constexpr double least_part_seconds = 0.02, most_part_seconds = 1;
 
+/// Work is samples of a window, or, where there are `samples`, the next ones of `count` of their
+/// pixels from number `first` on.
+struct Work {
+  FilmPart part;
+  std::shared_ptr<const PixelSamples> samples;
+  std::size_t first = 0, count = 0;
+  bool again = false;  // a lost worker had done it: it is done even if no more is begun
+
+  double paths() const;
+};
+
 /// Returns the paths for a worker with `speed` of `all_speed` when `open` paths are left.
 double part_paths(double open, double speed, double all_speed);
 
 /// Cuts some `paths` paths off the front of `from`, in samples of the whole window or in rows of
 /// its first sample, and returns them; `rest`: what is left. `most_samples`: of a pixel, in the
-/// returned part.
+/// returned part. Of listed pixels the first ones are cut off, with all of their samples.
 FilmPart cut_part(const FilmPart& from, double paths, std::uint32_t most_samples,
                   std::vector<FilmPart>& rest);
+
+Work cut_work(const Work& from, double paths, std::uint32_t most_samples, std::vector<Work>& rest);
 
 class WorkQueue {
  public:
@@ -49,23 +64,27 @@ class WorkQueue {
     std::size_t batch_paths = 1;     // what it takes as long as its speed is not known
     std::uint32_t most_samples = 1;  // of a pixel in one part
     bool there = true;               // not lost
-    std::optional<FilmPart> under_way{};
+    std::optional<Work> under_way{};
   };
 
   /// Distributes samples [begin, begin + count) of every pixel of `window`, after the parts that
   /// must be done `again`.
-  WorkQueue(const Window& window, std::uint32_t begin, std::uint32_t count,
-            std::vector<FilmPart> again, std::vector<Worker> workers);
+  WorkQueue(const Window& window, std::uint32_t begin, std::uint32_t count, std::vector<Work> again,
+            std::vector<Worker> workers);
+  /// Distributes these samples likewise.
+  WorkQueue(std::vector<PixelSamples> samples, std::vector<Work> again,
+            std::vector<Worker> workers);
 
   /// Returns the next part for a worker, which has none under way. Returns nothing if there is none
   /// for it now; there may be one when others are lost.
-  std::optional<FilmPart> take(std::size_t worker);
+  std::optional<Work> take(std::size_t worker);
   /// Records that the worker has finished its part, in so many seconds.
   void done(std::size_t worker, double seconds);
   /// Records that the worker is gone, with its part and everything that it has done: `had`, the
   /// latter, must be done again.
-  void lose(std::size_t worker, std::span<const FilmPart> had);
-  /// Begins no more samples: only the rest of those that are begun remains to be done.
+  void lose(std::size_t worker, std::span<const Work> had);
+  /// Begins no more samples: only the rest of those that are begun remains to be done, and of
+  /// listed pixels nothing.
   void close();
 
   /// Returns whether nothing is open or under way.
@@ -73,19 +92,22 @@ class WorkQueue {
   std::size_t workers_there() const;
   const Speed& speed(std::size_t worker) const { return workers_[worker].speed; }
   /// Returns what is neither done nor under way.
-  const std::deque<FilmPart>& open() const { return open_; }
-  /// Returns the samples of every pixel that are done once this is complete.
+  const std::deque<Work>& open() const { return open_; }
+  /// Returns the samples of every pixel of the window that are done once this is complete.
   std::uint32_t samples() const { return end_ - begin_; }
   /// Returns whether any sample of this picture has been handed out.
-  bool begun() const { return begun_end_ > begin_; }
-  /// Returns the finished paths of samples from `begin` on.
+  bool begun() const { return list_begun_ || begun_end_ > begin_; }
+  /// Returns the finished paths, without those of earlier samples.
   double paths_done() const { return paths_done_; }
 
  private:
   double open_paths() const;
-  double new_paths(const FilmPart& part) const;  // those from `begin` on
+  void open_again(std::vector<Work> again);
+  double new_paths(const Work& work) const;  // those that are not of earlier samples
   std::uint32_t begin_, end_, begun_end_;
-  std::deque<FilmPart> open_;  // by sample
+  std::vector<std::shared_ptr<const PixelSamples>> lists_;  // of these samples
+  bool list_begun_ = false;
+  std::deque<Work> open_;  // by sample
   std::vector<Worker> workers_;
   double paths_done_ = 0;
 };

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// `caplet render --noise`: renders to a noise in place of a number of samples.
+#pragma once
+
+#include <optional>
+
+#include "cli/render_flags.h"
+#include "film/sample_plan.h"
+#include "render/render.h"
+#include "scene/sampler.h"
+
+namespace caplet::cli {
+
+/// Returns what pixels are rendered to, if it is a noise. Throws InputError.
+std::optional<NoiseTarget> noise_target(const RenderFlags& options);
+
+/// Replaces a sampler whose points are even at one number of samples alone, and warns.
+void take_open_sampler(SamplerSettings& sampler);
+
+/// Logs how far the render came.
+void tell_of(const NoiseReached& reached, const NoiseTarget& target);
+
+}  // namespace caplet::cli

@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// `caplet render --noise`, and films whose pixels have different numbers of samples.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "film/film_file.h"
+#include "film/image.h"
+#include "pictures.h"
+#include "program.h"
+
+namespace caplet::noise_test {
+namespace {
+
+namespace fs = std::filesystem;
+
+using test::folder_with_scene;
+using test::render;
+using test::Result;
+using testing::HasSubstr;
+using testing::Not;
+
+using Names = std::vector<std::string>;
+
+/// A capsule on a floor under a lamp, before a sky without light.
+const std::string lit =
+    "LookAt 0 -5 2  0 0 0.5  0 0 1\nCamera \"perspective\" \"float fov\" 40\n"
+    "Film \"rgb\" \"integer xresolution\" 24 \"integer yresolution\" 16\nWorldBegin\n"
+    "AttributeBegin AreaLightSource \"diffuse\" \"rgb L\" [30 30 30]\n"
+    "Translate 1 -2 4 Shape \"sphere\" \"float radius\" 0.3 AttributeEnd\n"
+    "Shape \"disk\" \"float radius\" 1.5\n"
+    "Shape \"capsule\" \"point3 p0\" [-.5 0 .4] \"point3 p1\" [.5 0 .4] \"float radius\" 0.4\n";
+
+void expect_done(const Result& result) { ASSERT_EQ(result.code, 0) << result.err; }
+
+nlohmann::json json_of(const fs::path& file) {
+  return nlohmann::json::parse(test::read_file(file));
+}
+
+const std::vector<std::uint32_t>& samples_of(const LayeredImage& image) {
+  const Channel* channel = image.find("samples");
+  if (!channel) throw std::out_of_range("no channel of samples");
+  return channel->uints;
+}
+
+double mean_of(const std::vector<std::uint32_t>& samples) {
+  double sum = 0;
+  for (const std::uint32_t n : samples) sum += n;
+  return sum / static_cast<double>(samples.size());
+}
+
+TEST(Noise, IsThatOfThePicture) {
+  const fs::path folder = folder_with_scene(lit);
+  const Result result = test::run_program(
+      {"render", "scene.pbrt", "--noise", "4%", "-o", "a.exr", "--stats", "a.json"}, folder);
+  expect_done(result);
+  EXPECT_THAT(result.err, HasSubstr("noise 4 % on "));
+  EXPECT_THAT(result.err,
+              testing::ContainsRegex("noise 3\\.[0-9]+ % after [0-9.]+ samples per pixel"));
+  const LayeredImage image = read_exr(folder / "a.exr");
+  const std::vector<std::uint32_t>& samples = samples_of(image);
+  EXPECT_EQ(*std::ranges::min_element(samples), 16u);
+  EXPECT_GT(*std::ranges::max_element(samples), 64u);
+  EXPECT_TRUE(image.find("variance.G"));
+  // By the variances that it states, which know 49 pixels each: of 200 pixels, to a tenth or so.
+  EXPECT_NEAR(json_of(folder / "a.json").at("noise").get<double>(), 0.04, 0.008);
+  EXPECT_NEAR(mean_of(samples), json_of(folder / "a.json").at("samples_per_pixel").get<double>(),
+              0.5);
+  EXPECT_EQ(image.metadata.at("caplet.samples_per_pixel"),
+            std::to_string(json_of(folder / "a.json").at("samples_per_pixel").get<int>()));
+  // Half the noise takes up to four times the samples, but for pixels that have the least.
+  expect_done(render(folder, {"--noise", "0.02", "-o", "b.exr"}));
+  const double more = mean_of(samples_of(read_exr(folder / "b.exr"))) / mean_of(samples);
+  EXPECT_GT(more, 1.8);
+  EXPECT_LT(more, 5);
+}
+
+TEST(Noise, StaysWithinTheSamplesThatAreAskedFor) {
+  const fs::path folder = folder_with_scene(lit);
+  const Result result = test::run_program({"render", "scene.pbrt", "--noise", "0.5%", "--spp", "96",
+                                           "--min-spp", "24", "-o", "a.exr", "--layers", "none"},
+                                          folder);
+  expect_done(result);
+  EXPECT_THAT(result.err, HasSubstr("; 0.5 % are asked for, with up to 96 (--spp)"));
+  const LayeredImage image = read_exr(folder / "a.exr");
+  EXPECT_EQ(*std::ranges::min_element(samples_of(image)), 24u);
+  EXPECT_EQ(*std::ranges::max_element(samples_of(image)), 96u);
+  EXPECT_FALSE(image.find("variance.G"));
+  // Where all pixels have as many, there is no channel of them.
+  expect_done(render(folder, {"--noise", "100%", "-o", "b.exr"}));
+  EXPECT_FALSE(read_exr(folder / "b.exr").find("samples"));
+  EXPECT_EQ(read_exr(folder / "b.exr").metadata.at("caplet.samples_per_pixel"), "16");
+}
+
+TEST(Noise, WhatIsNoNoiseIsRefused) {
+  const fs::path folder = folder_with_scene(lit);
+  const auto refused = [&](const Names& arguments, const char* why) {
+    const Result result = render(folder, arguments);
+    EXPECT_EQ(result.code, 2) << why;
+    EXPECT_THAT(result.err, HasSubstr(why));
+  };
+  for (const char* text : {"0", "-1%", "101%", "2", "x", "", "%", "5 %", "nan", "0.0001%", "5%%"})
+    refused({"--noise", text}, "from 0.001% to 100%, such as 5%");
+  refused({"--min-spp", "8"}, "--min-spp: goes with --noise");
+  refused({"--noise", "5%", "--min-spp", "8", "--spp", "7"},
+          "--min-spp: 8 is more than the most, 7");
+  refused({"--noise", "5%", "--min-spp", "1"}, "--min-spp");
+  refused({"--noise", "5%", "--samples", "0:8"}, "--samples: does not go with --noise");
+  EXPECT_THAT(test::names_in(folder), testing::ElementsAre("scene.pbrt"));
+}
+
+// zsobol's points are even at one number of samples alone.
+TEST(Noise, ClosedSamplersAreReplaced) {
+  for (const char* sampler : {"zsobol", "stratified"}) {
+    const fs::path folder = folder_with_scene("Sampler \"" + std::string(sampler) + "\"\n" + lit);
+    const Result result = render(folder, {"--noise", "10%", "-o", "a.exr"});
+    expect_done(result);
+    EXPECT_THAT(result.err,
+                HasSubstr("--noise: the sampler is sobol in place of " + std::string(sampler)));
+    test::write_file(folder / "scene.pbrt", "Sampler \"sobol\"\n" + lit);
+    const Result other = render(folder, {"--noise", "10%", "-o", "b.exr"});
+    EXPECT_THAT(other.err, Not(HasSubstr("sampler")));
+    test::expect_equal_pictures(folder / "a.exr", folder / "b.exr");
+  }
+}
+
+// A render that its time stopped goes on to the bits of one render; and to a number of samples of
+// all pixels.
+TEST(Noise, FilmsGoOn) {
+  const fs::path folder = folder_with_scene(lit);
+  expect_done(render(folder, {"--noise", "3%", "-o", "one.exr", "--film", "one.film"}));
+  expect_done(render(folder, {"--noise", "3%", "--time", "1e-6", "--film", "two.film"}));
+  EXPECT_LE(load_film(folder / "two.film").film.mean_samples(), 16);
+  expect_done(render(folder, {"--noise", "3%", "--film", "two.film", "--resume", "-o", "two.exr"}));
+  test::expect_equal_pictures(folder / "one.exr", folder / "two.exr");
+  const SavedFilm one = load_film(folder / "one.film"), two = load_film(folder / "two.film");
+  EXPECT_TRUE(std::ranges::equal(one.film.words(), two.film.words()));
+  EXPECT_EQ(one.film.parts(), two.film.parts());
+  EXPECT_EQ(one.samples_wanted, 0u);
+
+  const Result told = test::run_program({"film", "one.film"}, folder);
+  EXPECT_THAT(told.out,
+              testing::ContainsRegex("samples +0:[0-9]+, of a pixel [0-9.]+ in the mean\n"));
+  const auto json =
+      nlohmann::json::parse(test::run_program({"film", "one.film", "--json"}, folder).out);
+  EXPECT_NEAR(json.at("mean_samples").get<double>(), one.film.mean_samples(), 1e-9);
+
+  const std::uint32_t most = one.film.parts().front().sample_count;
+  const std::string all = std::to_string(most + 7);
+  expect_done(render(
+      folder, {"--spp", all, "--variance", "--film", "two.film", "--resume", "-o", "two.exr"}));
+  expect_done(render(folder, {"--spp", all, "--variance", "-o", "even.exr"}));
+  test::expect_equal_pictures(folder / "two.exr", folder / "even.exr");
+}
+
+// Frames and both eyes are each rendered to it.
+TEST(Noise, IsThatOfEachFrame) {
+  const fs::path folder = folder_with_scene(lit);
+  expect_done(render(folder, {"--noise", "3%", "--turntable", "2", "-o", "a.#.exr"}));
+  for (const char* name : {"a.1.exr", "a.2.exr"})
+    EXPECT_GT(mean_of(samples_of(read_exr(folder / name))), 16);
+  expect_done(render(folder, {"--noise", "3%", "--stereo", "0.1", "-o", "both.exr"}));
+}
+
+}  // namespace
+}  // namespace caplet::noise_test
