@@ -67,7 +67,7 @@ class Image:
         if not isinstance(name, str):
             raise InputError(f"a channel's name is needed, not {name!r}")
         if name not in self._cache:
-            self._cache[name] = self._film.ids(name) if name.endswith(".id") else self._film.values(name)
+            self._cache[name] = self._film.ids(name) if name.endswith(".id") or name == "samples" else self._film.values(name)
         return self._cache[name]
 
     def _layer(self, *names):

@@ -109,6 +109,34 @@ def test_a_session_goes_on_and_films_add_up(ball, tmp_path):
         whole + whole  # the same samples twice
 
 
+def test_a_picture_has_the_noise_that_is_asked_for(ball):
+    ball.add_light(lights.point(from_=(2, 2, 2), I=(20, 20, 20)))
+    ball.add("disk", radius=3, height=-1)
+    image = caplet.render(ball, noise=0.01, min_spp=8)
+    samples = image["samples"]
+    assert samples.dtype == np.uint32 and samples.min() >= 8 and samples.max() > 2 * samples.min()
+    assert image.spp == round(samples.mean()) and image.samples == [(0, samples.max())]
+    assert "samples" not in caplet.render(ball, spp=4).channels
+    session = caplet.Session(ball)
+    assert 0.005 < session.render_to(0.01, min_spp=8) <= 0.01 and equal(session.image(), image)
+    assert session.render_to(0.02) <= 0.01 and equal(session.image(), image)  # it is there already
+    assert session.render(3) == 3 and (session.image()["samples"] == samples + 3).all()
+    assert caplet.render(ball, noise=0.0001, spp=32).spp == 32
+    fractions = []
+    caplet.render(ball, noise=0.01, progress=lambda fraction, speed: fractions.append(fraction))
+    assert fractions == sorted(fractions) and fractions[-1] <= 1
+    for noise in (0, -1, 2, float("nan")):
+        with pytest.raises(caplet.InputError, match="noise"):
+            caplet.render(ball, noise=noise)
+    with pytest.raises(caplet.InputError, match="most samples"):
+        caplet.render(ball, noise=0.1, min_spp=9, spp=8)
+    with pytest.raises(caplet.InputError, match="noise: does not go with samples"):
+        caplet.render(ball, noise=0.1, samples=(0, 4))
+    ball.sampler("zsobol")
+    with pytest.raises(caplet.InputError, match="the sampler is zsobol"):
+        caplet.render(ball, noise=0.1)
+
+
 def test_shares_add_to_one_render(ball, tmp_path):
     whole = caplet.render(ball, spp=8)
     late = caplet.render(ball, samples=(3, 8))

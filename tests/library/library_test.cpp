@@ -236,6 +236,33 @@ TEST_F(Library, TheTimeLimitEndsARender) {
   EXPECT_LT(samples, 1 << 10);
 }
 
+TEST_F(Library, ARenderHasTheNoiseThatIsAskedFor) {
+  caplet::Scene scene = caplet::import_scene(folder_ / "ball.pbrt");
+  caplet::RenderOptions options;
+  options.noise = {0.02, 8, 1 << 14};
+  const caplet::Film film = caplet::render(scene, test_device(), options);
+  const std::vector<std::uint32_t> samples = film.ids("samples");
+  const auto [least, most] = std::ranges::minmax(samples);
+  EXPECT_GE(least, 8u);
+  EXPECT_GT(most, 2 * least);
+  EXPECT_LE(most, 1u << 14);
+  double sum = 0;
+  for (const std::uint32_t n : samples) sum += n;
+  EXPECT_EQ(film.samples_per_pixel(), std::lround(sum / static_cast<double>(samples.size())));
+  caplet::Session session(scene, test_device());
+  EXPECT_LE(session.render_to(*options.noise), 0.02);
+  EXPECT_EQ(session.film().ids("samples"), samples);
+  for (const caplet::NoiseTarget bad : {caplet::NoiseTarget{0, 8, 64},
+                                        {1.5, 8, 64},
+                                        {0.1, 1, 64},
+                                        {0.1, 65, 64},
+                                        {0.1, 8, 1 << 25}})
+    EXPECT_THROW(session.render_to(bad), caplet::InputError);
+  scene.set_option(caplet::Statement::sampler, "stratified", {});
+  EXPECT_THROW(caplet::render(scene, test_device(), options), caplet::InputError);
+  EXPECT_THROW(caplet::Session(scene, test_device()).render_to(*options.noise), caplet::InputError);
+}
+
 TEST_F(Library, PicksTellWhatAPixelShowsAndRaysHit) {
   const caplet::Scene scene = caplet::import_scene(folder_ / "ball.pbrt");
   caplet::Picker picker(scene, test_device());
