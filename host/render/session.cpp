@@ -270,6 +270,7 @@ void Session::resume(Film film) {
   for (const FilmPart& part : film.parts())
     next_ = std::max(next_, part.sample_begin + part.sample_count);
   first_ = next_;
+  has_lists_ = !film.is_even();
   before_ = std::move(film);
 }
 

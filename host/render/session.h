@@ -109,7 +109,7 @@ class Session {
   /// pixels have different numbers, the largest that any may have.
   std::uint32_t samples() const { return next_ - options_.sample_begin; }
   /// Returns whether all pixels have as many.
-  bool is_even() const { return !has_lists_ && (!before_ || before_->is_even()); }
+  bool is_even() const { return !has_lists_; }
 
   /// Stops the render under way after the samples that are begun; if there is none, stops the next
   /// one. It may be called from any thread, and from a progress function.
@@ -150,7 +150,7 @@ class Session {
   std::optional<Film> before_;  // what it was resumed with
   std::uint32_t first_,
       next_;  // the samples that its devices have rendered: up to, and without, the latter
-  bool has_lists_ = false;  // not of every pixel
+  bool has_lists_ = false;  // pixels may have different numbers of samples
   std::shared_ptr<std::atomic<bool>> cancelled_ = std::make_shared<std::atomic<bool>>(false);
 };
 
