@@ -2,6 +2,8 @@
 // Copyright Caplet authors
 #include "caplet/session.h"
 
+#include <fmt/format.h>
+
 #include <chrono>
 #include <cmath>
 
