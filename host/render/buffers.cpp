@@ -27,7 +27,7 @@ struct PathPlaces {
         of_STATE_CONES(needs.cones ? 1 : 0),
         of_STATE_SIDES(needs.sides ? 1 : 0),
         of_STATE_MEDIA(needs.media ? 1 : 0) {}
-  std::size_t of_ONE = 0, of_IN = 0, of_STATE = 1, of_STATE_LAYERS, of_STATE_CONES, of_STATE_SIDES,
+  std::size_t of_ONE = 0, of_STATE = 1, of_STATE_LAYERS, of_STATE_CONES, of_STATE_SIDES,
               of_STATE_MEDIA;
 };
 

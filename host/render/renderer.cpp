@@ -207,15 +207,19 @@ void Renderer::pass(std::span<const PixelRecord> pixels, std::uint32_t sample_co
   const auto most_samples =
       static_cast<std::uint32_t>(std::min<std::size_t>(sample_count, batch_paths_));
   const std::size_t per_batch = std::min(batch_paths_ / most_samples, pixels.size());
-  Buffer<PixelRecord>& listed = paths_.batch.batch_pixels;
-  if (listed.size() < per_batch) listed = Buffer<PixelRecord>(scene_.device(), per_batch);
+  // The list is behind the batch's record.
+  Buffer<BatchRecord>& listed = paths_.batch.batch;
+  const std::size_t room =
+      1 + (per_batch * sizeof(PixelRecord) + sizeof(BatchRecord) - 1) / sizeof(BatchRecord);
+  if (listed.size() < room) listed = Buffer<BatchRecord>(scene_.device(), room);
   for (std::size_t first = 0; first < pixels.size(); first += per_batch) {
     const std::span<const PixelRecord> now =
         pixels.subspan(first, std::min(per_batch, pixels.size() - first));
     std::vector<PixelRecord> records(now.begin(), now.end());
     for (std::uint32_t done = 0; done < sample_count;) {
       const std::uint32_t samples = std::min(most_samples, sample_count - done);
-      listed.write(records);
+      listed.RawBuffer::write(records.data(), sizeof(BatchRecord),
+                              records.size() * sizeof(PixelRecord));
       BatchRecord record = batch_of(records.size(), samples);
       record.listed = 1;
       batch(record);

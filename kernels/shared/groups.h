@@ -100,8 +100,7 @@
 
 #define GROUP_BATCH              \
   GROUP_BEGIN(Batch, batch)      \
-  BUFFER(batch, BatchRecord, ONE) \
-  BUFFER(batch_pixels, PixelRecord, IN) /* of a listed batch */ \
+  BUFFER(batch, BatchRecord, ONE) /* and the PixelRecords of a listed batch */ \
   GROUP_END(Batch)
 
 #define GROUP_RAYS                   \

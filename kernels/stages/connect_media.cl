@@ -15,7 +15,7 @@ static void stage_item(const Stage* g, uint item) {
   RayRecord ray = g->shadows.path_shadow[path];
   MediumStack stack = {g->medium_stacks.shadow_inside[path], g->medium_stacks.shadow_around[path]};
   const ShadowTarget target = g->shadows.path_shadow_target[path];
-  const PathSample at = path_sample(&g->batch, g->view.view, path);
+  const PathSample at = path_sample(g->batch.batch, g->view.view, path);
   MediumNumbers numbers = {
       hash_combine(path_hash(at, g->carried.path_flags[path]), HASHED_SAMPLE(shadow)), 0u};
   MediumWeights weights;

@@ -12,7 +12,7 @@
 
 static void stage_item(const Stage* g, uint path) {
   __global const ViewRecord* view = g->view.view;
-  const PathSample s = path_sample(&g->batch, view, path);
+  const PathSample s = path_sample(g->batch.batch, view, path);
   float filter_weight;
   const float2 offset =
       filter_sample(g->camera.filter_table, view->filter_width, view->filter_height,

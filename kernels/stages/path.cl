@@ -90,13 +90,13 @@ static inline uint2 window_pixel(__global const BatchRecord* batch, uint pixel) 
 }
 
 // Returns pixel number `pixel` of a batch: its place in the full image, and its first sample.
-static inline PixelRecord batch_pixel(const Batch* g, uint pixel) {
-  if (g->batch->listed) return g->batch_pixels[pixel];
-  const uint2 place = window_pixel(g->batch, pixel);
+static inline PixelRecord batch_pixel(__global const BatchRecord* batch, uint pixel) {
+  if (batch->listed) return ((__global const PixelRecord*)(batch + 1))[pixel];
+  const uint2 place = window_pixel(batch, pixel);
   PixelRecord out;
   out.x = place.x;
   out.y = place.y;
-  out.sample_begin = g->batch->sample_begin;
+  out.sample_begin = batch->sample_begin;
   return out;
 }
 
@@ -107,10 +107,10 @@ static inline uint path_number(__global const BatchRecord* batch, uint pixel, ui
 }
 
 // Returns the sample of path number `path` of a batch.
-static inline PathSample path_sample(const Batch* g, __global const ViewRecord* view, uint path) {
-  __global const BatchRecord* batch = g->batch;
+static inline PathSample path_sample(__global const BatchRecord* batch,
+                                     __global const ViewRecord* view, uint path) {
   const PixelRecord pixel =
-      batch_pixel(g, batch->by_sample ? path % batch->pixel_count : path / batch->sample_count);
+      batch_pixel(batch, batch->by_sample ? path % batch->pixel_count : path / batch->sample_count);
   return sample_of_pixel(view, pixel.x, pixel.y,
                          pixel.sample_begin + (batch->by_sample ? path / batch->pixel_count
                                                                 : path % batch->sample_count));

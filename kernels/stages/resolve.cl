@@ -76,7 +76,7 @@ static void stage_item(const Stage* g, uint item) {
   const uint apart = batch->layers_apart, number = apart ? item % batch->pixel_count : item;
   uint left = apart ? item / batch->pixel_count : 0u;  // layers before the one that is this item's
 #define TAKES_LAYER (!apart || left-- == 0u)
-  const PixelRecord pixel = batch_pixel(&g->batch, number);
+  const PixelRecord pixel = batch_pixel(batch, number);
   const uint place = (pixel.y - view->crop_y) * view->crop_width + (pixel.x - view->crop_x);
   __global ulong* film = g->film.film + (size_t)place * batch->film_words;
   const int first = batch->first != 0u;

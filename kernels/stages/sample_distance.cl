@@ -56,7 +56,7 @@ static inline void sample_light(const Stage* g, Outbox* out, const Scene* scene,
 // Scatters a path at a point of a medium, `t` along its ray.
 static inline void scatter(const Stage* g, Outbox* out, uint path, const ScatteringPoint* point,
                            float t, int is_within, PathState* state) {
-  const PathSample at = path_sample(&g->batch, g->view.view, path);
+  const PathSample at = path_sample(g->batch.batch, g->view.view, path);
   const uint depth = state->depth, uncounted = media_uncounted(g, path);
   float pdf;
   const float3 wi = phase_sample(point->direction, point->asymmetry,
@@ -91,7 +91,7 @@ static void sending_item(const Stage* g, Outbox* out, uint item) {
   const int is_within = medium_is_within(&g->media, medium);
   const int may_scatter =
       is_within || state.depth - media_uncounted(g, path) < g->view.view->max_depth;
-  const PathSample at = path_sample(&g->batch, g->view.view, path);
+  const PathSample at = path_sample(g->batch.batch, g->view.view, path);
   MediumNumbers numbers = {
       hash_combine(path_hash(at, state.depth) ^ HASHED_SAMPLE(tracking), as_uint(ray.t_min)), 0u};
   const float u = ray.t_min == 0.0f ? sampler_1d(at, MEDIUM_SAMPLE(distance, state.depth))

@@ -159,7 +159,7 @@ static inline void send_occlusion_ray(const Stage* g, Outbox* out, const Shading
   __global const ViewRecord* view = g->view.view;
   const Surface* s = &point->surface;
   const float2 u =
-      sampler_2d(path_sample(&g->batch, view, point->path), SCATTERING_SAMPLE(bsdf, 0));
+      sampler_2d(path_sample(g->batch.batch, view, point->path), SCATTERING_SAMPLE(bsdf, 0));
   float3 wi_local = sample_cosine_hemisphere(u);
   if ((view->strategy & CAPLET_STRATEGY_UNIFORM) != 0u) {
     const float across = sqrt(1.0f - u.x * u.x), phi = 2.0f * CAPLET_PI * u.y;
@@ -252,7 +252,7 @@ static inline void find_material(const Stage* g, ShadingPoint* point, const Path
   }
   point->material = s->material;
   if (any_choice_material) {
-    const PathSample at = path_sample(&g->batch, g->view.view, point->path);
+    const PathSample at = path_sample(g->batch.batch, g->view.view, point->path);
     const float u = sampler_2d(at, SCATTERING_SAMPLE(roulette, state->depth)).y;
     point->material = bsdf_chosen(&g->materials, &g->spectra, point->material, &point->place,
                                   state->wavelengths, u);
@@ -365,7 +365,7 @@ static void sending_item(const Stage* g, Outbox* out, uint item) {
   if (!is_within && state.depth - media_uncounted(g, path) >= g->view.view->max_depth) return;
   if (bsdf_is_dispersive(&point.bsdf) && pdfs.y > 0.0f) keep_hero_wavelength(g, path, &state, pdfs);
 
-  const PathSample at = path_sample(&g->batch, g->view.view, path);
+  const PathSample at = path_sample(g->batch.batch, g->view.view, path);
   if (any_stochastic_material) point.bsdf.random = path_hash(at, state.depth);
   point.side = receiving_side(&point.frame, &point.bsdf, point.wo_local);
   point.by_shading = goes_by_shading_normal(&point.surface, &point.bsdf, point.bumped);
