@@ -42,7 +42,7 @@ TEST(Shown, IsInSrgbWhateverTheFilmsSpace) {
   EXPECT_EQ(shown.color[5], 0);
 }
 
-// Variances of the means 0.04 and 0.12: root mean square 0.2828 over a mean of 2.
+// Variances of the means 0.04 and 0.12: root mean square 0.2828 over 2.5.
 TEST(Shown, SaysItsNoise) {
   LayeredImage image = image_of({0, 0}, {1, 3}, {0, 0});
   EXPECT_EQ(shown_of(image, false).noise, 0);
