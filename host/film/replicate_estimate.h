@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// What the two replicates of a pixel say about its variance.
+// This file tells what the two replicates of a pixel say about its variance.
 #pragma once
 
 #include <algorithm>
