@@ -217,12 +217,15 @@ TEST(SamplePlan, CountsAreFew) {
   }
   const SamplePlan plan = plan_samples(film_of(40, 40, pixels), 0, {0.018, 16, 1u << 20});
   std::vector<std::uint32_t> counts;
+  std::size_t between = 0;  // powers of two
   for (const PixelSamples& each : plan.samples) {
     const std::uint32_t odd = each.count / (each.count & -each.count);
     EXPECT_TRUE(each.count >= 8 && (odd == 1 || odd == 3)) << each.count;
+    between += odd == 3 ? 1 : 0;
     counts.push_back(each.count);
   }
   EXPECT_GT(counts.size(), 4u);
+  EXPECT_GT(between, 1u);
   EXPECT_THAT(counts, Each(Le(1024u)));
   EXPECT_TRUE(std::ranges::is_sorted(counts));
 }
