@@ -14,12 +14,15 @@
 #include "base/log.h"
 #include "cli/commands.h"
 #include "cli/description.h"
+#include "cli/matte_options.h"
 #include "cli/options.h"
+#include "film/deep.h"
 #include "film/denoise.h"
 #include "film/film_file.h"
 #include "film/image.h"
 #include "present/picture_options.h"
 #include "report/denoised.h"
+#include "report/mattes.h"
 #include "report/picture.h"
 
 namespace caplet::cli {
@@ -33,11 +36,12 @@ struct MergeFlags {
   std::string preview, film, background;
   std::optional<std::string> layers;
   bool variance = false, denoise = false, quiet = false;
+  MatteFlags mattes;
 };
 
 struct Targets {
   std::vector<fs::path> pictures, previews;
-  fs::path film;
+  fs::path film, deep;
   Outputs all;
 };
 
@@ -59,9 +63,13 @@ Targets targets_of(const MergeFlags& flags) {
     out.film = output_named(flags.film);
     out.all.add("--film", out.film);
   }
-  if (out.pictures.empty() && out.previews.empty() && out.film.empty())
+  if (!flags.mattes.deep.empty()) {
+    out.deep = output_named(flags.mattes.deep);
+    out.all.add("--deep", out.deep);
+  }
+  if (out.pictures.empty() && out.previews.empty() && out.film.empty() && out.deep.empty())
     throw InputError(SourceLocation{"-o"},
-                     "is missing: a picture (.exr, .png and the like), or --film");
+                     "is missing: a picture (.exr, .png and the like), --deep or --film");
   return out;
 }
 
@@ -94,8 +102,14 @@ void warn_of_missing(const SavedFilm& sum) {
 
 Layers layers_of(const MergeFlags& flags, const Film& film) {
   const Layers there = film.layout().layers;
+  if (flags.mattes.cryptomatte && !there.has_all(Layers::mattes()))
+    throw InputError(SourceLocation{"--cryptomatte"}, "the films do not have all mattes");
+  if (!flags.mattes.deep.empty() && !there.has_all(deep_layers()))
+    throw InputError(
+        SourceLocation{"--deep"},
+        "the films do not have what it takes (render --deep, or the layers Z and deep)");
   if (!flags.layers && !flags.variance) return there;
-  const Layers asked = parse_layers(flags.layers, flags.variance);
+  const Layers asked = with_mattes(parse_layers(flags.layers, flags.variance), flags.mattes);
   if (flags.layers && !there.has_all(asked))
     throw InputError(SourceLocation{"--layers"}, "the films do not have all of these layers");
   if (!there.has_all(Layers::none().with(Layer::variance)) && flags.variance)
@@ -114,25 +128,33 @@ void run_merge(const MergeFlags& flags, const Invocation& invocation) {
     sum.settings.backdrop = parse_backdrop(flags.background, FileImageReader(), "--background");
   if (flags.denoise) sum.settings.denoise = true;
   if (sum.settings.denoise) check_denoiser("--denoise");
+  if (flags.mattes.levels) sum.settings.matte_levels = *flags.mattes.levels;
   const Layers layers = layers_of(flags, sum.film);
   if (sum.settings.backdrop && sum.settings.backdrop->kind == Backdrop::Kind::transparent)
     for (const fs::path& preview : targets.previews) check_preview_alpha(preview, "--preview");
   warn_of_missing(sum);
   sum.notes["caplet.command"] = invocation.command_line();
   if (!targets.film.empty()) save_film(targets.film, sum);
-  NotFinite not_finite;
-  BandedImage picture = report::developed(sum.film, sum.settings, layers, not_finite);
+  if (!targets.deep.empty())
+    write_deep_exr(
+        targets.deep, sum.film.layout(),
+        [&](int first, int count) { return sum.film.rows(first, count); }, sum.notes);
+  PictureFlaws flaws;
+  BandedImage picture = report::developed(sum.film, sum.settings, layers, flaws);
   picture.whole.metadata = sum.notes;
+  report::drop_other_mattes(picture.whole.metadata, layers);
   if (sum.settings.denoise) picture.whole.metadata["caplet.denoiser"] = denoiser_name();
   for (std::size_t i = 0; i < std::max(targets.pictures.size(), targets.previews.size()); ++i)
-    report::write_pictures(
-        i < targets.pictures.size() ? targets.pictures[i] : fs::path(),
-        i < targets.previews.size() ? targets.previews[i] : fs::path(), picture,
-        layers.channels() + (sum.settings.denoise ? report::denoising_channels : 0), 0);
-  not_finite.warn();
+    report::write_pictures(i < targets.pictures.size() ? targets.pictures[i] : fs::path(),
+                           i < targets.previews.size() ? targets.previews[i] : fs::path(), picture,
+                           layers.channels(sum.settings.matte_levels) +
+                               (sum.settings.denoise ? report::denoising_channels : 0),
+                           0);
+  flaws.warn();
   log::info("wrote {}: {} samples a pixel of {} films",
             !targets.pictures.empty()   ? targets.pictures.front().string()
             : !targets.previews.empty() ? targets.previews.front().string()
+            : !targets.deep.empty()     ? targets.deep.string()
                                         : targets.film.string(),
             std::lround(sum.film.mean_samples()), flags.films.size());
 }
@@ -163,6 +185,7 @@ void add_merge(CLI::App& app, const Invocation& invocation) {
       ->type_name("all|none|LAYER,...")
       ->default_str("those of the films");
   command->add_flag("--variance", o->variance, "Write the variance among the layers");
+  add_matte_flags(*command, o->mattes);
   command
       ->add_option("--background", o->background,
                    "What lies behind, as of render, in place of the films' own")

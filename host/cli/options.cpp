@@ -101,23 +101,31 @@ RayNumbers parse_ray(const std::string& text) {
   return ray;
 }
 
+namespace {
+
+/// Returns the layers that a name of --layers stands for.
+Layers layers_named(std::string_view name) {
+  if (name == "all") return Layers::all();
+  const auto found = std::ranges::find_if(
+      layer_rows, [&](const LayerRow& row) { return !name.empty() && row.option == name; });
+  if (found != layer_rows.end())
+    return Layers::none().with(static_cast<Layer>(found - layer_rows.begin()));
+  std::vector<std::string> names;
+  for (const LayerRow& row : layer_rows)
+    if (*row.option) names.emplace_back(row.option);
+  refuse("--layers", fmt::format("there is no layer '{}'; the nearest is '{}' (a list like "
+                                 "Z,albedo, or all, or none)",
+                                 name, nearest_name(name, names)));
+}
+
+}  // namespace
+
 Layers parse_layers(const std::optional<std::string>& list, bool variance) {
-  Layers layers = list && *list != "all" ? Layers::none() : list ? Layers::all() : Layers::usual();
-  if (list && *list != "all" && *list != "none")
+  Layers layers = list ? Layers::none() : Layers::usual();
+  if (list && *list != "none")
     for (std::string_view rest = *list;;) {
       const std::size_t comma = rest.find(',');
-      const std::string_view name = rest.substr(0, comma);
-      const auto found = std::ranges::find_if(
-          layer_rows, [&](const LayerRow& row) { return !name.empty() && row.option == name; });
-      if (found == layer_rows.end()) {
-        std::vector<std::string> names;
-        for (const LayerRow& row : layer_rows)
-          if (*row.option) names.emplace_back(row.option);
-        refuse("--layers", fmt::format("there is no layer '{}'; the nearest is '{}' (a list like "
-                                       "Z,albedo, or all, or none)",
-                                       name, nearest_name(name, names)));
-      }
-      layers = layers.with(static_cast<Layer>(found - layer_rows.begin()));
+      layers = Layers::of_bits(layers.bits() | layers_named(rest.substr(0, comma)).bits());
       if (comma == std::string_view::npos) break;
       rest.remove_prefix(comma + 1);
     }
@@ -178,6 +186,7 @@ void apply(const Overrides& overrides, Scene& scene) {
   if (overrides.clamp) scene.view.film.max_component_value = *overrides.clamp;
   if (overrides.max_depth) scene.view.integrator.max_depth = *overrides.max_depth;
   if (overrides.denoise) scene.view.film.denoise = true;
+  if (overrides.matte_levels) scene.view.film.matte_levels = *overrides.matte_levels;
 }
 
 void add_import_options(CLI::App& command, ImportOptions& options) {

@@ -43,9 +43,9 @@ std::array<int, 2> parse_pixel(const std::string& text);
 /// --ray.
 RayNumbers parse_ray(const std::string& text);
 
-/// Returns the layers to write: the default ones without `list`; "all", "none", or some of
-/// layer_rows' options separated by commas; and the variance if requested. Throws InputError that
-/// names --layers.
+/// Returns the layers to write: the default ones without `list`; "none", or some of layer_rows'
+/// options and "all" (Layers::all) separated by commas; and the variance if requested. Throws
+/// InputError that names --layers.
 Layers parse_layers(const std::optional<std::string>& list, bool variance);
 
 /// Adds an option --NAME for each of import_option_rows, stored in `options` if given. The option
@@ -115,6 +115,7 @@ struct Overrides {
   std::optional<std::uint32_t> seed;
   std::optional<double> clamp;  // film.max_component_value; 0: none
   bool denoise = false;         // true: film.denoise
+  std::optional<int> matte_levels;
 };
 
 /// Applies the settings. A new size rescales the file's own crop and re-frames an automatic camera.

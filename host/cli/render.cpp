@@ -25,10 +25,12 @@
 #include "cli/noise_options.h"
 #include "cli/options.h"
 #include "cli/overlays.h"
+#include "cli/render_files.h"
 #include "cli/render_flags.h"
 #include "cli/trial.h"
 #include "device/second_try.h"
 #include "display/tev.h"
+#include "film/deep.h"
 #include "film/denoise.h"
 #include "film/develop.h"
 #include "film/image.h"
@@ -44,6 +46,7 @@
 #include "present/turntable.h"
 #include "render/render.h"
 #include "report/denoised.h"
+#include "report/mattes.h"
 #include "report/picture.h"
 #include "report/stereo.h"
 #include "report/summary.h"
@@ -56,64 +59,6 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr const char* no_picture = "none";
-
-/// The outputs and their paths; for frames, with the place of the number. An empty path is not
-/// written.
-struct Files {
-  std::vector<fs::path> pictures, previews;
-  fs::path movie, stats, film;
-  Outputs all;
-
-  /// Returns the first output, which stands for all in messages.
-  fs::path first() const {
-    if (!pictures.empty()) return pictures.front();
-    if (!previews.empty()) return previews.front();
-    return !movie.empty() ? movie : !film.empty() ? film : stats;
-  }
-};
-
-/// Fills in the number of the frame.
-Files of_frame(const Files& files, std::uint32_t frame) {
-  Files out;
-  for (const fs::path& path : files.pictures) out.pictures.push_back(numbered(path, frame));
-  for (const fs::path& path : files.previews) out.previews.push_back(numbered(path, frame));
-  return out;
-}
-
-void add_preview(Files& files, const fs::path& path, const std::string& flag) {
-  check_preview_format(path, flag);
-  files.previews.push_back(path);
-  files.all.add(flag, path);
-}
-
-void add_output(const RenderFlags& options, Files& files, const fs::path& path) {
-  if (is_stream(path) || path.extension() == ".exr") {
-    files.pictures.push_back(path);
-    files.all.add("-o", path);
-  } else if (is_movie(path) && (options.has_frames() || path.extension() != ".gif")) {
-    if (!options.has_frames())
-      throw InputError(
-          SourceLocation{"-o"},
-          fmt::format("'{}': a movie goes with --turntable or --frames", path.string()));
-    if (!files.movie.empty())
-      throw InputError(SourceLocation{"-o"}, "one movie at a time is written");
-    check_preview_format("frame.png", "-o");
-    files.movie = path;
-    files.all.add("-o", path);
-  } else {
-    files.all.add("-o", path);
-    try {
-      check_preview_format(path, "-o");
-    } catch (const InputError& error) {
-      throw InputError(SourceLocation{"-o"},
-                       fmt::format("'{}': pictures are written as .exr, and tone-mapped as .png, "
-                                   ".jpg and the like; movies of "
-                                   "frames as .mp4, .mov, .mkv, .webm or .gif",
-                                   path.string()));
-    }
-    files.previews.push_back(path);
-  }
-}
 
 void check_film_options(const RenderFlags& options) {
   const FilmFlags& film = options.film;
@@ -130,17 +75,6 @@ void check_film_options(const RenderFlags& options) {
     throw InputError(SourceLocation{flag}, "does not go with --stereo");
 }
 
-/// Returns where the film is written; empty where it is not. Throws InputError.
-fs::path film_path(const RenderFlags& options, const Files& files) {
-  if (!options.film.keeps()) return {};
-  if (!options.film.film.empty()) return output_named(options.film.film);
-  fs::path path = files.first();
-  if (path.empty() || is_stream(path))
-    throw InputError(SourceLocation{options.film.resume ? "--resume" : "--checkpoint"},
-                     "--film FILE tells where the film is");
-  return path.replace_extension(".film");
-}
-
 void check_frame_options(const RenderFlags& options, const Files& files) {
   const auto refuse = [](const char* flag, const std::string& why) {
     throw InputError(SourceLocation{flag}, why);
@@ -153,11 +87,14 @@ void check_frame_options(const RenderFlags& options, const Files& files) {
   if (!options.display.empty()) refuse("--display", "does not go with --turntable and --frames");
   if (options.skip_existing && !files.movie.empty())
     refuse("--skip-existing", "does not go with a movie, which has all frames");
+  const auto check_numbered = [&](const char* flag, const fs::path& path) {
+    if (!is_numbered(path.string()))
+      refuse(flag, fmt::format("'{}': frames are written to numbered files, such as {}.####{}",
+                               path.string(), path.stem().string(), path.extension().string()));
+  };
   for (const auto* paths : {&files.pictures, &files.previews})
-    for (const fs::path& path : *paths)
-      if (!is_numbered(path.string()))
-        refuse("-o", fmt::format("'{}': frames are written to numbered files, such as {}.####{}",
-                                 path.string(), path.stem().string(), path.extension().string()));
+    for (const fs::path& path : *paths) check_numbered("-o", path);
+  if (!files.deep.empty()) check_numbered("--deep", files.deep);
   if (files.pictures.empty() && files.previews.empty() && files.movie.empty())
     refuse("-o", "frames need a name, such as frame.####.png or movie.mp4");
 }
@@ -172,6 +109,7 @@ Overrides check_options(const RenderFlags& options, Files& files) {
   overrides.seed = options.seed;
   overrides.clamp = options.clamp;
   overrides.denoise = options.denoise;
+  overrides.matte_levels = options.mattes.levels;
   if (options.denoise) check_denoiser("--denoise");
   if (!options.separation && (options.convergence || !options.layout.empty()))
     throw InputError(SourceLocation{options.convergence ? "--convergence" : "--stereo-layout"},
@@ -179,12 +117,19 @@ Overrides check_options(const RenderFlags& options, Files& files) {
   const bool none = std::ranges::find(options.outputs, no_picture) != options.outputs.end();
   if (none && options.outputs.size() > 1)
     throw InputError(SourceLocation{"-o"}, "'none' does not go with another -o");
-  if (none && options.preview.empty() && options.stats.empty() && options.film.film.empty())
-    throw InputError(SourceLocation{"-o"},
-                     "'none' goes with --preview, --film or --stats: nothing would be written");
+  if (none && options.preview.empty() && options.stats.empty() && options.film.film.empty() &&
+      options.mattes.deep.empty())
+    throw InputError(
+        SourceLocation{"-o"},
+        "'none' goes with --preview, --deep, --film or --stats: nothing would be written");
   for (const std::string& output : options.outputs)
     if (output != no_picture) add_output(options, files, output_named(output));
   if (!options.preview.empty()) add_preview(files, options.preview, "--preview");
+  if (!options.mattes.deep.empty()) {
+    if (options.separation) throw InputError(SourceLocation{"--deep"}, "does not go with --stereo");
+    files.deep = output_named(options.mattes.deep);
+    files.all.add("--deep", files.deep);
+  }
   if (options.overlays.any() &&
       ((files.previews.empty() && files.movie.empty()) || options.separation))
     throw InputError(SourceLocation{"--preview"},
@@ -211,7 +156,8 @@ report::StereoLayout layout_of(const RenderFlags& options) {
 /// file's, in the current folder), its size, and that no output is a file that the scene was read
 /// from.
 void check_outputs(const RenderFlags& options, const Scene& scene, Layers layers, Files& files) {
-  if (options.outputs.empty() && !options.has_frames() && options.film.film.empty()) {
+  if (options.outputs.empty() && !options.has_frames() && options.film.film.empty() &&
+      options.mattes.deep.empty()) {
     fs::path name = fs::path(scene.view.film.filename).filename();
     if (name.empty()) name = fs::path(options.scenes.front()).filename();
     add_output(options, files, name.replace_extension(".exr"));
@@ -227,7 +173,7 @@ void check_outputs(const RenderFlags& options, const Scene& scene, Layers layers
   const std::string flag = options.crop.empty() ? "--size" : "--crop";
   if (!files.pictures.empty())
     check_exr_size(width, height,
-                   (layers.channels() +
+                   (layers.channels(scene.view.film.matte_levels) +
                     (scene.view.film.denoise ? report::denoising_channels : std::size_t{0})) *
                        (options.separation ? 2 : 1),
                    flag);
@@ -303,8 +249,9 @@ struct Work {
 };
 
 std::map<std::string, std::string> notes_of(const Work& work, const RenderResult& result) {
-  const auto notes = report::picture_metadata(work.scene, scene_names(work.options.scenes),
-                                              work.invocation.command_line(), result);
+  auto notes = report::picture_metadata(work.scene, scene_names(work.options.scenes),
+                                        work.invocation.command_line(), result);
+  notes.merge(report::matte_attributes(work.scene, work.layers));
   return work.film ? work.film->notes(notes) : notes;
 }
 
@@ -354,7 +301,7 @@ RenderResult render_shown(const Work& work, const FlatView& view, const std::str
                                .string();
   TevDisplay display(parse_tev_address(work.options.display, "--display"),
                      view_name.empty() ? name : name + " (" + view_name + ")");
-  NotFinite ignored;
+  PictureFlaws ignored;
   shown.film_on_device = false;
   shown.looks.push_back({1, [&](const Film& film) {
                            if (display.is_idle())
@@ -372,12 +319,11 @@ void add_to(report::RunSeconds& seconds, const RenderResult& result) {
   seconds.render += result.render_seconds;
 }
 
-BandedImage bands_of(const Work& work, const RenderResult& result, NotFinite& not_finite) {
+BandedImage bands_of(const Work& work, const RenderResult& result, PictureFlaws& flaws) {
   BandedImage out =
       result.device_film
-          ? report::developed(*result.device_film, work.scene.view.film, work.film_layers,
-                              not_finite)
-          : report::developed(result.film, work.scene.view.film, work.film_layers, not_finite);
+          ? report::developed(*result.device_film, work.scene.view.film, work.film_layers, flaws)
+          : report::developed(result.film, work.scene.view.film, work.film_layers, flaws);
   out.whole.metadata = notes_of(work, result);
   if (work.scene.view.film.denoise) out.whole.metadata["caplet.denoiser"] = denoiser_name();
   return out;
@@ -393,15 +339,26 @@ void each_pair(const Files& files, const Write& write) {
 }
 
 std::size_t channels_of(const Work& work) {
-  return work.layers.channels() +
+  return work.layers.channels(work.scene.view.film.matte_levels) +
          (work.scene.view.film.denoise ? report::denoising_channels : std::size_t{0});
+}
+
+void write_deep(const Work& work, const RenderResult& result) {
+  const auto& on_device = result.device_film;
+  write_deep_exr(
+      work.files.deep, on_device ? on_device->layout : result.film.layout(),
+      [&](int first, int count) {
+        return on_device ? on_device->read(first, count) : result.film.rows(first, count);
+      },
+      notes_of(work, result));
 }
 
 RenderResult written(const Work& work, RenderResult result, report::RunSeconds& seconds) {
   add_to(seconds, result);
+  if (!work.files.deep.empty()) write_deep(work, result);
   if (work.files.pictures.empty() && work.files.previews.empty()) return result;
-  NotFinite not_finite;
-  BandedImage picture = bands_of(work, result, not_finite);
+  PictureFlaws flaws;
+  BandedImage picture = bands_of(work, result, flaws);
   PictureNoise noise;
   int added = 0;  // rows: each pair of files develops all of them
   picture.band = [&noise, &added, band = std::move(picture.band)](int first, int rows) {
@@ -422,7 +379,7 @@ RenderResult written(const Work& work, RenderResult result, report::RunSeconds& 
   each_pair(work.files, [&](const fs::path& exr, const fs::path& preview) {
     report::write_pictures(exr, preview, picture, channels_of(work), result.render_seconds, finish);
   });
-  not_finite.warn();
+  flaws.warn();
   result.noise = noise.relative();
   seconds.write += phase.lap();
   return result;
@@ -461,9 +418,9 @@ RenderResult stereo_pictures(const Work& both, report::RunSeconds& seconds) {
     if (results[i].interrupted && i == 0)
       throw RunError("interrupted before there was a view for both eyes; nothing is written");
   }
-  NotFinite not_finite;
-  BandedImage left = bands_of(both, results[0], not_finite);
-  const BandedImage right = bands_of(both, results[1], not_finite);
+  PictureFlaws flaws;
+  BandedImage left = bands_of(both, results[0], flaws);
+  const BandedImage right = bands_of(both, results[1], flaws);
   left.whole.metadata["caplet.stereo_separation"] = fmt::format("{}", stereo.separation);
   if (stereo.convergence)
     left.whole.metadata["caplet.stereo_convergence"] = fmt::format("{}", *stereo.convergence);
@@ -473,7 +430,7 @@ RenderResult stereo_pictures(const Work& both, report::RunSeconds& seconds) {
                                   channels_of(both),
                                   results[0].render_seconds + results[1].render_seconds);
   });
-  not_finite.warn();
+  flaws.warn();
   seconds.write = phase.lap();
   RenderResult& out = results[1];
   out.render_seconds += results[0].render_seconds;
@@ -677,8 +634,9 @@ void run_render(const RenderFlags& options, const Invocation& invocation) {
   Files files;
   const Overrides overrides = check_options(options, files);
   if (!options.display.empty()) parse_tev_address(options.display, "--display");
-  const Layers layers =
-      parse_layers(options.layers, options.variance || (options.noise && !options.layers));
+  const Layers layers = with_mattes(
+      parse_layers(options.layers, options.variance || (options.noise && !options.layers)),
+      options.mattes);
   const Layers film_layers = Layers::of_bits(layers.bits() | options.overlays.layers().bits());
   install_interrupt_handlers();
   std::vector<Device> devices = choose_devices(options.device, options.encoding);
@@ -733,6 +691,8 @@ void run_render(const RenderFlags& options, const Invocation& invocation) {
   render_options.layers = film_layers;
   if (scene.view.film.denoise)
     render_options.layers = Layers::of_bits(film_layers.bits() | report::denoising_layers().bits());
+  if (!files.deep.empty())
+    render_options.layers = Layers::of_bits(render_options.layers.bits() | deep_layers().bits());
   if (options.noise) render_options.layers = render_options.layers.with(Layer::variance);
   render_options.patience = options.patience;
   const Work work{options, invocation,  scene, flat,           devices,

@@ -131,7 +131,8 @@ void add_layer_choice(CLI::App& command, RenderFlags& o) {
       .add_option("--layers", o.layers,
                   "Layers beside R G B A: some of " + layer_names() + ", or all, or none")
       ->type_name("all|none|LAYER,...")
-      ->default_str("all but the variance");
+      ->default_str("all but the variance, the mattes and deep");
+  add_matte_flags(command, o.mattes);
 }
 
 void add_two_eyes(CLI::App& command, RenderFlags& o) {

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "cli/film_output.h"
+#include "cli/matte_options.h"
 #include "cli/options.h"
 #include "import/import.h"
 #include "post/overlay.h"
@@ -31,6 +32,7 @@ struct RenderFlags {
   std::optional<double> noise, time_limit, clamp, separation, convergence;
   std::string layout, display;
   FilmFlags film;
+  MatteFlags mattes;
   double patience = 60;
   std::size_t batch_paths = 0;
   std::uint32_t turntable = 0;

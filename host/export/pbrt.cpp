@@ -177,7 +177,7 @@ class SceneWriter {
 
   void write_film(const FilmSettings& film) {
     const auto& [width, height, crop, filename, iso, exposure_time, max_component_value,
-                 white_balance, space, backdrop, denoise, least_width] = film;
+                 white_balance, space, backdrop, denoise, matte_levels, least_width] = film;
     const SourceLocation where{here()};
     Statement out("Film \"rgb\"", nullptr, where);
     FilmSettings::fields(film, OptionWriter{out});

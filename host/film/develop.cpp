@@ -11,6 +11,7 @@
 
 #include "base/check.h"
 #include "base/log.h"
+#include "film/mattes.h"
 #include "film/replicates.h"
 #include "film/under.h"
 #include "lower/spectrum.h"
@@ -42,12 +43,19 @@ float to_float(double value) {
   return static_cast<float>(value);
 }
 
-LayeredImage black_image(const FilmLayout& layout, ColorSpace space, Layers layers) {
+LayeredImage black_image(const FilmLayout& layout, ColorSpace space, Layers layers,
+                         int matte_levels) {
   LayeredImage image = image_of(layout);
   image.space = space;
   const std::size_t pixels = layout.window.pixels();
   for (std::size_t i = 0; i < layer_rows.size(); ++i) {
     if (!layers.has(static_cast<Layer>(i))) continue;
+    if (layer_rows[i].kind == LayerKind::slots) {
+      for (int c = 0; c < channels_of(layer_rows[i], matte_levels); ++c)
+        image.channels.push_back(
+            {matte_channel(layer_rows[i].channels, c), std::vector<float>(pixels), {}});
+      continue;
+    }
     for (std::string_view names = layer_rows[i].channels; !names.empty();) {
       const std::size_t comma = std::min(names.find(','), names.size());
       Channel channel{std::string(names.substr(0, comma)), {}, {}};
@@ -106,6 +114,8 @@ class Developer {
       case LayerHow::variance:
         return exposure_ * exposure_ * variances_[pixel_];
       case LayerHow::number:
+      case LayerHow::matte:
+      case LayerHow::deep:
         break;
     }
     return {};
@@ -156,21 +166,21 @@ void put_under(LayeredImage& image, const std::optional<Backdrop>& backdrop,
 }
 
 LayeredImage develop(const Film& film, const FilmSettings& settings, Layers layers,
-                     NotFinite& not_finite, RowMargins margins) {
+                     PictureFlaws& flaws, RowMargins margins) {
   CHECK_EQ_(film.layout().layers.has_all(layers), true);
   FilmLayout layout = film.layout();
   layout.window.y += margins.above;
   layout.window.height -= margins.above + margins.below;
   const Window& window = layout.window;
   CHECK_LE_(0, window.height);
-  LayeredImage image = black_image(layout, settings.space, layers);
+  LayeredImage image = black_image(layout, settings.space, layers, settings.matte_levels);
   Developer developer(film, settings, layers);
   const std::size_t first =
       static_cast<std::size_t>(margins.above) * static_cast<std::size_t>(window.width);
-  not_finite.of += window.pixels();
+  flaws.of += window.pixels();
   for (std::size_t pixel = 0; pixel < window.pixels(); ++pixel) {
     developer.look_at(first + pixel);
-    bool all_finite = true;
+    bool all_finite = true, is_crowded = false;
     std::size_t channel = 0;
     for (std::size_t i = 0; i < layer_rows.size(); ++i) {
       const auto layer = static_cast<Layer>(i);
@@ -178,6 +188,18 @@ LayeredImage develop(const Film& film, const FilmSettings& settings, Layers laye
       if (!layers.has(layer)) continue;
       if (row.kind == LayerKind::id) {
         image.channels[channel++].uints[pixel] = film.number(layer, first + pixel);
+        continue;
+      }
+      if (row.kind == LayerKind::slots) {
+        const auto count = static_cast<std::size_t>(channels_of(row, settings.matte_levels));
+        if (count == 0) continue;
+        const std::vector<MatteRank> ranks = matte_ranks(film, layer, first + pixel);
+        for (std::size_t rank = 0; 2 * rank < count && rank < ranks.size(); ++rank) {
+          image.channels[channel + 2 * rank].floats[pixel] = ranks[rank].id;
+          image.channels[channel + 2 * rank + 1].floats[pixel] = ranks[rank].coverage;
+        }
+        channel += count;
+        is_crowded |= ranks.size() == CAPLET_SLOTS && lacks_slots(film, layer, first + pixel);
         continue;
       }
       const Vector values = developer.values(layer);
@@ -188,27 +210,31 @@ LayeredImage develop(const Film& film, const FilmSettings& settings, Layers laye
         image.channels[channel++].floats[pixel] = finite ? floats[c] : instead_of(row.how);
       all_finite &= finite;
     }
-    if (all_finite || not_finite.count++ > 0) continue;
+    if (is_crowded) ++flaws.crowded;
+    if (all_finite || flaws.count++ > 0) continue;
     const auto width = static_cast<std::size_t>(window.width);
-    not_finite.x = static_cast<std::size_t>(window.x) + pixel % width;
-    not_finite.y = static_cast<std::size_t>(window.y) + pixel / width;
+    flaws.x = static_cast<std::size_t>(window.x) + pixel % width;
+    flaws.y = static_cast<std::size_t>(window.y) + pixel / width;
   }
   put_under(image, settings.backdrop);
   return image;
 }
 
 LayeredImage develop(const Film& film, const FilmSettings& settings, Layers layers) {
-  NotFinite not_finite;
-  LayeredImage image = develop(film, settings, layers, not_finite);
-  not_finite.warn();
+  PictureFlaws flaws;
+  LayeredImage image = develop(film, settings, layers, flaws);
+  flaws.warn();
   return image;
 }
 
-void NotFinite::warn() const {
+void PictureFlaws::warn() const {
   if (count > 0)
     log::warn(
         "{} of {} pixels are beyond the range of a float and written black (the first: {},{})",
         count, of, x, y);
+  if (crowded > 0)
+    log::warn("{} of {} pixels show more than {} things: their mattes lack some", crowded, of,
+              CAPLET_SLOTS);
 }
 
 }  // namespace caplet

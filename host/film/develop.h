@@ -19,10 +19,11 @@ namespace caplet {
 /// and normalising nodes.
 inline constexpr float depth_of_nothing = 1e10f;
 
-/// NotFinite counts developed pixels that are beyond the range of a float.
-struct NotFinite {
-  std::size_t count = 0, of = 0;  // `of`: how many were developed
+/// PictureFlaws counts developed pixels that lack something.
+struct PictureFlaws {
+  std::size_t count = 0, of = 0;  // beyond the range of a float; `of`: how many were developed
   std::size_t x = 0, y = 0;       // the first one
+  std::size_t crowded = 0;        // with more things in one matte than CAPLET_SLOTS
 
   /// Logs a warning when there are any.
   void warn() const;
@@ -47,11 +48,13 @@ struct RowMargins {
 /// object.id, primitive.id   of the first sample; 2^32 - 1: nothing hit
 /// variance  variance of R G B's mean, as the two replicates of the film and of the neighbours say
 ///           (docs/output.md); 0 for fewer than two samples
+/// CryptoObject00.R, ...   mattes (film/mattes.h) with settings.matte_levels things a pixel
 /// All values are finite: where the exposure goes beyond a float, R G B are black and the variance
-/// is the greatest float (other layers: 0), and `not_finite` counts those pixels.
+/// is the greatest float (other layers: 0), and `flaws` counts those
+/// pixels.
 /// The rows in the margins are not developed; they are there as neighbours.
 LayeredImage develop(const Film& film, const FilmSettings& settings, Layers layers,
-                     NotFinite& not_finite, RowMargins margins = {});
+                     PictureFlaws& flaws, RowMargins margins = {});
 
 /// Does the same and warns.
 LayeredImage develop(const Film& film, const FilmSettings& settings, Layers layers);

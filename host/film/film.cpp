@@ -12,6 +12,7 @@
 
 #include "base/check.h"
 #include "base/error.h"
+#include "film/slots.h"
 
 namespace caplet {
 
@@ -164,6 +165,13 @@ std::uint32_t Film::number(Layer layer, std::size_t pixel) const {
   return static_cast<std::uint32_t>(~words_[pixel * words_per_pixel_ + first]);
 }
 
+std::vector<Slot> Film::slots(Layer layer, std::size_t pixel) const {
+  const auto row = static_cast<std::size_t>(layer);
+  CHECK_LT_(0u, first_words_[row]);
+  return slots_at(&words_[pixel * words_per_pixel_ + first_words_[row]],
+                  layer_rows[row].words / CAPLET_SLOTS, units_[row]);
+}
+
 Film Film::rows(int first, int count) const {
   FilmLayout part = layout_;
   part.window.y += first;
@@ -190,6 +198,8 @@ void Film::add(const Film& other) {
       for (int c = 0; c < row.count; ++c, to += row.words, from += row.words) {
         if (row.kind == LayerKind::id)
           *to = std::max(*to, *from);
+        else if (row.kind == LayerKind::slots)
+          add_slots(to, from, row.words / CAPLET_SLOTS);
         else
           add_words(to, from, row.words);
       }

@@ -14,6 +14,7 @@
 
 #include "film/image.h"
 #include "film/layers.h"
+#include "film/slots.h"
 
 namespace caplet {
 
@@ -94,6 +95,8 @@ class Film {
   /// Returns the number of a layer of numbers: that of the sample with the lowest sample number;
   /// CAPLET_NONE: that sample hit nothing, or there is none.
   std::uint32_t number(Layer layer, std::size_t pixel) const;
+  /// Returns the slots of a layer of slots, in the order of their keys.
+  std::vector<Slot> slots(Layer layer, std::size_t pixel) const;
 
   /// Returns `count` of its rows from `first` on, without the list of samples.
   Film rows(int first, int count) const;

@@ -24,7 +24,7 @@ namespace caplet {
 namespace {
 
 constexpr const char* format_name = "caplet.film";
-constexpr const char* format_version = "3";
+constexpr const char* format_version = "4";
 
 using Notes = std::map<std::string, std::string>;
 
@@ -121,7 +121,7 @@ class Reader {
     out.height = image_.height;
     out.window = {image_.x, image_.y, image_.data_width, image_.data_height};
     out.layers = Layers::of_bits(static_cast<std::uint32_t>(
-        whole("caplet.film.layers", 0, std::int64_t{Layers::all().bits()})));
+        whole("caplet.film.layers", 0, std::int64_t{Layers::every().bits()})));
     out.color_exponent = exponent("caplet.film.color_exponent");
     out.length_exponent = exponent("caplet.film.length_exponent");
     return out;
@@ -175,6 +175,7 @@ class Reader {
       fail(fmt::format("'{}' is no colour space of this program", space));
     out.space = static_cast<ColorSpace>(found - color_space_names.begin());
     out.denoise = text("caplet.film.denoise") == "yes";
+    out.matte_levels = static_cast<int>(whole("caplet.film.matte_levels", 1, CAPLET_SLOTS));
     out.backdrop = backdrop();
     return out;
   }
@@ -182,7 +183,8 @@ class Reader {
   Notes notes() const {
     Notes out;
     for (const auto& [name, value] : image_.metadata)
-      if (name == "software" || (name.starts_with("caplet.") && !name.starts_with(format_name)))
+      if (name == "software" || name.starts_with("cryptomatte/") ||
+          (name.starts_with("caplet.") && !name.starts_with(format_name)))
         out.emplace(name, value);
     return out;
   }
@@ -241,6 +243,7 @@ void save_film(const std::filesystem::path& path, const SavedFilm& saved, double
        {"caplet.film.exposure_time", fmt::format("{}", saved.settings.exposure_time)},
        {"caplet.film.white_balance", fmt::format("{}", saved.settings.white_balance)},
        {"caplet.film.space", color_space_names[static_cast<std::size_t>(saved.settings.space)]},
+       {"caplet.film.matte_levels", std::to_string(saved.settings.matte_levels)},
        {"caplet.film.denoise", saved.settings.denoise ? "yes" : "no"},
        {"caplet.film.backdrop", text_of(saved.settings.backdrop)}});
   image.rows = band_rows(layout.window.width, 2 * words);

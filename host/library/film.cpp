@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "base/spelling.h"
+#include "film/deep.h"
 #include "film/denoise.h"
 #include "film/preview.h"
 #include "library/detail/inside.h"
@@ -16,6 +17,8 @@
 #include "post/overlay_options.h"
 #include "report/bands.h"
 #include "report/denoised.h"
+#include "report/mattes.h"
+#include "scene/matte_names.h"
 
 namespace caplet::v0 {
 
@@ -29,6 +32,14 @@ const Channel& channel_of(const LayeredImage& image, const std::string& name) {
                                nearest_name(name, names)));
 }
 
+Layer layer_of(Matte matte) { return matte_layers.at(static_cast<std::size_t>(matte)); }
+
+void check_has(const caplet::Film& film, Layer layer) {
+  if (!film.layout().layers.has(layer))
+    throw InputError(
+        fmt::format("the film was rendered without the layer {}", row_of(layer).option));
+}
+
 }  // namespace
 
 Film::Film(std::shared_ptr<const Data> data) : data_(std::move(data)) {}
@@ -40,10 +51,10 @@ Film::~Film() = default;
 
 const Film::Data& Film::developed() const {
   std::call_once(data_->once, [&] {
-    NotFinite not_finite;
+    PictureFlaws flaws;
     LayeredImage image = report::whole_of(report::developed(
-        data_->saved.film, data_->saved.settings, data_->saved.film.layout().layers, not_finite));
-    not_finite.warn();
+        data_->saved.film, data_->saved.settings, data_->saved.film.layout().layers, flaws));
+    flaws.warn();
     image.metadata = data_->saved.notes;
     if (data_->saved.settings.denoise) image.metadata["caplet.denoiser"] = denoiser_name();
     data_->image = std::move(image);
@@ -103,6 +114,37 @@ std::vector<std::uint32_t> Film::ids(const std::string& channel) const {
   const Channel& found = channel_of(developed().image, channel);
   if (found.uints.empty()) throw InputError(fmt::format("channel '{}' holds no ids", channel));
   return found.uints;
+}
+
+std::vector<std::string> Film::matte_names(Matte matte) const {
+  check_has(data_->saved.film, layer_of(matte));
+  return report::names_in_matte(data_->saved.notes, layer_of(matte));
+}
+
+std::vector<float> Film::matte(Matte matte, const std::string& name) const {
+  const std::vector<std::string> names = matte_names(matte);
+  if (std::ranges::find(names, name) == names.end())
+    throw InputError(fmt::format("there is no '{}' in the matte; the nearest is '{}'", name,
+                                 nearest_name(name, names)));
+  const caplet::Film& film = data_->saved.film;
+  const std::uint32_t key = matte_hash(name);
+  std::vector<float> out;
+  for (std::size_t pixel = 0; pixel < film.layout().window.pixels(); ++pixel) {
+    double covered = 0;
+    for (const Slot& slot : film.slots(layer_of(matte), pixel))
+      if (slot.key == key) covered = slot.samples;
+    const std::uint32_t samples = film.samples(pixel);
+    out.push_back(samples > 0 ? static_cast<float>(covered / samples) : 0.0f);
+  }
+  return out;
+}
+
+void Film::write_deep_exr(const std::filesystem::path& file) const {
+  const caplet::Film& film = data_->saved.film;
+  check_has(film, Layer::deep);
+  caplet::write_deep_exr(
+      file, film.layout(), [&](int first, int count) { return film.rows(first, count); },
+      data_->saved.notes);
 }
 
 void Film::write_exr(const std::filesystem::path& file) const {

@@ -9,7 +9,8 @@
 
 namespace caplet::v0 {
 
-Film render(const Scene& scene, const Device& device, const RenderOptions& options) {
+Film render(const Scene& scene, const Device& device, const RenderOptions& options,
+            const ExtraLayers& layers) {
   Scene drawn = scene;
   drawn.widen_to_least();
   const caplet::Scene& model = *Inside::model(drawn);
@@ -19,8 +20,9 @@ Film render(const Scene& scene, const Device& device, const RenderOptions& optio
   try_device(on, {.shapes = flat.shapes, .render = true});
   const auto samples = static_cast<std::uint32_t>(model.view.sampler.samples_per_pixel);
   const FlatView view = lower_view(model);
-  caplet::Session session(flat, view, {on},
-                          {.layers = Layers::all(), .most_samples = options.noise ? 0 : samples});
+  caplet::Session session(
+      flat, view, {on},
+      {.layers = layers_with(layers), .most_samples = options.noise ? 0 : samples});
   SessionRuns runs;
   if (options.noise)
     runs.render_to(session, *options.noise, options);

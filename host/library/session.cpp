@@ -16,6 +16,7 @@
 #include "lower/lower.h"
 #include "render/known_answers.h"
 #include "render/render.h"
+#include "report/mattes.h"
 #include "report/picture.h"
 
 namespace caplet::v0 {
@@ -64,6 +65,12 @@ void check_noise(const NoiseTarget& target, const SamplerSettings& sampler) {
         sampler_names.at(static_cast<std::size_t>(sampler.kind))));
 }
 
+Layers layers_with(const ExtraLayers& extra) {
+  Layers out = Layers::all();
+  if (extra.cryptomatte) out = Layers::of_bits(out.bits() | Layers::mattes().bits());
+  return extra.deep ? out.with(Layer::deep) : out;
+}
+
 double SessionRuns::render_to(caplet::Session& session, const NoiseTarget& target,
                               const RenderOptions& options) {
   caplet::RenderOptions inner;
@@ -106,16 +113,18 @@ Film SessionRuns::film(caplet::Session& session, const caplet::Scene& scene, con
   result.render_seconds = seconds;
   result.interrupted = interrupted;
   result.devices = session.work();
-  saved.notes =
-      notes_together(before_, report::picture_metadata(scene, scene.source, "libcaplet", result));
+  auto notes = report::picture_metadata(scene, scene.source, "libcaplet", result);
+  notes.merge(report::matte_attributes(scene, saved.film.layout().layers));
+  saved.notes = notes_together(before_, std::move(notes));
   return Inside::film(std::move(saved), sight_, seconds);
 }
 
 struct Session::Data {
-  Data(const Scene& of, std::span<const Device> on)
+  Data(const Scene& of, std::span<const Device> on, const ExtraLayers& layers)
       : devices(inner(on)),
         live(*Inside::model(of)),
-        session(live.flat(), live.view(), tried(devices, live.flat()), {.layers = Layers::all()}),
+        session(live.flat(), live.view(), tried(devices, live.flat()),
+                {.layers = layers_with(layers)}),
         at(Inside::data(of).log.state()) {}
 
   void send() {
@@ -144,10 +153,10 @@ struct Session::Data {
   std::uint64_t tried_shapes = live.flat().shapes;  // the shapes that the devices were tested with
 };
 
-Session::Session(const Scene& scene, const Device& device)
-    : Session(scene, std::span(&device, 1)) {}
-Session::Session(const Scene& scene, std::span<const Device> devices)
-    : data_(std::make_unique<Data>(scene, devices)) {}
+Session::Session(const Scene& scene, const Device& device, const ExtraLayers& layers)
+    : Session(scene, std::span(&device, 1), layers) {}
+Session::Session(const Scene& scene, std::span<const Device> devices, const ExtraLayers& layers)
+    : data_(std::make_unique<Data>(scene, devices, layers)) {}
 Session::Session(Session&&) noexcept = default;
 Session& Session::operator=(Session&&) noexcept = default;
 Session::~Session() = default;

@@ -15,6 +15,7 @@
 #include "lower/detail/flat_shapes.h"
 #include "lower/detail/shapes.h"
 #include "lower/detail/textures.h"
+#include "scene/matte_names.h"
 
 namespace caplet {
 
@@ -80,10 +81,10 @@ class GeometryLowering {
   LoweredGeometry run() {
     check_counts();
     LoweredGeometry lowered;
-    lowered.world = lower_shapes(scene_.shapes, 0);
+    lowered.world = lower_shapes(scene_.shapes, 0, nullptr);
     const auto object_number = narrow<std::uint32_t>(scene_.shapes.size());
     for (const Object& object : scene_.objects)
-      lowered.objects.push_back(lower_shapes(object.shapes, object_number));
+      lowered.objects.push_back(lower_shapes(object.shapes, object_number, &object));
 
     find_shapes(lowered);
     std::deque<Subtree>& world = lowered.world.subtrees;
@@ -119,12 +120,16 @@ class GeometryLowering {
     return lowered;
   }
 
-  void lower_shape(const Shape& shape, const Matrix& m, std::uint32_t object, Subtree& subtree) {
+  /// `object_name`: GeometryRecord.object_name.
+  void lower_shape(const Shape& shape, const Matrix& m, std::uint32_t object, uint object_name,
+                   Subtree& subtree) {
     const std::size_t first = subtree.primitives.size();
     const auto primitive_begin = narrow<uint>(out_.primitive_geometry.size());
     GeometryRecord record{};
     record.material = shape.material;
     record.object = object;
+    record.object_name = object_name;
+    record.asset_name = asset_name(shape);
     record.primitive_begin = primitive_begin;
     record.surface_begin = add_surfaces(shape);
     record.light_offset = CAPLET_NONE;
@@ -196,8 +201,14 @@ class GeometryLowering {
             out_.leaves.size()};
   }
 
-  LoweredShapes lower_shapes(const std::vector<Shape>& shapes, std::uint32_t object_begin) {
+  /// `object`: what the shapes belong to; none: the world.
+  LoweredShapes lower_shapes(const std::vector<Shape>& shapes, std::uint32_t object_begin,
+                             const Object* object) {
     LoweredShapes lowered;
+    const uint object_name =
+        object ? matte_hash(
+                     matte_name(*object, static_cast<std::size_t>(object - scene_.objects.data())))
+               : 0;
     lowered.subtrees.emplace_back();
     lowered.extents.resize(shapes.size());
     std::map<std::pair<std::array<double, 16>, uint>, Subtree*> by_space;
@@ -221,10 +232,17 @@ class GeometryLowering {
       extent.subtree = subtree;
       extent.first = subtree->primitives.size();
       extent.begin = lengths();
-      lower_shape(shape, own.baked, object_begin + narrow<std::uint32_t>(i), *subtree);
+      lower_shape(shape, own.baked, object_begin + narrow<std::uint32_t>(i),
+                  object ? object_name : matte_hash(matte_name(shape, i)), *subtree);
       extent.end = lengths();
     }
     return lowered;
+  }
+
+  uint asset_name(const Shape& shape) {
+    if (shape.where.file != asset_.file || asset_.hash == 0)
+      asset_ = {shape.where.file, matte_hash(matte_asset(shape))};
+    return asset_.hash;
   }
 
   /// Returns the first step of a shape's alpha; shapes with the same one share it.
@@ -448,6 +466,10 @@ class GeometryLowering {
   SpectrumTable& spectra_;
   FlatScene& out_;
   std::map<std::pair<std::uint32_t, double>, uint> alphas_;
+  struct {
+    std::string file;
+    uint hash = 0;
+  } asset_;                // of the shape before
   bool reversed_ = false;  // of the shape being appended
   std::uint32_t group_ = 0;
   int kind_bits_ = 0;  // of leaf references
@@ -472,7 +494,7 @@ Subtree lower_shape_alone(const Scene& scene, const Shape& shape, const Matrix& 
                           std::uint32_t object, const ImageNumbers& images, SpectrumTable& spectra,
                           FlatScene& out) {
   Subtree subtree;
-  GeometryLowering(scene, images, spectra, out).lower_shape(shape, baked, object, subtree);
+  GeometryLowering(scene, images, spectra, out).lower_shape(shape, baked, object, 0, subtree);
   return subtree;
 }
 

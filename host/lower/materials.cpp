@@ -8,6 +8,7 @@
 #include "lower/detail/family_data.h"
 #include "lower/detail/textures.h"
 #include "scene/field.h"
+#include "scene/matte_names.h"
 
 namespace caplet {
 
@@ -112,6 +113,7 @@ MaterialRecord lower_material(const Scene& scene, std::uint32_t index, const Ima
   const Material& material = scene.materials[index];
   MaterialRecord record{};
   record.data = index * material_stride;
+  record.name = matte_hash(matte_name(material, index));
   record.bump = CAPLET_NONE;
   if (const auto bump = material.normalmap ? material.normalmap : material.displacement) {
     const std::optional<uint> last =

@@ -14,20 +14,20 @@ namespace {
 /// Calls rows(first, count), which returns these rows of the film as a film.
 template <class Rows>
 BandedImage in_bands(const FilmLayout& layout, const FilmSettings& settings, Layers layers,
-                     NotFinite& not_finite, Rows rows) {
+                     PictureFlaws& flaws, Rows rows) {
   BandedImage out;
   out.whole = image_of(layout);
   out.whole.space = settings.space;
   out.rows = band_rows(out.whole.data_width, layers.channels());
-  out.band = [&settings, &not_finite, layers, rows, height = layout.window.height](int first,
-                                                                                   int count) {
+  out.band = [&settings, &flaws, layers, rows, height = layout.window.height](int first,
+                                                                              int count) {
     RowMargins margins;
     if (layers.has(Layer::variance)) {
       margins.above = std::min(first, variance_radius);
       margins.below = std::min(height - first - count, variance_radius);
     }
     return develop(rows(first - margins.above, margins.above + count + margins.below), settings,
-                   layers, not_finite, margins);
+                   layers, flaws, margins);
   };
   return out;
 }
@@ -35,14 +35,14 @@ BandedImage in_bands(const FilmLayout& layout, const FilmSettings& settings, Lay
 }  // namespace
 
 BandedImage developed_in_bands(const DeviceFilm& film, const FilmSettings& settings, Layers layers,
-                               NotFinite& not_finite) {
-  return in_bands(film.layout, settings, layers, not_finite,
+                               PictureFlaws& flaws) {
+  return in_bands(film.layout, settings, layers, flaws,
                   [&film](int first, int count) { return film.read(first, count); });
 }
 
 BandedImage developed_in_bands(const Film& film, const FilmSettings& settings, Layers layers,
-                               NotFinite& not_finite) {
-  BandedImage out = in_bands(film.layout(), settings, layers, not_finite,
+                               PictureFlaws& flaws) {
+  BandedImage out = in_bands(film.layout(), settings, layers, flaws,
                              [&film](int first, int count) { return film.rows(first, count); });
   if (film.is_even()) return out;
   out.band = [&film, band = std::move(out.band)](int first, int count) {

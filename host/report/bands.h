@@ -13,13 +13,13 @@
 namespace caplet::report {
 
 /// Develops the layers (film/develop.h) of the film's sums, without metadata. Keeps references to
-/// `film`, `settings`, `not_finite`.
+/// `film`, `settings`, `flaws`.
 BandedImage developed_in_bands(const DeviceFilm& film, const FilmSettings& settings, Layers layers,
-                               NotFinite& not_finite);
+                               PictureFlaws& flaws);
 /// Does the same for a film in memory, with a channel `samples` where pixels have different numbers
 /// of them.
 BandedImage developed_in_bands(const Film& film, const FilmSettings& settings, Layers layers,
-                               NotFinite& not_finite);
+                               PictureFlaws& flaws);
 
 /// Makes all bands, and joins them.
 LayeredImage whole_of(const BandedImage& picture);

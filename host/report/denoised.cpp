@@ -34,14 +34,14 @@ LayeredImage rows_of(const LayeredImage& image, int first, int rows) {
 
 template <class AnyFilm>
 BandedImage developed_of(const AnyFilm& film, const FilmLayout& layout,
-                         const FilmSettings& settings, Layers layers, NotFinite& not_finite) {
-  if (!settings.denoise) return developed_in_bands(film, settings, layers, not_finite);
+                         const FilmSettings& settings, Layers layers, PictureFlaws& flaws) {
+  if (!settings.denoise) return developed_in_bands(film, settings, layers, flaws);
   const Layers needed =
       layout.layers.has_all(denoising_layers()) ? denoising_layers() : Layers::none();
   FilmSettings alone = settings;
   alone.backdrop.reset();
   const auto image = std::make_shared<LayeredImage>(whole_of(
-      developed_in_bands(film, alone, Layers::of_bits(layers.bits() | needed.bits()), not_finite)));
+      developed_in_bands(film, alone, Layers::of_bits(layers.bits() | needed.bits()), flaws)));
   denoise(*image);
   std::erase_if(image->channels, [&](const Channel& channel) {
     return !layers.has(Layer::albedo) && channel.name.starts_with("albedo.");
@@ -64,13 +64,13 @@ BandedImage developed_of(const AnyFilm& film, const FilmLayout& layout,
 Layers denoising_layers() { return Layers::none().with(Layer::albedo).with(Layer::normal); }
 
 BandedImage developed(const DeviceFilm& film, const FilmSettings& settings, Layers layers,
-                      NotFinite& not_finite) {
-  return developed_of(film, film.layout, settings, layers, not_finite);
+                      PictureFlaws& flaws) {
+  return developed_of(film, film.layout, settings, layers, flaws);
 }
 
 BandedImage developed(const Film& film, const FilmSettings& settings, Layers layers,
-                      NotFinite& not_finite) {
-  return developed_of(film, film.layout(), settings, layers, not_finite);
+                      PictureFlaws& flaws) {
+  return developed_of(film, film.layout(), settings, layers, flaws);
 }
 
 }  // namespace caplet::report

@@ -20,8 +20,8 @@ inline constexpr std::size_t denoising_channels = 3;
 /// added, if the settings ask for it. The picture is then in memory as a whole. Keeps references as
 /// developed_in_bands does. Throws RunError.
 BandedImage developed(const DeviceFilm& film, const FilmSettings& settings, Layers layers,
-                      NotFinite& not_finite);
+                      PictureFlaws& flaws);
 BandedImage developed(const Film& film, const FilmSettings& settings, Layers layers,
-                      NotFinite& not_finite);
+                      PictureFlaws& flaws);
 
 }  // namespace caplet::report

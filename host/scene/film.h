@@ -13,6 +13,7 @@
 #include "scene/backdrop.h"
 #include "scene/field.h"
 #include "scene/spectrum.h"
+#include "shared/limits.h"
 
 namespace caplet {
 
@@ -63,6 +64,7 @@ struct FilmSettings {
   ColorSpace space = ColorSpace::srgb;
   std::optional<Backdrop> backdrop = {};
   bool denoise = false;    // the picture (film/denoise.h)
+  int matte_levels = 6;    // the most things that mattes tell in a pixel
   double least_width = 0;  // pixels: capsules and spheres are drawn at least this thick
                            // (present/least_width.h); 0: no minimum
 
@@ -77,6 +79,8 @@ struct FilmSettings {
                   25000, "kelvin"},
                  self.white_balance);
     visit.flag({"denoise", "Open Image Denoise removes the noise of the picture"}, self.denoise);
+    visit.integer({"mattelevels", "the most things that mattes tell in a pixel", 1, CAPLET_SLOTS},
+                  self.matte_levels);
     visit.number({"leastwidth", "capsules and spheres are drawn no thinner", 0, 64, "pixels"},
                  self.least_width);
   }

@@ -104,9 +104,9 @@ void EyeFilms::step(const std::function<void(bool is_coarse)>& between_batches) 
 }
 
 Picture EyeFilms::picture() {
-  NotFinite not_finite;
-  const LayeredImage image = develop(session_.film(), live_.scene().view.film,
-                                     session_options(options_).layers, not_finite);
+  PictureFlaws flaws;
+  const LayeredImage image =
+      develop(session_.film(), live_.scene().view.film, session_options(options_).layers, flaws);
   Picture out = shown_of(image, is_full());
   out.version = ++version_;
   out.view = view_;

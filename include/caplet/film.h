@@ -23,6 +23,16 @@ struct SampleRange {
   std::uint32_t first = 0, count = 0;
 };
 
+/// Layers that a film has on request, beside those that every film has. They take memory: 128 bytes
+/// a pixel of the device for each of the three mattes, 256 for a deep picture.
+struct ExtraLayers {
+  bool cryptomatte = false;  // by object, material and file
+  bool deep = false;
+};
+
+/// What a matte tells apart.
+enum class Matte { object, material, asset };
+
 /// An overlay that can be drawn on a preview.
 struct Overlay {
   std::string name, values, help;  // values: the allowed values, for people; empty for a switch
@@ -76,6 +86,17 @@ class CAPLET_API Film {
   /// Returns the values of a channel of ids; 2^32 - 1 where there is nothing.
   std::vector<std::uint32_t> ids(const std::string& channel) const;
 
+  /// Returns the names that a matte tells apart, in order. Throws InputError when the film has no
+  /// mattes.
+  std::vector<std::string> matte_names(Matte matte) const;
+  /// Returns the share of each pixel that what has this name covers, row by row from the top: exact
+  /// but in pixels that show more than 16 things. Throws InputError when the film has no mattes or
+  /// nothing has this name.
+  std::vector<float> matte(Matte matte, const std::string& name) const;
+
+  /// Writes a deep OpenEXR: alpha and distance of all that each pixel shows. Throws InputError when
+  /// the film was rendered without `deep`; and RunError.
+  void write_deep_exr(const std::filesystem::path& file) const;
   /// Writes all channels as OpenEXR. The file is replaced atomically. Throws RunError.
   void write_exr(const std::filesystem::path& file) const;
   /// Writes a tone-mapped picture, 8 bits per channel, in the format of the extension, with

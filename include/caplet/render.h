@@ -37,6 +37,7 @@ struct RenderOptions {
 /// done. Throws RunError, and InputError when the scene exceeds a limit, when the target is out of
 /// range, and for a noise with a sampler whose points are even at one number of samples alone
 /// (zsobol, stratified).
-CAPLET_API Film render(const Scene& scene, const Device& device, const RenderOptions& options = {});
+CAPLET_API Film render(const Scene& scene, const Device& device, const RenderOptions& options = {},
+                       const ExtraLayers& layers = {});
 
 CAPLET_END

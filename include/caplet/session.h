@@ -25,8 +25,8 @@ class CAPLET_API Session {
   /// on the division of work as long as they are of one kind. A device that fails or hangs is
   /// dropped with a warning, and the others repeat its work; a session fails with its last device.
   /// Throws InputError when the scene exceeds a limit.
-  Session(const Scene& scene, const Device& device);
-  Session(const Scene& scene, std::span<const Device> devices);
+  Session(const Scene& scene, const Device& device, const ExtraLayers& layers = {});
+  Session(const Scene& scene, std::span<const Device> devices, const ExtraLayers& layers = {});
   Session(Session&&) noexcept;
   Session& operator=(Session&&) noexcept;
   ~Session();

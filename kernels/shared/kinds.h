@@ -94,10 +94,12 @@ enum {
 #define RADIANCE_LAYER(name, option, channels, how, count, words, unit, value) layer_##name,
 #define HIT_LAYER(name, option, channels, how, count, words, unit, value) layer_##name,
 #define ID_LAYER(name, option, channel, value) layer_##name,
+#define SLOT_LAYER(name, option, channels, how, words, unit, value) layer_##name,
 #include "shared/layers.def"
 #undef RADIANCE_LAYER
 #undef HIT_LAYER
 #undef ID_LAYER
+#undef SLOT_LAYER
   layer_count
 };
 

@@ -25,10 +25,13 @@ static inline void layers_of_nothing(__global const BatchRecord* batch, uint pat
     for (int c = 0; c < count; ++c) *at++ = 0.0f;
 #define ID_LAYER(name, option, channel, value) \
   if (layers & (1u << layer_##name)) *at++ = as_float(CAPLET_NONE);
+#define SLOT_LAYER(name, option, channels, how, words, unit, value) \
+  if (layers & (1u << layer_##name)) *at++ = as_float(CAPLET_NONE);
 #include "shared/layers.def"
 #undef RADIANCE_LAYER
 #undef HIT_LAYER
 #undef ID_LAYER
+#undef SLOT_LAYER
 }
 
 #endif

@@ -8,6 +8,7 @@
 #include "math/spectrum.cl"
 #include "stages/layers.cl"
 #include "stages/path.cl"
+#include "stages/slots.cl"
 
 // Returns CIE XYZ of a sample, scaled down to the view's limit if it is beyond; a sample that is
 // not a number is black and counted.
@@ -54,10 +55,12 @@ static inline float3 sample_xyz(const Stage* g, uint path, int counted) {
   }
 #define HIT_LAYER(name, option, channels, how, count, words, unit, value)
 #define ID_LAYER(name, option, channel, value)
+#define SLOT_LAYER(name, option, channels, how, words, unit, value)
 #include "shared/layers.def"
 #undef RADIANCE_LAYER
 #undef HIT_LAYER
 #undef ID_LAYER
+#undef SLOT_LAYER
 
 // Returns the number of samples [begin, begin + count), and in the upper half that of those of the
 // first replicate.
@@ -114,8 +117,22 @@ static void stage_item(const Stage* g, uint item) {
     ++film;                                                                                \
     ++offset;                                                                              \
   }
+#define SLOT_LAYER(name, option, channels, how, words, unit, value)                              \
+  if (layers & (1u << layer_##name)) {                                                           \
+    const int takes = TAKES_LAYER;                                                               \
+    if (takes && first) slots_clear(film, words);                                                \
+    for (uint i = 0; takes && i < batch->sample_count; ++i) {                                    \
+      const uint path = path_number(batch, number, i);                                           \
+      const float v = layers_of_path(batch, path, g->layers.path_layers)[offset];                \
+      if (as_uint(v) != CAPLET_NONE)                                                             \
+        slots_add(film, words, slot_key_##how(v), words == 2 ? slot_whole_units(v, unit) : 0ul); \
+    }                                                                                            \
+    film += CAPLET_SLOTS * (words);                                                              \
+    ++offset;                                                                                    \
+  }
 #include "shared/layers.def"
 #undef RADIANCE_LAYER
 #undef HIT_LAYER
 #undef ID_LAYER
+#undef SLOT_LAYER
 }

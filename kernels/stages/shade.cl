@@ -98,10 +98,13 @@ static inline void store_layers(const Stage* g, uint path, const ShadingPoint* p
   }
 #define ID_LAYER(name, option, channel, value) \
   if (layers & (1u << layer_##name)) *at++ = as_float((uint)(value));
+#define SLOT_LAYER(name, option, channels, how, words, unit, value) \
+  if (layers & (1u << layer_##name)) *at++ = value;
 #include "shared/layers.def"
 #undef RADIANCE_LAYER
 #undef HIT_LAYER
 #undef ID_LAYER
+#undef SLOT_LAYER
 }
 
 // Takes one light sample; its unoccluded contribution waits in path_shadow_radiance for `connect`.

@@ -144,6 +144,18 @@ class Image:
         else:
             self._film.write_exr(path)
 
+    def matte_names(self, by="object"):
+        """The names that a matte tells apart: by "object", "material" or "asset" (the file of a shape). Of a render with cryptomatte=True."""
+        return self._film.matte_names(by)
+
+    def matte(self, name, by="object"):
+        """The share of each pixel that what has this name covers: (height, width), 0 to 1, antialiased as alpha is."""
+        return self._film.matte(by, name)
+
+    def save_deep(self, path):
+        """A deep EXR, of a render with deep=True: alpha and distance of all that each pixel shows, near to far."""
+        self._film.write_deep_exr(os.fspath(path))
+
     def save_film(self, path):
         """The exact sums as an EXR file, which load_film takes, and Session.resume goes on with."""
         self._film.save(os.fspath(path))

@@ -72,6 +72,7 @@ class Session:
 
     device: an index, "cpu", "gpu", "bundled", part of a name, several between commas, or "all"; None: a GPU if there is one, else the first.
     first_sample: the first sample of every pixel, for shares of a picture's samples, whose images are added (Image.__add__).
+    cryptomatte: mattes by object, material and file (Image.matte). deep: what a deep EXR takes (Image.save_deep). Both take memory.
     The scene stays as it is here until `update`. Any thread may call any of it: they wait for each other.
 
     >>> scene = Scene()
@@ -83,12 +84,12 @@ class Session:
     (9, 16, 3)
     """
 
-    def __init__(self, scene, device=None, size=None, first_sample=0):
+    def __init__(self, scene, device=None, size=None, first_sample=0, cryptomatte=False, deep=False):
         native = _scene(scene)._native.copy()
         self._size = size
         if size is not None:
             native.set_size(*arrays.size(size))
-        self._native = _caplet.Session(native, _devices(device))
+        self._native = _caplet.Session(native, _devices(device), bool(cryptomatte), bool(deep))
         self._cancelled = False
         if first_sample:
             self._native.begin_at(_count(first_sample, "first_sample", 1 << 24))
@@ -182,7 +183,8 @@ def _count(value, name, most):
     return int(value)
 
 
-def render(scene, spp=None, size=None, device=None, seed=None, time_limit=None, progress=None, samples=None, noise=None, min_spp=16):
+def render(scene, spp=None, size=None, device=None, seed=None, time_limit=None, progress=None, samples=None, noise=None, min_spp=16,
+           cryptomatte=False, deep=False):
     """Renders a scene. Returns an Image.
 
     spp: samples a pixel; None: the scene's. noise: what the picture is rendered to (Session.render_to), where min_spp is the fewest and
@@ -203,7 +205,8 @@ def render(scene, spp=None, size=None, device=None, seed=None, time_limit=None, 
         first = _count(samples[0] + 1, "samples", 1 << 24) - 1
         spp = _count(samples[1] - first, "samples", 1 << 24)
     session = Session.__new__(Session)
-    session._native, session._cancelled, session._size = _caplet.Session(native, _devices(device)), False, None
+    session._native = _caplet.Session(native, _devices(device), bool(cryptomatte), bool(deep))
+    session._cancelled, session._size = False, None
     if first:
         session._native.begin_at(first)
     if noise is not None:

@@ -103,6 +103,14 @@ void bind_devices(nb::module_& m) {
   });
 }
 
+/// Throws InputError for another word.
+caplet::Matte matte_named(const std::string& word) {
+  if (word == "object") return caplet::Matte::object;
+  if (word == "material") return caplet::Matte::material;
+  if (word == "asset") return caplet::Matte::asset;
+  throw caplet::InputError("by: 'object', 'material' or 'asset' is needed, not '" + word + "'");
+}
+
 void bind_film(nb::module_& m) {
   nb::class_<Film>(m, "Film")
       .def_prop_ro("width", &Film::width)
@@ -157,6 +165,26 @@ void bind_film(nb::module_& m) {
                ids = film.ids(channel);
              }
              return array_of<std::uint32_t, 2>(std::move(ids), shape);
+           })
+      .def("matte_names",
+           [](const Film& film, const std::string& matte) {
+             return film.matte_names(matte_named(matte));
+           })
+      .def("matte",
+           [](const Film& film, const std::string& matte, const std::string& name) {
+             const auto shape = std::array{static_cast<std::size_t>(film.height()),
+                                           static_cast<std::size_t>(film.width())};
+             std::vector<float> values;
+             {
+               const Released released;
+               values = film.matte(matte_named(matte), name);
+             }
+             return array_of<float, 2>(std::move(values), shape);
+           })
+      .def("write_deep_exr",
+           [](const Film& film, const std::string& file) {
+             const Released released;
+             film.write_deep_exr(file);
            })
       .def("write_exr",
            [](const Film& film, const std::string& file) {
@@ -213,13 +241,21 @@ void run_session(HeldSession& held, std::optional<double> time_limit, const nb::
 
 void bind_session(nb::module_& m) {
   nb::class_<HeldSession>(m, "Session")
-      .def("__init__",
-           [](HeldSession* self, HeldScene& of, const std::vector<caplet::Device>& devices) {
-             const caplet::Scene scene = of.now();
-             std::optional<caplet::Session> session;
-             run_interruptibly([&] { session.emplace(scene, devices); }, [] {}, [] {});
-             new (self) HeldSession(*std::move(session));
-           })
+      .def(
+          "__init__",
+          [](HeldSession* self, HeldScene& of, const std::vector<caplet::Device>& devices,
+             bool cryptomatte, bool deep) {
+            const caplet::Scene scene = of.now();
+            std::optional<caplet::Session> session;
+            run_interruptibly(
+                [&] {
+                  session.emplace(scene, devices, caplet::ExtraLayers{cryptomatte, deep});
+                },
+                [] {}, [] {});
+            new (self) HeldSession(*std::move(session));
+          },
+          nb::arg("scene"), nb::arg("devices"), nb::arg("cryptomatte") = false,
+          nb::arg("deep") = false)
       .def("update",
            [](HeldSession& held, HeldScene& of) {
              const caplet::Scene scene = of.now();

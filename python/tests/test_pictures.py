@@ -19,6 +19,24 @@ def pixels(path):
     return np.frombuffer(rest[-3 * int(width) * int(height):], np.uint8).reshape(int(height), int(width), 3).astype(int)
 
 
+def test_a_deep_picture_flattens_to_the_picture(tmp_path):
+    oiio = pytest.importorskip("OpenImageIO")
+    scene = caplet.Scene()
+    scene.add_spheres([(0, 0, 0), (0.7, 0.2, -3)], [0.8, 0.9], color=(0.8, 0.4, 0.2))
+    scene.camera = cameras.perspective(eye=(0, 0, 5), target=(0, 0, 0), fov=40)
+    scene.size = 48, 32
+    image = caplet.render(scene, spp=16, deep=True)
+    image.save_deep(tmp_path / "deep.exr")
+    deep = oiio.ImageBuf(str(tmp_path / "deep.exr"))
+    assert deep.deep and list(deep.spec().channelnames) == ["A", "Z"]
+    flat = oiio.ImageBufAlgo.flatten(deep).get_pixels(oiio.FLOAT)
+    assert np.array_equal(flat[..., 0], image.alpha)
+    samples = np.array([[deep.deep_samples(x, y) for x in range(48)] for y in range(32)])
+    plain = (samples <= 2) & (image.alpha == 1)  # it weighs Z as we do
+    assert (samples == 0).any() and (plain & (samples == 2)).any()
+    assert np.allclose(flat[plain, 1], image.depth[plain], rtol=4e-7)
+
+
 @pytest.fixture
 def saved(tmp_path):
     """Saves a picture and reads it back."""

@@ -46,6 +46,28 @@ def test_a_scene_without_shapes_is_its_sky():
         caplet.render(caplet.Scene())
 
 
+def test_mattes_tell_things_apart(ball, tmp_path):
+    ball.add_spheres((1.2, 0, -1), 0.5, name="other", color=(0.1, 0.2, 0.9))
+    image = caplet.render(ball, spp=16, cryptomatte=True, deep=True)
+    assert image.matte_names() == ["ball", "other"]
+    one, other = image.matte("ball"), image.matte("other")
+    assert one.shape == (24, 32) and one.dtype == np.float32
+    assert np.array_equal(one + other, image.alpha) and other.max() > 0.5 and one[12, 16] == 1
+    ids = image["CryptoObject00.R"].view(np.uint32)
+    assert len(np.unique(ids[one == 1])) == len(np.unique(ids[other == 1])) == 1
+    assert np.array_equal(sum(image.matte(name, by="material") for name in image.matte_names("material")), image.alpha)
+    image.save_deep(tmp_path / "deep.exr")
+    assert (tmp_path / "deep.exr").read_bytes()[:4] == b"v/1\x01"
+    for wrong in (lambda: image.matte("balls"), lambda: image.matte("ball", by="colour"), lambda: caplet.render(ball, spp=1).matte("ball"),
+                  lambda: caplet.render(ball, spp=1).save_deep(tmp_path / "none.exr")):
+        with pytest.raises(caplet.InputError):
+            wrong()
+    assert not (tmp_path / "none.exr").exists()
+    session = caplet.Session(ball, cryptomatte=True)
+    session.render(4)
+    assert session.image().matte_names("asset") == ["scene"]
+
+
 def test_layers_are_arrays(ball):
     image = caplet.render(ball, spp=64)
     assert image.size == (32, 24) and image.shape == (24, 32) and image.spp == 64 and image.samples == [(0, 64)]
@@ -123,7 +145,7 @@ def test_a_picture_has_the_noise_that_is_asked_for(ball):
     assert session.render(3) == 3 and (session.image()["samples"] == samples + 3).all()
     assert caplet.render(ball, noise=0.0001, spp=32).spp == 32
     fractions = []
-    caplet.render(ball, noise=0.01, progress=lambda fraction, speed: fractions.append(fraction))
+    caplet.render(ball, noise=0.0005, spp=4096, progress=lambda fraction, speed: fractions.append(fraction))  # for about a second
     assert fractions == sorted(fractions) and fractions[-1] <= 1
     for noise in (0, -1, 2, float("nan")):
         with pytest.raises(caplet.InputError, match="noise"):

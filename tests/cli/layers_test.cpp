@@ -45,6 +45,7 @@ TEST(Layers, AreThoseOfTheList) {
               Layers::none().with(static_cast<Layer>(i)).channels())
         << option;
   }
+  EXPECT_EQ(names(image_with({"--layers", "all,Z"})), names(all));
   const LayeredImage alone = image_with({"--layers", "none"});
   EXPECT_THAT(names(alone), ElementsAre("A", "B", "G", "R"));
   EXPECT_EQ(alone.metadata.at("caplet.scene"), "scene.pbrt");
@@ -84,7 +85,7 @@ TEST(Layers, UnknownOnesAreRefusedByTheNearestName) {
        {std::array<std::string, 3>{"albdo", "'albdo'", "'albedo'"},
         {"Z,objects", "'objects'", "'object'"},
         {"Z,", "''", "--layers"},
-        {"all,Z", "'all'", "--layers"}}) {
+        {"none,Z", "'none'", "--layers"}}) {
     const test::Result result = test::render(folder, {"-o", "out.exr", "--layers", list});
     EXPECT_EQ(result.code, 2) << list;
     EXPECT_THAT(result.err, StartsWith("caplet: error: --layers: ")) << list;

@@ -37,9 +37,17 @@ bool same_bytes(const T& a, const T& b) {
   return std::memcmp(&a, &b, sizeof(T)) == 0;
 }
 
+/// A lowered scene without what mattes know things by: exported things without names get some.
+inline FlatScene nameless(const Scene& scene) {
+  FlatScene out = lower(scene);
+  for (GeometryRecord& geometry : out.geometries) geometry.object_name = geometry.asset_name = 0;
+  for (MaterialRecord& material : out.materials) material.name = 0;
+  return out;
+}
+
 /// The names of the device buffers that differ: what a picture is made of.
 inline std::string different_buffers(const Scene& one, const Scene& other) {
-  const FlatScene a = lower(one), b = lower(other);
+  const FlatScene a = nameless(one), b = nameless(other);
   const FlatView v = lower_view(one), w = lower_view(other);
   std::string out;
 #define GROUP_BEGIN(Type, group)

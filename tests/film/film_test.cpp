@@ -76,7 +76,11 @@ TEST(Film, WordsOfAPixelAreThoseOfItsLayers) {
   EXPECT_EQ(layout_of(1, 1, Layers::usual()).words_per_pixel(), 20u);
   EXPECT_EQ(layout_of(1, 1, Layers::all()).words_per_pixel(), 26u);
   EXPECT_EQ(layout_of(1, 1, Layers::none().with(Layer::normal)).first_word(Layer::normal), 8u);
+  // A matte 16 slots of a word, a deep layer of two.
+  EXPECT_EQ(layout_of(1, 1, Layers::mattes()).words_per_pixel(), 8u + 3 * 16);
+  EXPECT_EQ(layout_of(1, 1, Layers::every()).words_per_pixel(), 26u + 3 * 16 + 32);
   EXPECT_EQ(layout_of(1, 1, Layers::none()).floats_per_path(), 1u);
+  EXPECT_EQ(layout_of(1, 1, Layers::every()).floats_per_path(), 17u);
   EXPECT_EQ(layout_of(1, 1, Layers::all()).floats_per_path(), 13u);
 }
 

@@ -53,7 +53,8 @@ struct Made {
 Made made(const Scene& scene, const Device& device, std::uint32_t samples, std::size_t batch = 0) {
   const FlatScene flat = lower(scene);
   DeviceScene on_device(device, flat);
-  Renderer renderer(on_device, lower_view(scene), {.layers = Layers::all(), .batch_paths = batch});
+  Renderer renderer(on_device, lower_view(scene),
+                    {.layers = Layers::every(), .batch_paths = batch});
   renderer.pass(renderer.layout().window, 0, 1);  // onto an empty film, and
   renderer.pass(renderer.layout().window, 1, samples - 1);
   return {renderer.film().read(), renderer.rays()};

@@ -6,15 +6,19 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <bit>
 #include <cmath>
 #include <functional>
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
 #include <map>
 #include <string>
+#include <vector>
 
+#include "film/deep.h"
 #include "film/develop.h"
 #include "film/layers.h"
+#include "scene/matte_names.h"
 #include "scene_text.h"
 
 namespace caplet::test {
@@ -30,6 +34,7 @@ INSTANTIATE_TEST_SUITE_P(Counts, LayersAtSamples, testing::Values(1, 1024, 1 << 
 /// What a pixel sees of a plane: a point, the plane's normal and the distance to it.
 struct PlanePixel {
   const LayeredImage* image;
+  const Film* film;
   std::size_t pixel;
   dvec3 p, n;
   double distance, slack;
@@ -39,6 +44,15 @@ struct PlanePixel {
 void expect_point(const PlanePixel& seen, const char* layer, const dvec3& expected, double slack) {
   const dvec3 found = at3(*seen.image, layer, "XYZ", seen.pixel);
   for (int k = 0; k < 3; ++k) EXPECT_NEAR(found[k], expected[k], slack);
+}
+
+/// The plane covers its pixels, and all of them is it.
+void expect_matte(const PlanePixel& seen, const std::string& matte, const char* name) {
+  EXPECT_EQ(std::bit_cast<std::uint32_t>(channel(*seen.image, matte + "00.R").floats[seen.pixel]),
+            matte_hash(name));
+  EXPECT_EQ(at(*seen.image, matte + "00.G", seen.pixel), 1);
+  for (const char* rest : {"00.B", "00.A", "01.R", "02.A"})
+    EXPECT_EQ(at(*seen.image, matte + rest, seen.pixel), 0) << rest;
 }
 
 /// By the options of layer_rows: a layer without an entry fails.
@@ -61,6 +75,17 @@ const std::map<std::string, std::function<void(const PlanePixel&)>> layers_of_a_
      [](const PlanePixel& seen) {
        for (const char* name : {"variance.R", "variance.G", "variance.B"})
          EXPECT_EQ(at(*seen.image, name, seen.pixel), 0) << name;
+     }},
+    {"crypto_object", [](const PlanePixel& seen) { expect_matte(seen, "CryptoObject", "disk 0"); }},
+    {"crypto_material",
+     [](const PlanePixel& seen) { expect_matte(seen, "CryptoMaterial", "material 0"); }},
+    {"crypto_asset", [](const PlanePixel& seen) { expect_matte(seen, "CryptoAsset", "scene"); }},
+    {"deep",  // one sample at the plane
+     [](const PlanePixel& seen) {
+       const std::vector<DeepSample> samples = deep_samples(*seen.film, seen.pixel);
+       ASSERT_EQ(samples.size(), 1u);
+       EXPECT_EQ(samples[0].alpha, 1);
+       EXPECT_NEAR(double{samples[0].depth}, seen.distance, seen.slack);
      }},
     {"albedo", [](const PlanePixel& seen) {
        if (seen.samples == 1) return;  // four wavelengths
@@ -86,14 +111,14 @@ TEST_P(LayersAtSamples, OfAPlaneAreThoseOfThePixelsMiddle) {
             text +
             " 0 1.1\n"
             "Shape \"disk\" \"float radius\" 10\n",
-        GetParam(), [](Scene& scene) { scene.view.filter = point_filter(); });
+        GetParam(), [](Scene& scene) { scene.view.filter = point_filter(); }, every_layer());
     // Every sample hits the same place, to the rounding of a hit.
     const double slack = 8 * 0x1p-24 * (place + 3);
     for (std::size_t i = 0; i < 4; ++i) {
       const double x = 1.1 * (40.5 + static_cast<double>(i % 2) - 32) / 32,
                    y = 1.1 * (32 - 10.5 - static_cast<double>(i / 2)) / 32;
-      const PlanePixel seen{&rendered.image,       i,     {place + x, y, 1.1}, {0, 0, -1},
-                            std::hypot(x, y, 1.1), slack, GetParam()};
+      const PlanePixel seen{&rendered.image, &rendered.result.film, i,     {place + x, y, 1.1},
+                            {0, 0, -1},      std::hypot(x, y, 1.1), slack, GetParam()};
       EXPECT_EQ(at(rendered.image, "A", i), 1);
       for (const LayerRow& row : layer_rows) {
         const std::string name = row.option;

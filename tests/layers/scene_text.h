@@ -16,10 +16,17 @@
 namespace caplet::test {
 
 inline Rendered render_text(const std::string& text, int samples_per_pixel,
-                            const std::function<void(Scene&)>& change = {}) {
+                            const std::function<void(Scene&)>& change = {},
+                            const RenderOptions& options = {}) {
   const auto file = temporary_folder() / "scene.pbrt";
   std::ofstream(file) << text;
-  return render_file(file, samples_per_pixel, change);
+  return render_file(file, samples_per_pixel, change, options);
+}
+
+inline RenderOptions every_layer() {
+  RenderOptions options;
+  options.layers = Layers::every();
+  return options;
 }
 
 /// No wider than the rounding of raster coordinates: all camera rays of a pixel go through its

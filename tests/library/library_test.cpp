@@ -195,6 +195,40 @@ TEST_F(Library, AFilmHasThePicture) {
   EXPECT_THROW(film.write_preview(folder_ / "out.nothing"), caplet::InputError);
 }
 
+// One ball: what covers a pixel is the ball, and its file and material.
+TEST_F(Library, MattesAreOnRequest) {
+  const caplet::Scene scene = caplet::import_scene(folder_ / "ball.pbrt");
+  const caplet::Film film =
+      caplet::render(scene, test_device(), {}, {.cryptomatte = true, .deep = true});
+  const std::vector<float> alpha = film.values("A");
+  EXPECT_THAT(film.channels(), testing::IsSupersetOf({"CryptoObject00.R", "CryptoAsset02.A"}));
+  for (const auto& [matte, name] :
+       {std::pair{caplet::Matte::object, film.matte_names(caplet::Matte::object).at(0)},
+        {caplet::Matte::material, film.matte_names(caplet::Matte::material).at(0)},
+        {caplet::Matte::asset, "ball"}}) {
+    EXPECT_EQ(film.matte(matte, name), alpha) << name;
+    EXPECT_THROW(film.matte(matte, "nothing"), caplet::InputError);
+  }
+  EXPECT_THAT(film.matte_names(caplet::Matte::asset), testing::ElementsAre("ball"));
+  film.write_deep_exr(folder_ / "deep.exr");
+  EXPECT_GT(fs::file_size(folder_ / "deep.exr"), 100u);
+
+  // Films that are added, saved and loaded keep them.
+  film.save(folder_ / "mattes.film");
+  caplet::Session session(scene, test_device(), {.cryptomatte = true, .deep = true});
+  session.begin_at(4);
+  session.render(4);
+  caplet::Film sum = caplet::Film::load(folder_ / "mattes.film");
+  sum.add(session.film());
+  EXPECT_EQ(sum.matte(caplet::Matte::asset, "ball"), sum.values("A"));
+
+  const caplet::Film plain = caplet::render(scene, test_device());
+  EXPECT_THROW(plain.matte_names(caplet::Matte::object), caplet::InputError);
+  EXPECT_THROW(plain.matte(caplet::Matte::object, "ball"), caplet::InputError);
+  EXPECT_THROW(plain.write_deep_exr(folder_ / "none.exr"), caplet::InputError);
+  EXPECT_FALSE(fs::exists(folder_ / "none.exr"));
+}
+
 TEST_F(Library, OverlaysAreDrawnByName) {
   const caplet::Film film =
       caplet::render(caplet::import_scene(folder_ / "ball.pbrt"), test_device());

@@ -41,7 +41,7 @@ bool same(const Film& a, const Film& b) {
 const Film& whole() {
   static const Film film = [] {
     DeviceScene scene(test_device(), model().flat);
-    Renderer renderer(scene, model().view, {.layers = Layers::all()});
+    Renderer renderer(scene, model().view, {.layers = Layers::every()});
     renderer.pass(renderer.film().layout.window, 0, samples);
     return renderer.film().read();
   }();
@@ -76,7 +76,7 @@ std::vector<FilmPart> random_parts(std::mt19937& random) {
 
 TEST(FilmSplit, WindowsAndSamplesInAnyOrder) {
   DeviceScene scene(test_device(), model().flat);
-  Renderer renderer(scene, model().view, {.layers = Layers::all(), .batch_paths = 3000});
+  Renderer renderer(scene, model().view, {.layers = Layers::every(), .batch_paths = 3000});
   std::mt19937 random(1);
   for (int i = 0; i < 6; ++i) {
     renderer.reset(model().view);
@@ -92,7 +92,7 @@ TEST(FilmSplit, ListedPixelsInAnyOrder) {
   const Window window = whole().layout().window;
   for (const std::size_t batch_paths : {3000UL, 7UL}) {
     DeviceScene scene(test_device(), model().flat);
-    Renderer renderer(scene, model().view, {.layers = Layers::all(), .batch_paths = batch_paths});
+    Renderer renderer(scene, model().view, {.layers = Layers::every(), .batch_paths = batch_paths});
     std::mt19937 random(3);
     for (int i = 0; i < (batch_paths > 100 ? 4 : 1); ++i) {
       renderer.reset(model().view);
@@ -122,7 +122,7 @@ TEST(FilmSplit, ListedPixelsInAnyOrder) {
 
 TEST(FilmSplit, NumbersAreThoseOfTheFirstSample) {
   DeviceScene scene(test_device(), model().flat);
-  Renderer renderer(scene, model().view, {.layers = Layers::all()});
+  Renderer renderer(scene, model().view, {.layers = Layers::every()});
   renderer.pass(whole().layout().window, 0, 1);
   const Film first = renderer.film().read();
   std::size_t seen = 0;
@@ -139,7 +139,7 @@ TEST(FilmSplit, FilmsAddedInAnyOrder) {
   DeviceScene scene(test_device(), model().flat);
   std::mt19937 random(2);
   std::vector<Film> films;
-  Renderer renderer(scene, model().view, {.layers = Layers::all()});
+  Renderer renderer(scene, model().view, {.layers = Layers::every()});
   for (std::uint32_t begin = 0; begin < samples; begin += 16) {
     renderer.reset(model().view);
     renderer.pass(whole().layout().window, begin, 16);
@@ -181,7 +181,7 @@ TEST(FilmSplit, DevicesShareTheSamples) {
     }
     ASSERT_EQ(devices.size(), parts);
     Session session(model().flat, model().view, devices,
-                    {.layers = Layers::all(), .pass_samples = 5});
+                    {.layers = Layers::every(), .pass_samples = 5});
     for (const std::uint32_t count : {samples / 4, samples - samples / 4}) {
       std::uint32_t told = 0;
       double fraction = 0;
@@ -203,7 +203,7 @@ TEST(FilmSplit, DevicesShareTheSamples) {
 
 TEST(FilmSplit, CancelledSessionsKeepWhatIsFinished) {
   Session session(model().flat, model().view, {test_device()},
-                  {.layers = Layers::all(), .pass_samples = 4});
+                  {.layers = Layers::every(), .pass_samples = 4});
   const auto cancel_at_8 = [&](const SessionProgress& progress) {
     if (progress.samples_done >= 8) session.cancel();
   };
@@ -216,7 +216,7 @@ TEST(FilmSplit, CancelledSessionsKeepWhatIsFinished) {
   // It goes on after them; so does another one that is given the film.
   EXPECT_EQ(session.render(samples - 8), samples - 8);
   EXPECT_TRUE(same(session.film(), whole()));
-  Session other(model().flat, model().view, {test_device()}, {.layers = Layers::all()});
+  Session other(model().flat, model().view, {test_device()}, {.layers = Layers::every()});
   other.resume(film);
   EXPECT_EQ(other.render(samples - 8), samples - 8);
   EXPECT_TRUE(same(other.film(), whole()));
@@ -226,7 +226,7 @@ TEST(FilmSplit, CancelledSessionsKeepWhatIsFinished) {
 
 TEST(FilmSplit, WhatProgressThrowsEndsTheRenderAfterABatch) {
   Session session(model().flat, model().view, {test_device()},
-                  {.layers = Layers::all(), .batch_paths = 1u << 8});
+                  {.layers = Layers::every(), .batch_paths = 1u << 8});
   int told = 0;
   EXPECT_THROW(session.render(samples,
                               [&](const SessionProgress&) {
@@ -257,12 +257,13 @@ TEST(FilmSplit, LayersDoNotSeeEachOther) {
     renderer.pass(whole().layout().window, 0, samples);
     return renderer.film().read();
   };
-  const LayeredImage with_variance = develop(whole(), model().scene.view.film, Layers::all()),
+  const LayeredImage with_variance = develop(whole(), model().scene.view.film, Layers::every()),
                      usual = develop(film_with(Layers::usual()), model().scene.view.film,
                                      Layers::usual());
   EXPECT_NE(channel(with_variance, "R").floats, channel(usual, "R").floats);
   for (const Layers layers : {Layers::none(), Layers::none().with(Layer::normal),
-                              Layers::none().with(Layer::variance).with(Layer::object)}) {
+                              Layers::none().with(Layer::variance).with(Layer::object),
+                              Layers::mattes().with(Layer::variance)}) {
     const LayeredImage& all = layers.has(Layer::variance) ? with_variance : usual;
     const Film film = film_with(layers);
     EXPECT_EQ(film.words().size(), film.layout().window.pixels() * film.layout().words_per_pixel());

@@ -19,6 +19,9 @@
 
 namespace caplet::v0 {
 
+/// Returns the layers of a film with those on request.
+Layers layers_with(const ExtraLayers& extra);
+
 /// Throws InputError when a target is out of range, or does not go with the sampler.
 void check_noise(const NoiseTarget& target, const SamplerSettings& sampler);
 
