@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// What a picture's attributes say of its mattes.
+// The attributes of a picture tell programs which mattes it has.
 #pragma once
 
 #include <map>
