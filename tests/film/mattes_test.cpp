@@ -67,7 +67,9 @@ TEST(MatteHash, IsMurmurHash3) {
   EXPECT_EQ(matte_hash("hello, world"), 0x149bbb7fu);
   EXPECT_EQ(matte_hash("19 Jan 2038 at 3:14:07 AM"), 0xe31e8a70u);
   EXPECT_EQ(matte_hash("The quick brown fox jumps over the lazy dog."), 0xd5c48bfcu);
-  EXPECT_EQ(matte_hash(""), 0x00800000u);  // of 0
+  EXPECT_EQ(matte_hash("The quick brown fox jumps over the lazy dog"), 0x2e4ff723u);
+  EXPECT_EQ(matte_hash("capsule 12"), 0xd70bf6bfu);  // by PyPI's mmh3
+  EXPECT_EQ(matte_hash(""), 0x00800000u);            // of 0
   // "CryptoObject" is the name of Blender's layer, whose attributes it begins 3ae39a5.
   EXPECT_EQ(matte_hash("CryptoObject") >> 4, 0x3ae39a5u);
 }
