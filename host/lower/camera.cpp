@@ -2,6 +2,7 @@
 // Copyright Caplet authors
 #include "lower/camera.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
@@ -41,6 +42,13 @@ void lower_camera(const Scene& scene, FlatView& out) {
   record.plane_y = static_cast<float>(plane[3]);
   record.per_pixel_x = static_cast<float>((plane[1] - plane[0]) / film.width);
   record.per_pixel_y = static_cast<float>((plane[2] - plane[3]) / film.height);
+  std::visit(
+      [&](const auto& of) {
+        if constexpr (requires { of.distortion(); })
+          std::ranges::transform(of.distortion(), record.distortion,
+                                 [](double value) { return static_cast<float>(value); });
+      },
+      camera.projection);
   record.medium = camera.medium.value_or(CAPLET_NONE);
   const bool is_parallel =
       std::visit([](const auto& of) { return of.is_parallel; }, camera.projection);

@@ -226,6 +226,28 @@ TEST(Cameras, Fisheye) {
               HasSubstr("\"fov\" must be above 0 and at most 360"));
 }
 
+TEST(Cameras, Opencv) {
+  const auto of = [](const std::string& more) {
+    return std::get<OpencvProjection>(
+        scene_of("Camera \"opencv\"" + more + "\n" + ball).view.camera.projection);
+  };
+  EXPECT_EQ(of("").fx, 0);
+  EXPECT_EQ(of("").cx, -1);
+  const OpencvProjection given =
+      of(" \"float fx\" 600 \"float fy\" 610 \"float cx\" 320.5 \"float cy\" 241 \"float k1\" -0.2 "
+         "\"float "
+         "k6\" 0.1 \"float p2\" 0.003 \"float width\" 640 \"float height\" 480");
+  EXPECT_EQ(given.fx, 600);
+  EXPECT_EQ(given.fy, 610);
+  EXPECT_EQ(given.cx, 320.5);
+  EXPECT_EQ(given.cy, 241);
+  EXPECT_EQ(given.width, 640);
+  EXPECT_EQ(given.height, 480);
+  EXPECT_EQ(given.distortion(), (std::array<double, 8>{-0.2, 0, 0, 0, 0, 0.1, 0, 0.003}));
+  EXPECT_THAT(said_of("Camera \"opencv\" \"float fx\" -1\n" + std::string(ball)),
+              HasSubstr("\"fx\" must"));
+}
+
 TEST(Cameras, Spherical) {
   const auto of = [](const std::string& more) {
     return std::get<SphericalProjection>(

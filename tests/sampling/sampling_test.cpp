@@ -17,6 +17,7 @@
 #include <set>
 #include <vector>
 
+#include "camera_rays.h"
 #include "device/device.h"
 #include "lower/camera.h"
 #include "lower/detail/filter.h"
@@ -154,6 +155,8 @@ FilterSamples filter_samples(const PixelFilter& filter, std::size_t count) {
   return samples;
 }
 
+}  // namespace
+
 RayRecord camera_ray(const Scene& scene, glm::vec2 raster, glm::vec2 lens) {
   FlatView flat;
   lower_camera(scene, flat);
@@ -171,7 +174,6 @@ RayRecord camera_ray(const Scene& scene, glm::vec2 raster, glm::vec2 lens) {
   return out.read()[0];
 }
 
-/// How far apart rays of neighbouring pixels are, at the camera and added at length 1.
 std::vector<float> camera_spread(const Scene& scene, glm::vec2 raster) {
   FlatView flat;
   lower_camera(scene, flat);
@@ -187,7 +189,7 @@ std::vector<float> camera_spread(const Scene& scene, glm::vec2 raster) {
   return out.read();
 }
 
-}  // namespace
+namespace {}  // namespace
 
 TEST(Sampler, EveryPowerOfTwoPrefixIsANet) {
   for (std::uint32_t seed : {0u, 1u, 0xbeefu}) {
@@ -443,7 +445,7 @@ TEST(Cameras, SpreadIsTheAngleBetweenNeighbours) {
 
 // The host's rays are the device's, and points project back to where their ray came from.
 TEST(Projections, UndoEachOther) {
-  std::vector<Scene> scenes(6);
+  std::vector<Scene> scenes(7);
   scenes[0].view.camera.projection = PerspectiveProjection{0.9};
   scenes[1].view.camera.projection = OrthographicProjection{};
   scenes[2].view.camera.projection = SphericalProjection{SphericalProjection::Mapping::equal_area};
@@ -451,6 +453,10 @@ TEST(Projections, UndoEachOther) {
       SphericalProjection{SphericalProjection::Mapping::equirectangular};
   scenes[4].view.camera.projection = FisheyeProjection{FisheyeProjection::equidistant, 150};
   scenes[5].view.camera.projection = FisheyeProjection{FisheyeProjection::equisolid, 120};
+  OpencvProjection distorted;
+  distorted.fx = 260, distorted.fy = 250, distorted.cx = 140, distorted.cy = 110;
+  distorted.k1 = -0.2, distorted.k2 = 0.05, distorted.p1 = 0.002, distorted.p2 = -0.003;
+  scenes[6].view.camera.projection = distorted;
   std::mt19937 random(5);
   for (Scene& scene : scenes) {
     scene.view.film.width = 300;
