@@ -38,8 +38,7 @@ std::string named(const std::string& name, const char* kind, std::size_t index) 
 
 void sort_once(std::vector<std::string>& names) {
   std::ranges::sort(names);
-  const auto left = std::ranges::unique(names);
-  names.erase(left.begin(), left.end());
+  names.erase(std::unique(names.begin(), names.end()), names.end());
 }
 
 }  // namespace

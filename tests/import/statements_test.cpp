@@ -629,8 +629,8 @@ TEST(Statements, OfTheCollection) {
       "All\nAttribute \"shape\" \"float radius\" 2\nAttribute \"material\" \"float roughness\" "
       ".1\nMaterial "
       "\"dielectric\"\nShape \"sphere\"",
-      "WorldBegin\nShape \"bilinearmesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0 1 1 0] \"string "
-      "emissionfilename\" \"nowhere.png\"",
+      ("WorldBegin\nShape \"bilinearmesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0 1 1 0] \"string "
+       "emissionfilename\" \"nowhere.png\""),
   };
   for (const char* text : texts) EXPECT_THAT(complaints(text), IsEmpty()) << text;
 }

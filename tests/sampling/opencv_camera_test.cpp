@@ -246,10 +246,10 @@ TEST(OpencvCamera, FootprintsAndSpreadsAreDistancesOfRays) {
     const Scene scene = scene_of(calibrated[i]);
     for (const auto& [x, y, z, column, row] : calibrated[i].points) {
       const glm::dvec2 at(column + 0.5, row + 0.5);
-      const auto apart = [&](const glm::dvec2& step) {
+      const auto apart = [&, distance = z](const glm::dvec2& step) {
         const auto on_plane = [&](const glm::dvec2& raster) {
           const glm::dvec3 d = unproject(scene.view.camera, scene.view.film, raster).direction;
-          return d * (z / d.z);
+          return d * (distance / d.z);
         };
         return on_plane(at + step) - on_plane(at - step);
       };
