@@ -4,6 +4,9 @@
 
 #include <CLI/CLI.hpp>
 
+#include "base/atomic_file.h"
+#include "base/error.h"
+#include "cli/options.h"
 #include "film/slots.h"
 
 namespace caplet::cli {
@@ -23,6 +26,15 @@ void add_matte_flags(CLI::App& command, MatteFlags& flags) {
       .add_option("--deep", flags.deep,
                   "Also write a deep EXR: alpha and distance of all that each pixel shows")
       ->type_name("OUT.exr");
+}
+
+std::filesystem::path deep_path(const MatteFlags& flags) {
+  if (flags.deep.empty()) return {};
+  std::filesystem::path path = output_named(flags.deep);
+  if (!is_stream(path) && path.extension() != ".exr")
+    throw InputError(SourceLocation{"--deep"},
+                     "'" + flags.deep + "': deep pictures are written as .exr");
+  return path;
 }
 
 Layers with_mattes(Layers layers, const MatteFlags& flags) {

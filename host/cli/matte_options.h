@@ -5,6 +5,7 @@
 #pragma once
 
 #include <CLI/App.hpp>
+#include <filesystem>
 #include <optional>
 #include <string>
 
@@ -19,6 +20,10 @@ struct MatteFlags {
 };
 
 void add_matte_flags(CLI::App& command, MatteFlags& flags);
+
+/// Returns where the deep picture is written; empty where it is not. Throws InputError for a name
+/// that is not one of an EXR.
+std::filesystem::path deep_path(const MatteFlags& flags);
 
 /// Returns the layers, and the mattes if the flags ask for them.
 Layers with_mattes(Layers layers, const MatteFlags& flags);

@@ -64,7 +64,7 @@ Targets targets_of(const MergeFlags& flags) {
     out.all.add("--film", out.film);
   }
   if (!flags.mattes.deep.empty()) {
-    out.deep = output_named(flags.mattes.deep);
+    out.deep = deep_path(flags.mattes);
     out.all.add("--deep", out.deep);
   }
   if (out.pictures.empty() && out.previews.empty() && out.film.empty() && out.deep.empty())

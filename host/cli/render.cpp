@@ -127,7 +127,7 @@ Overrides check_options(const RenderFlags& options, Files& files) {
   if (!options.preview.empty()) add_preview(files, options.preview, "--preview");
   if (!options.mattes.deep.empty()) {
     if (options.separation) throw InputError(SourceLocation{"--deep"}, "does not go with --stereo");
-    files.deep = output_named(options.mattes.deep);
+    files.deep = deep_path(options.mattes);
     files.all.add("--deep", files.deep);
   }
   if (options.overlays.any() &&

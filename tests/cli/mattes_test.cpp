@@ -146,6 +146,7 @@ TEST(Deep, IsTheOnlyFileWhereNoOtherIsAskedFor) {
        {std::pair{std::vector<std::string>{"--deep", "a.exr", "-o", "b.exr", "--stereo", "1"},
                   "--deep: does not go with --stereo"},
         {{"--deep", "a.exr", "-o", "b.####.exr", "--turntable", "2"}, "--deep: 'a.exr'"},
+        {{"--deep", "a.png", "-o", "b.exr"}, "--deep: 'a.png': deep pictures are written as .exr"},
         {{"--deep", "a.exr", "-o", "a.exr"}, "a.exr"}}) {
     const Result result = render(folder, arguments);
     EXPECT_EQ(result.code, 2) << wrong;
