@@ -14,6 +14,7 @@ FILE` names a tar file of compiled kernels, which is read at the beginning if it
 import argparse
 import concurrent.futures
 import json
+import math
 import os
 import pathlib
 import sys
@@ -30,6 +31,12 @@ from gpu_kit import pack, page, surroundings  # noqa: E402
 IMAGES = [("walk", "512x512", 16, 528), ("capsules", "1280x720", 64, 1088), ("gallery", "960x540", 16, 528), ("cornell", "512x512", 16, 2064),
           ("many-lights", "512x512", 16, 2064), ("smoke", "960x540", 8, 72)]
 BENCHES = [("capsules", 1000000), ("triangles", 1000000), ("shapes", 100000)]
+# Whole images to a noise.
+NOISES = [("gallery", "960x540", "3%"), ("capsules", "1280x720", "2%"), ("hair", "480x270", "5%"), ("reference/ignis-cbox-d6", "512x512", "2%")]
+# Scenes whose stated noise is tried, when that is asked for.
+TRIALS = ["gallery.pbrt", "capsules.pbrt", "hair.pbrt", "smoke.pbrt", "materials.pbrt", "neuron.swc", "walker.xml", "lattice.3mf",
+          "reference/ignis-cbox-d6.pbrt", "reference/capsule-light-room.pbrt", "reference/sphere-light-irradiance.pbrt",
+          "reference/furnace-box-50.pbrt"]
 # Numbers of CAPLET_LAUNCH (docs/drivers.md).
 SWEEP = ["", "paths=262144", "paths=1048576", "paths=4194304", "paths=16777216", "local=32", "local=128", "local=256", "chunk=65536", "chunk=1048576",
          "chunk=0", "rounds=2", "rounds=8", "rounds=16"]
@@ -140,6 +147,43 @@ class Hour:
             return {"fails": tried.how(code, err)} if code != 0 else {}
         self.part("references", scene.name, made)
 
+    def mattes(self, scene):
+        """Coverage by names beside PoCL's, and a deep picture, which stays in the results."""
+        def made():
+            tried = self.tried(f"mattes-{scene.stem}", 240)
+            ours = checks.picture(tried, scene, "full", *pack.MATTE_OPTIONS, "--deep", self.out / "references" / f"deep-{scene.stem}.exr")
+            if isinstance(ours, str):
+                return {"fails": ours}
+            theirs = exr.Picture(pack.mattes_file(ROOT, scene))
+            return {kind: exr.compare_mattes(ours, theirs, kind) for kind in ("CryptoObject", "CryptoMaterial", "CryptoAsset")}
+        self.part("mattes", scene.name, made)
+
+    def noise(self):
+        """Seconds and samples to a noise by --noise, and of as many samples in every pixel as have the same noise."""
+        for name, size, target in NOISES:
+            def made(name=name, size=size, target=target):
+                wanted = float(target.rstrip("%")) / 100
+                first = self.rendered(f"noise-{pathlib.Path(name).stem}", pack.scene(ROOT, name), size, 16, 90, "--variance", "--stats", "-")
+                adaptive = self.rendered(f"noise-{pathlib.Path(name).stem}", pack.scene(ROOT, name), size, 4096, 90, "--noise", target, "--stats", "-")
+                if "fails" in first or "fails" in adaptive:
+                    return first if "fails" in first else adaptive
+                # The noise of equal samples falls as their root.
+                samples = max(1, math.ceil(16 * (first["noise"] / wanted) ** 2))
+                uniform = self.rendered(f"noise-{pathlib.Path(name).stem}", pack.scene(ROOT, name), size, samples, 90, "--variance", "--stats", "-")
+                if "fails" in uniform:
+                    return uniform
+                return {way: {"wall": found["wall"], "render": found["seconds"]["render"], "noise": found["noise"], "samples": found["samples_per_pixel"]}
+                        for way, found in (("adaptive", adaptive), ("uniform", uniform))}
+            self.part("noise", f"{name} {target}", made)
+
+    def trial(self, scene):
+        """How true the noise is that films state (programs/noise_trial.cpp)."""
+        def made():
+            tried = self.tried(f"trial-{scene.stem}", 60 * self.options.trial_minutes + 120)
+            code, out, err = tried.run("caplet_noise_trial", scene, "--device", "0", "--minutes", self.options.trial_minutes, "--noise", 0.05, 0.01)
+            return {"lines": [json.loads(line) for line in out.splitlines()], **({} if code == 0 else {"fails": tried.how(code, err)})}
+        self.part("trial", scene.name, made)
+
     def bench(self):
         for kind, count in BENCHES:
             def made(kind=kind, count=count):
@@ -200,6 +244,9 @@ class Hour:
                                           [(self.picture, scene) for scene in checks.scenes(chosen, "full")]),
             "references": lambda: self.pool([(self.reference, scene) for scene in sorted((ROOT / "scenes/more").glob("*.pbrt"))
                                              if not chosen or any(part in scene.name for part in chosen)]),
+            "mattes": lambda: self.pool([(self.mattes, scene) for scene in checks.scenes(pack.MATTES, "full")]),
+            "noise": self.noise,
+            "trial": lambda: self.pool([(self.trial, ROOT / "scenes" / name) for name in TRIALS]),
             "bench": self.bench,
             "images": self.images,
             "sweep": self.sweep,
@@ -214,7 +261,7 @@ class Hour:
         return 0
 
 
-STEPS = ("device", "self-test", "compilation", "pictures", "verify", "hits", "references", "bench", "images", "sweep", "tests")
+STEPS = ("device", "self-test", "compilation", "pictures", "verify", "hits", "references", "mattes", "noise", "trial", "bench", "images", "sweep", "tests")
 
 
 def some_steps(text):
@@ -230,7 +277,9 @@ def main(arguments):
     parser.add_argument("--more", type=pathlib.Path, nargs="*", default=[], help="scenes, with what they read, that go along")
     parser.add_argument("--minutes", type=float, default=40, help="most minutes of all (default %(default)s)")
     parser.add_argument("--out", type=pathlib.Path, default=pathlib.Path("gpu-results"), help="folder of the results (default %(default)s)")
-    parser.add_argument("--steps", type=some_steps, default=list(STEPS), help=f"default: {','.join(STEPS)}")
+    usual = [step for step in STEPS if step != "trial"]
+    parser.add_argument("--steps", type=some_steps, default=usual, help=f"default: {','.join(usual)}; trial: how true the stated noise is")
+    parser.add_argument("--trial-minutes", type=float, default=3, help="of trial, for each scene (default %(default)s)")
     parser.add_argument("--scenes", type=lambda text: text.split(","), default=[], help="parts of names of the pictures' scenes; default: all")
     parser.add_argument("--rays", type=int, default=1000000, help="of verify, beside the pictures (default %(default)s)")
     parser.add_argument("--launches", type=lambda text: text.split("/"), default=[], help="values of CAPLET_LAUNCH in place of the sweep's, with / between")

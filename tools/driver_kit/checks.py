@@ -147,12 +147,12 @@ def compare_crossings(ours, theirs):
     return {"rays": len(rows[0].keys() | rows[1].keys()), "t": same, "worst": worst, "other": other}
 
 
-def picture(tried, scene, size):
-    """An exr.Picture, or a text that says why there is none."""
+def picture(tried, scene, size, *more):
+    """An exr.Picture, or a text that says why there is none. `more`: further options of the program."""
     file = tried.folder / f"{scene.stem}-{size}.exr"
     pixels, samples = GALLERY if size == "full" and scene.stem == "gallery" else SIZES[size]
     file.unlink(missing_ok=True)
-    code, _, err = tried.run("caplet", "render", scene, "-o", file, "--size", pixels, "--spp", samples, "--variance", "-q")
+    code, _, err = tried.run("caplet", "render", scene, "-o", file, "--size", pixels, "--spp", samples, "--variance", "-q", *more)
     return tried.how(code, err) if code != 0 else exr.Picture(file)
 
 

@@ -126,6 +126,33 @@ def difference(one, other):
     }
 
 
+def mattes(picture, kind):
+    """Coverage by the hash of a name, a dictionary for each pixel: `kind` is CryptoObject, CryptoMaterial or CryptoAsset."""
+    found = [{} for _ in range(picture.width * picture.height)]
+    for level in range(100):
+        name = f"{kind}{level:02d}"
+        if name + ".R" not in picture.channels:
+            break
+        for hashes, coverage in ("RG", "BA"):
+            bits = array.array("I", picture.channels[f"{name}.{hashes}"].tobytes())
+            for pixel, (key, share) in enumerate(zip(bits, picture.channels[f"{name}.{coverage}"])):
+                if share > 0:
+                    found[pixel][key] = found[pixel].get(key, 0.0) + share
+    if not any(found):
+        raise ValueError(f"{picture.path}: no {kind}")
+    return found
+
+
+def compare_mattes(one, other, kind):
+    """names: hashes in the pictures; other: hashes that only one of them has; worst: the greatest difference of a coverage; equal:
+    pixels whose coverages all are equal to the bit; of: pixels in all."""
+    a, b = mattes(one, kind), mattes(other, kind)
+    names = [set().union(*each) for each in (a, b)]
+    worst = max(abs(x.get(key, 0.0) - y.get(key, 0.0)) for x, y in zip(a, b) for key in (x.keys() | y.keys() | {0}))
+    return {"names": len(names[0] | names[1]), "other": len(names[0] ^ names[1]), "worst": worst,
+            "equal": sum(x == y for x, y in zip(a, b)), "of": len(a)}
+
+
 def within_noise(found):
     """Independent renders of one picture have a noise of 1 (0.9 to 1.1) and a shift below 3: at equal seeds both are less."""
     return found is None or (found["noise"] <= 1.0 and found["shift"] <= 3.0)

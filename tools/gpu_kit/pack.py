@@ -14,7 +14,7 @@ TESTS = {"known_answers_tests": "render", "trace_tests": "bvh", "render_tests": 
          "shapes_tests": "shapes", "csg_tests": "shapes", "device_tests": "device", "layout_tests": "layout", "agreement_tests": "shapes",
          "list_tests": "bvh", "edits_tests": "edits", "layers_tests": "layers", "bsdf_tests": "bsdf", "lights_tests": "lights",
          "media_tests": "media", "texture_tests": "textures", "sampling_tests": "sampling", "closed_form_tests": "closed_forms"}
-PROGRAMS = {"caplet": "bin/caplet", "caplet_bench": "bin/caplet_bench", **{name: f"tests/{folder}/{name}" for name, folder in TESTS.items()}}
+PROGRAMS = {"caplet": "bin/caplet", "caplet_bench": "bin/caplet_bench", "caplet_noise_trial": "bin/caplet_noise_trial", **{name: f"tests/{folder}/{name}" for name, folder in TESTS.items()}}
 # These libraries are the machine's own: programs built on Debian 12 run with newer ones.
 SYSTEMS = re.compile(r"^(ld-linux|linux-vdso|lib(c|m|dl|rt|pthread|resolv|gcc_s|stdc\+\+)\.so)")
 
@@ -34,6 +34,14 @@ def scene(root, name):
 
 # Scenes whose crossings with so many rays are compared with PoCL's.
 HIT_SCENES, HITS = ("gallery", "instances.pbrt"), 20000
+
+
+# Scenes whose mattes and deep pictures are compared with PoCL's.
+MATTES, MATTE_OPTIONS = ("gallery", "neuron.swc", "instances.pbrt"), ("--layers", "all,crypto_object,crypto_material,crypto_asset")
+
+
+def mattes_file(root, scene_file):
+    return root / "pictures" / f"mattes-{scene_file.stem}.exr"
 
 
 def crossings_file(root, scene_file):
@@ -93,6 +101,11 @@ def make(root, folder, more, workers):
             if isinstance(lines, str):
                 return f"{scene_file.name}: {lines}"
             crossings_file(folder, scene_file).write_text("\n".join(lines) + "\n")
+        if any(part in scene_file.name for part in MATTES):
+            found = checks.picture(tried, scene_file, "full", *MATTE_OPTIONS)
+            if isinstance(found, str):
+                return f"{scene_file.name}: {found}"
+            shutil.copy(found.path, mattes_file(folder, scene_file))
         return ""
 
     with concurrent.futures.ThreadPoolExecutor(workers) as pool:
