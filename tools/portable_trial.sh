@@ -4,8 +4,8 @@
 #
 # portable_trial.sh [SUITE...]: installs the portable wheel of build/wheels in bare systems (Debian's bookworm and trixie and Ubuntu's noble,
 # or those named) as a user without root, where nothing but python3 and venv were added, and uses it there (portable_trial_inside.sh).
-# debootstrap makes the systems, in build/bare (CAPLET_BARE names another folder, with one folder a suite). Needs root. Without
-# the keyring of Ubuntu's archive noble is left out, with a line that says so. Prints the seconds of each step; a
+# debootstrap makes the systems, in build/bare (CAPLET_BARE names another folder, with one folder a suite). Needs root. Where
+# Ubuntu's archive cannot be reached noble is left out, with a line that says so. Prints the seconds of each step; a
 # machine that does other work beside it may be given more of them from the wheel to a picture (CAPLET_TRIAL_SECONDS, 60).
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
@@ -21,19 +21,32 @@ clean() {
 }
 trap clean EXIT
 
+# Debian does not have the keys of Ubuntu's archive: they come from that archive, in a package whose hash is known here.
 ubuntu=http://archive.ubuntu.com/ubuntu
+keyring_package=pool/main/u/ubuntu-keyring/ubuntu-keyring_2023.11.28.1_all.deb
+keyring_sha256=36de43b15853ccae0028e9a767613770c704833f82586f28eb262f0311adb8a8
+keyring=$bare/ubuntu-keyring/usr/share/keyrings/ubuntu-archive-keyring.gpg
+fetch_keyring() {
+  [ ! -e "$keyring" ] || return 0
+  mkdir -p "$bare"
+  python3 -c 'import sys, urllib.request; sys.stdout.buffer.write(urllib.request.urlopen(sys.argv[1], timeout=30).read())' \
+    "$ubuntu/$keyring_package" >"$bare/ubuntu-keyring.deb" 2>/dev/null || return 1
+  sha256sum --check --quiet <<<"$keyring_sha256  $bare/ubuntu-keyring.deb" && dpkg-deb -x "$bare/ubuntu-keyring.deb" "$bare/ubuntu-keyring"
+}
 make_bare() {
-  local mirror options=(--variant=minbase)
+  local mirror script=() options=(--variant=minbase)
   command -v debootstrap >/dev/null || apt-get install -y -qq --no-install-recommends debootstrap >/dev/null
   mkdir -p "$bare"
   rm -rf --one-file-system "$bare/$1.part"
   if [ "$1" = noble ]; then
+    fetch_keyring
     mirror=$ubuntu
-    options+=(--components=main,universe --keyring=/usr/share/keyrings/ubuntu-archive-keyring.gpg)
+    script=(gutsy)  # that of all of Ubuntu's systems: Debian 12's debootstrap is older than noble
+    options+=(--components=main,universe --keyring="$keyring")
   else
     mirror=$(awk '$1=="URIs:"{print $2; exit} $1=="deb"{for(i=2;i<=NF;i++) if($i ~ /:\/\//){print $i; exit}}' /etc/apt/sources.list.d/debian.sources /etc/apt/sources.list 2>/dev/null)
   fi
-  debootstrap "${options[@]}" "$1" "$bare/$1.part" "$mirror" >"$bare/$1.log" 2>&1 || { tail -n 5 "$bare/$1.log" >&2; exit 1; }
+  debootstrap "${options[@]}" "$1" "$bare/$1.part" "$mirror" "${script[@]}" >"$bare/$1.log" 2>&1 || { tail -n 5 "$bare/$1.log" >&2; exit 1; }
   mv "$bare/$1.part" "$bare/$1"
 }
 
@@ -45,7 +58,7 @@ fi
 suites=("$@")
 if [ ${#suites[@]} = 0 ]; then
   suites=(bookworm trixie)
-  if [ -d "$bare/noble" ] || [ -e /usr/share/keyrings/ubuntu-archive-keyring.gpg ]; then
+  if [ -d "$bare/noble" ] || fetch_keyring; then
     suites+=(noble)
   else
     echo "**** SKIPPED: Ubuntu 24.04 is NOT tried: there is no $bare/noble, nor the keyring of its archive to make it by ****" >&2
