@@ -34,7 +34,6 @@
 #include "film/denoise.h"
 #include "film/develop.h"
 #include "film/image.h"
-#include "film/noise.h"
 #include "import/import.h"
 #include "lower/fingerprint.h"
 #include "lower/live_scene.h"
@@ -359,16 +358,6 @@ RenderResult written(const Work& work, RenderResult result, report::RunSeconds& 
   if (work.files.pictures.empty() && work.files.previews.empty()) return result;
   PictureFlaws flaws;
   BandedImage picture = bands_of(work, result, flaws);
-  PictureNoise noise;
-  int added = 0;  // rows: each pair of files develops all of them
-  picture.band = [&noise, &added, band = std::move(picture.band)](int first, int rows) {
-    LayeredImage out = band(first, rows);
-    if (first == added) {
-      noise.add(out);
-      added += rows;
-    }
-    return out;
-  };
   Stopwatch phase;
   const post::Overlays& overlays = work.options.overlays;
   report::Finish finish{overlays.layers(), work.layers, {}};
@@ -380,7 +369,7 @@ RenderResult written(const Work& work, RenderResult result, report::RunSeconds& 
     report::write_pictures(exr, preview, picture, channels_of(work), result.render_seconds, finish);
   });
   flaws.warn();
-  result.noise = noise.relative();
+  result.noise = flaws.noise.relative();
   seconds.write += phase.lap();
   return result;
 }

@@ -178,6 +178,7 @@ LayeredImage develop(const Film& film, const FilmSettings& settings, Layers laye
   const std::size_t first =
       static_cast<std::size_t>(margins.above) * static_cast<std::size_t>(window.width);
   flaws.of += window.pixels();
+  if (layers.has(Layer::variance)) flaws.noise.add(film, margins.above, window.height);
   for (std::size_t pixel = 0; pixel < window.pixels(); ++pixel) {
     developer.look_at(first + pixel);
     bool all_finite = true, is_crowded = false;

@@ -11,6 +11,7 @@
 #include "film/film.h"
 #include "film/image.h"
 #include "film/layers.h"
+#include "film/noise.h"
 #include "scene/film.h"
 
 namespace caplet {
@@ -19,11 +20,12 @@ namespace caplet {
 /// and normalising nodes.
 inline constexpr float depth_of_nothing = 1e10f;
 
-/// PictureFlaws counts developed pixels that lack something.
+/// PictureFlaws is the noise of a developed picture, and counts its pixels that lack something.
 struct PictureFlaws {
   std::size_t count = 0, of = 0;  // beyond the range of a float; `of`: how many were developed
   std::size_t x = 0, y = 0;       // the first one
   std::size_t crowded = 0;        // with more things in one matte than CAPLET_SLOTS
+  PictureNoise noise;             // where the layer variance is developed
 
   /// Logs a warning when there are any.
   void warn() const;

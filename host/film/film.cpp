@@ -172,6 +172,10 @@ std::vector<Slot> Film::slots(Layer layer, std::size_t pixel) const {
                   layer_rows[row].words / CAPLET_SLOTS, units_[row]);
 }
 
+Film Film::with_parts(std::vector<FilmPart> parts) && {
+  return Film(layout_, std::move(words_), std::move(parts));
+}
+
 Film Film::rows(int first, int count) const {
   FilmLayout part = layout_;
   part.window.y += first;

@@ -98,6 +98,8 @@ class Film {
   /// Returns the slots of a layer of slots, in the order of their keys.
   std::vector<Slot> slots(Layer layer, std::size_t pixel) const;
 
+  /// Returns the film with the list of its samples replaced.
+  Film with_parts(std::vector<FilmPart> parts) &&;
   /// Returns `count` of its rows from `first` on, without the list of samples.
   Film rows(int first, int count) const;
 

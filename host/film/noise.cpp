@@ -3,10 +3,10 @@
 #include "film/noise.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <cstddef>
 
-#include "film/replicate_estimate.h"
+#include "film/detail/sums_around.h"
 
 namespace caplet {
 
@@ -21,44 +21,51 @@ struct Luminance {
   }
 };
 
-}  // namespace
-
-void PictureNoise::add(const LayeredImage& rows) {
-  const Channel *g = rows.find("G"), *a = rows.find("A"), *variance = rows.find("variance.G");
-  if (!g || !a || !variance) return;
-  width_ = static_cast<std::size_t>(rows.data_width);
-  for (std::size_t i = 0; i < g->floats.size(); ++i)
-    pixels_.push_back(
-        {g->floats[i], variance->floats[i], a->floats[i] > 0 || variance->floats[i] > 0});
+NoisePixel pixel_of(const Film& film, std::size_t pixel) {
+  std::array<double, 3> xyz{};
+  if (!replicates_differ(film, pixel, xyz)) return {};
+  const double n = film.samples(pixel);
+  return {static_cast<float>(film.sum(Layer::color, 1, pixel) / n),
+          static_cast<float>(xyz[1] * xyz[1] * sample_variance_factor(film, pixel) / n), true};
 }
 
-std::optional<double> PictureNoise::relative() const {
+}  // namespace
+
+std::optional<double> noise_of(const std::vector<NoisePixel>& pixels, int width) {
+  const auto columns = static_cast<std::size_t>(std::max(1, width));
+  std::vector<Luminance> own(pixels.size());
   Luminance all;
-  std::vector<Luminance> rows(pixels_.size());
-  const auto of = [this](std::size_t pixel) {
-    return pixels_[pixel].seen ? Luminance{double{pixels_[pixel].luminance}, 1} : Luminance{};
-  };
-  const std::size_t height = width_ > 0 ? pixels_.size() / width_ : 0;
-  for (std::size_t y = 0; y < height; ++y)
-    for (std::size_t x = 0; x < width_; ++x) {
-      all.add(of(y * width_ + x));
-      for_neighbours(static_cast<int>(x), static_cast<int>(width_),
-                     [&](std::size_t other) { rows[y * width_ + x].add(of(y * width_ + other)); });
-    }
+  for (std::size_t i = 0; i < own.size(); ++i) {
+    if (pixels[i].seen) own[i] = {double{pixels[i].luminance}, 1};
+    all.add(own[i]);
+  }
   const double floor = noise_floor * all.sum / all.pixels;
   if (!(floor > 0)) return {};
+  std::vector<Luminance> around =
+      sums_around(own, width, static_cast<int>(pixels.size() / columns));
   double sum = 0;
-  for (std::size_t y = 0; y < height; ++y)
-    for (std::size_t x = 0; x < width_; ++x) {
-      const Pixel& pixel = pixels_[y * width_ + x];
-      if (!pixel.seen) continue;
-      Luminance around;
-      for_neighbours(static_cast<int>(y), static_cast<int>(height),
-                     [&](std::size_t other) { around.add(rows[other * width_ + x]); });
-      const double relative_to = std::max(0.0, around.sum / around.pixels) + floor;
-      sum += double{pixel.variance} / (relative_to * relative_to);
-    }
+  for (std::size_t i = 0; i < own.size(); ++i) {
+    if (!pixels[i].seen) continue;
+    around[i].add(own[i]);
+    const double relative_to = std::max(0.0, around[i].sum / around[i].pixels) + floor;
+    sum += double{pixels[i].variance} / (relative_to * relative_to);
+  }
   return std::sqrt(sum / all.pixels);
+}
+
+void PictureNoise::add(const Film& film, int first, int count) {
+  const FilmLayout& layout = film.layout();
+  if (!layout.layers.has(Layer::variance)) return;
+  const int row = layout.window.y + first;
+  if (!pixels_.empty() && row != next_row_) return;
+  width_ = layout.window.width;
+  next_row_ = row + count;
+  const auto columns = static_cast<std::size_t>(width_),
+             begin = static_cast<std::size_t>(first) * columns, size = pixels_.size();
+  pixels_.resize(size + static_cast<std::size_t>(count) * columns);
+  tbb::parallel_for(size, pixels_.size(), [&](std::size_t pixel) {
+    pixels_[pixel] = pixel_of(film, begin + pixel - size);
+  });
 }
 
 }  // namespace caplet

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// How noisy a picture is as a whole, by the variances that it states.
+// How noisy a picture is as a whole.
 #pragma once
 
 #include <cstddef>
 #include <optional>
 #include <vector>
 
-#include "film/image.h"
+#include "film/film.h"
 
 namespace caplet {
 
@@ -18,24 +18,31 @@ namespace caplet {
 /// to 21.
 inline constexpr double noise_floor = 0.25;
 
-/// PictureNoise is the noise of a picture: the root of the mean, over the pixels that show
-/// something, of the variance over the square of floor and mean luminance, which is that of such
-/// pixels at most variance_radius away.
+/// NoisePixel is what the noise of a picture depends on.
+struct NoisePixel {
+  float luminance = 0, variance = 0;  // of its mean
+  bool seen = false;
+};
+
+/// Returns the root of the mean, over the pixels that are seen, of the variance over the square of
+/// floor and mean luminance, which is that of such pixels at most variance_radius away. Empty if
+/// they have no light. `pixels`: row by row.
+std::optional<double> noise_of(const std::vector<NoisePixel>& pixels, int width);
+
+/// PictureNoise is the noise of a film, by what the replicates of each pixel say themselves: their
+/// mean over a picture is true, while the layer `variance` shares them with neighbours that may be
+/// darker.
 class PictureNoise {
  public:
-  /// Adds the next rows of a picture with the channels G, which stands for luminance, A and
-  /// variance.G; another image adds nothing.
-  void add(const LayeredImage& rows);
-  /// Returns the noise of the pixels with coverage or variance, and empty if there are none.
-  std::optional<double> relative() const;
+  /// Adds rows [first, first + count) of a film; nothing if its layers have no variance. Rows that
+  /// do not follow those that it has are not added: a picture may be developed twice.
+  void add(const Film& film, int first, int count);
+  /// Returns the noise of the pixels that have an estimate; empty if there are none.
+  std::optional<double> relative() const { return noise_of(pixels_, width_); }
 
  private:
-  struct Pixel {
-    float luminance = 0, variance = 0;
-    bool seen = false;
-  };
-  std::size_t width_ = 0;
-  std::vector<Pixel> pixels_;
+  int width_ = 0, next_row_ = 0;  // of the whole picture
+  std::vector<NoisePixel> pixels_;
 };
 
 }  // namespace caplet

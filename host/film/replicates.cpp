@@ -6,13 +6,14 @@
 #include <cmath>
 #include <cstddef>
 
+#include "film/detail/sums_around.h"
 #include "film/replicate_estimate.h"
 
 namespace caplet {
 
 namespace {
 
-/// Estimate is the sum of the variances of a sample of `pixels` pixels.
+/// Estimate is the sum of the variances of the means of `pixels` pixels.
 struct Estimate {
   std::array<double, 3> variance{};
   double pixels = 0;
@@ -29,41 +30,30 @@ Estimate estimate_of(const Film& film, const std::array<double, 9>& m, std::size
   out.pixels = 1;
   for (std::size_t c = 0; c < 3; ++c) {
     const double rgb = m[3 * c] * xyz[0] + m[3 * c + 1] * xyz[1] + m[3 * c + 2] * xyz[2];
-    out.variance[c] = rgb * rgb * sample_variance_factor(film, pixel);
+    out.variance[c] = rgb * rgb * sample_variance_factor(film, pixel) / film.samples(pixel);
   }
   return out;
 }
 
 }  // namespace
 
+// Pixels share the variances of their means, not those of their samples over their own numbers of
+// samples: a plan gives the brightest of a few pixels fewer samples than those around it
+// (sample_plan.cpp), so that the sum of the stated variances would be too small.
 std::vector<std::array<double, 3>> variances_of_means(const Film& film,
                                                       const std::array<double, 9>& rgb_from_xyz) {
   const Window& window = film.layout().window;
-  const auto width = static_cast<std::size_t>(window.width);
-  std::vector<Estimate> along_rows(window.pixels());
-  std::vector<bool> has_one(window.pixels());
-  std::vector<Estimate> row(width);
-  for (std::size_t begin = 0; begin < along_rows.size(); begin += width) {
-    for (std::size_t x = 0; x < width; ++x) {
-      row[x] = estimate_of(film, rgb_from_xyz, begin + x);
-      has_one[begin + x] = row[x].pixels > 0;
-    }
-    for (int x = 0; x < window.width; ++x)
-      for_neighbours(x, window.width, [&](std::size_t other) {
-        along_rows[begin + static_cast<std::size_t>(x)].add(row[other]);
-      });
-  }
+  std::vector<Estimate> own(window.pixels());
+  tbb::parallel_for(std::size_t{0}, own.size(), [&](std::size_t pixel) {
+    own[pixel] = estimate_of(film, rgb_from_xyz, pixel);
+  });
+  std::vector<Estimate> around = sums_around(own, window.width, window.height);
   std::vector<std::array<double, 3>> out(window.pixels());
-  for (int y = 0; y < window.height; ++y) {
-    row.assign(width, {});
-    for_neighbours(y, window.height, [&](std::size_t other) {
-      for (std::size_t x = 0; x < width; ++x) row[x].add(along_rows[other * width + x]);
-    });
-    const std::size_t begin = static_cast<std::size_t>(y) * width;
-    for (std::size_t x = 0; x < width; ++x)
-      for (std::size_t c = 0; c < 3 && has_one[begin + x]; ++c)
-        out[begin + x][c] =
-            row[x].variance[c] / (row[x].pixels * static_cast<double>(film.samples(begin + x)));
+  for (std::size_t pixel = 0; pixel < out.size(); ++pixel) {
+    if (own[pixel].pixels == 0) continue;
+    around[pixel].add(own[pixel]);
+    for (std::size_t c = 0; c < 3; ++c)
+      out[pixel][c] = around[pixel].variance[c] / around[pixel].pixels;
   }
   return out;
 }

@@ -432,7 +432,7 @@ std::optional<Film> Session::gather() {
   if (out.parts().size() < 2 && !has_lists_) return out;
   std::vector<FilmPart> parts;
   if (next_ > first_) parts.push_back({out.layout().window, first_, next_ - first_});
-  return Film(out.layout(), {out.words().begin(), out.words().end()}, std::move(parts));
+  return std::move(out).with_parts(std::move(parts));
 }
 
 Film Session::film() {

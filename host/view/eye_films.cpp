@@ -108,6 +108,7 @@ Picture EyeFilms::picture() {
   const LayeredImage image =
       develop(session_.film(), live_.scene().view.film, session_options(options_).layers, flaws);
   Picture out = shown_of(image, is_full());
+  out.noise = static_cast<float>(flaws.noise.relative().value_or(0));
   out.version = ++version_;
   out.view = view_;
   out.eye = static_cast<int>(eye_);

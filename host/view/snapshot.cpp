@@ -5,7 +5,6 @@
 #include <array>
 
 #include "film/chromaticities.h"
-#include "film/noise.h"
 
 namespace caplet::view {
 
@@ -28,9 +27,6 @@ Picture shown_of(const LayeredImage& image, bool ids) {
     out.objects = image.find("object.id")->uints;
     out.primitives = image.find("primitive.id")->uints;
   }
-  PictureNoise noise;
-  noise.add(image);
-  out.noise = static_cast<float>(noise.relative().value_or(0));
   return out;
 }
 

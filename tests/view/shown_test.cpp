@@ -42,16 +42,5 @@ TEST(Shown, IsInSrgbWhateverTheFilmsSpace) {
   EXPECT_EQ(shown.color[5], 0);
 }
 
-// Variances of the means 0.04 and 0.12: root mean square 0.2828 over 2.5.
-TEST(Shown, SaysItsNoise) {
-  LayeredImage image = image_of({0, 0}, {1, 3}, {0, 0});
-  EXPECT_EQ(shown_of(image, false).noise, 0);
-  image.channels.push_back({"A", {1, 1}, {}});
-  image.channels.push_back({"variance.G", {0.04f, 0.12f}, {}});
-  // The root of 0.08 over a luminance around them of 2, and a quarter of that.
-  EXPECT_NEAR(shown_of(image, false).noise, 0.11314, 1e-5);
-  EXPECT_EQ(shown_of(image_of({0}, {0}, {0}), false).noise, 0);
-}
-
 }  // namespace
 }  // namespace caplet::view

@@ -9,7 +9,7 @@
 
 namespace caplet::view {
 
-/// Returns colours in linear sRGB, ids if asked for, and the noise from the image's variance.
+/// Returns colours in linear sRGB, and ids if asked for.
 Picture shown_of(const LayeredImage& image, bool ids);
 
 }  // namespace caplet::view
