@@ -39,6 +39,7 @@ struct ViewFlags {
   ImportOptions import_options;
   std::uint16_t port = 0;
   int samples = 0;
+  std::optional<double> noise;
   bool no_browser = false, read_only = false, quiet = false;
 };
 
@@ -112,6 +113,10 @@ void run_view(const ViewFlags& options) {
       options.port ? view::kept_token(options.host, options.port, name) : view::random_token();
   viewer_options.read_only = options.read_only;
   viewer_options.samples = options.samples;
+  if (options.noise) {
+    viewer_options.noise = *options.noise;
+    if (options.samples == 0) viewer_options.samples = NoiseTarget{}.most;
+  }
   const bool saves = keeper != nullptr;
   view::Viewer viewer(std::move(live), device, viewer_options, std::move(keeper));
   SecondTry::driver_works();
@@ -154,6 +159,11 @@ void add_view(CLI::App& app) {
                    "Samples per pixel at which the picture is done (default: the scene's own)")
       ->check(CLI::Range(1, 1 << 24))
       ->type_name("N");
+  command
+      ->add_option_function<std::string>(
+          "--noise", [o](const std::string& text) { o->noise = parse_noise(text); },
+          "Noise at which the picture is done, with --spp samples at most")
+      ->type_name("PERCENT%");
   command
       ->add_option("--size", o->size,
                    "Size in pixels of the first picture; the page asks for its own")

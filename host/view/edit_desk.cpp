@@ -37,7 +37,7 @@ EditDesk::EditDesk(const LiveScene& live, const Editor& editor, Keeping& keeping
       device_(std::move(device)) {}
 
 nlohmann::ordered_json EditDesk::told_scene() const {
-  return scene_text(live_.scene(), device_, films_.target());
+  return scene_text(live_.scene(), device_, films_.target(), films_.noise_target());
 }
 
 nlohmann::ordered_json EditDesk::told_parts() const {

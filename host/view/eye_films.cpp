@@ -3,12 +3,14 @@
 #include "view/detail/eye_films.h"
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 #include <vector>
 
 #include "base/clock.h"
 #include "film/develop.h"
 #include "film/exr_bytes.h"
+#include "film/sample_plan.h"
 #include "view/detail/shown_view.h"
 #include "view/detail/snapshot.h"
 
@@ -44,6 +46,13 @@ std::uint32_t EyeFilms::target() const {
       options_.samples > 0 ? options_.samples : live_.scene().view.sampler.samples_per_pixel);
 }
 
+/// Returns whether the pictures of all eyes, with equal samples, have the noise that is asked for.
+bool EyeFilms::has_little_noise() const {
+  const std::size_t last = eyes() - 1;
+  return options_.noise > 0 && samples_[last] >= NoiseTarget{}.least &&
+         samples_[last] == samples_[0] && std::max(noise_[0], noise_[last]) <= options_.noise;
+}
+
 void EyeFilms::look_with(const ShowView& look, int scale, std::size_t eye) {
   View own = live_.scene().view;
   own.camera = editor_.view().camera;
@@ -57,6 +66,7 @@ void EyeFilms::set_film(const ShowView& look, int scale) {
   look_with(look, scale, 0);
   scale_ = scale;
   samples_ = {0, 0};
+  noise_.fill(std::numeric_limits<double>::infinity());
   films_ = {};
 }
 
@@ -108,7 +118,9 @@ Picture EyeFilms::picture() {
   const LayeredImage image =
       develop(session_.film(), live_.scene().view.film, session_options(options_).layers, flaws);
   Picture out = shown_of(image, is_full());
-  out.noise = static_cast<float>(flaws.noise.relative().value_or(0));
+  const std::optional<double> noise = flaws.noise.relative();
+  out.noise = static_cast<float>(noise.value_or(0));
+  noise_[eye_] = noise.value_or(std::numeric_limits<double>::infinity());
   out.version = ++version_;
   out.view = view_;
   out.eye = static_cast<int>(eye_);

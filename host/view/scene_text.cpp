@@ -39,11 +39,13 @@ Json camera_text(const ShowView& look) {
           {"convergence", look.convergence}};
 }
 
-Json scene_text(const Scene& scene, const std::string& device, std::uint32_t samples) {
+Json scene_text(const Scene& scene, const std::string& device, std::uint32_t samples,
+                double noise) {
   Json out{{"type", "scene"}};
   out["name"] = std::filesystem::path(scene.source).filename().string();
   out["device"] = device;
   out["samples"] = samples;
+  out["noise"] = noise;
   out["bounds"] = to_json(bounds_or_unit_of(scene));
   // Things are numbered as in the layer object.id (lower/identity.h).
   Json things = Json::array();

@@ -10,10 +10,11 @@ namespace caplet::view {
 
 struct ViewerOptions {
   ServerOptions server;
-  bool read_only = false;        // refuse changes
-  int samples = 0;               // per pixel of a finished picture; 0: the scene's own
-  double coarse_seconds = 0.08;  // approximate time of a view's first picture
-  double step_seconds = 0.5;     // approximate time between two pictures
+  bool read_only = false;  // refuse changes
+  int samples = 0;         // per pixel of a finished picture; 0: the scene's own
+  double noise = 0;  // of a finished picture (film/noise.h), which may have fewer samples; 0: none
+  double coarse_seconds = 0.08;                    // approximate time of a view's first picture
+  double step_seconds = 0.5;                       // approximate time between two pictures
   std::size_t batch_paths = std::size_t{1} << 15;  // queries are answered between batches
 };
 

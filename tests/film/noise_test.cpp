@@ -45,9 +45,9 @@ TEST(PictureNoise, IsThereForPicturesWithLight) {
               1e-7);
 }
 
-// Where nothing is seen and nothing varies, nothing counts.
+// What is not seen does not count, whatever its numbers are.
 TEST(PictureNoise, IsThatOfWhatIsSeen) {
-  std::vector<NoisePixel> pixels = pixels_of({1, 1, 100, 100}, {0.25f, 0.25f, 0, 0});
+  std::vector<NoisePixel> pixels = pixels_of({1, 1, 100, 100}, {0.25f, 0.25f, 7, 7});
   pixels[2].seen = pixels[3].seen = false;
   EXPECT_NEAR(noise_of(pixels, 2).value(), 0.5 / 1.25, 1e-7);
 }

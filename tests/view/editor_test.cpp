@@ -148,7 +148,7 @@ TEST(Editor, DeletesEverything) {
   editor.make(Delete{{0, 1, 2, 3, 4, 5, 6}});
   EXPECT_TRUE(live.scene().shapes.empty() && live.scene().instances.empty());
   EXPECT_EQ(picture_of(live), fresh_picture_of(live.scene()));
-  const auto bounds = scene_text(live.scene(), "", 1).at("bounds");
+  const auto bounds = scene_text(live.scene(), "", 1, 0).at("bounds");
   EXPECT_EQ(bounds, nlohmann::ordered_json::parse("[[-1.0,-1.0,-1.0],[1.0,1.0,1.0]]"));
   EXPECT_TRUE(editor.undo());
   EXPECT_EQ(picture_of(live), first);

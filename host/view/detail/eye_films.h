@@ -31,9 +31,13 @@ class EyeFilms {
   DeviceScene& device_scene() const { return *session_.scene_on(0); }
   const ShowView& look() const { return look_; }
   std::size_t eyes() const { return look_.separation > 0 ? 2 : 1; }
-  /// Returns the samples per pixel of a finished picture.
+  /// Returns the samples per pixel of a finished picture, and of one with a noise the most.
   std::uint32_t target() const;
-  bool has_more() const { return scale_ != 1 || samples_[eyes() - 1] < target(); }
+  /// Returns ViewerOptions.noise.
+  double noise_target() const { return options_.noise; }
+  bool has_more() const {
+    return scale_ != 1 || (samples_[eyes() - 1] < target() && !has_little_noise());
+  }
   bool has_snapshot() const { return scale_ == 1 && samples_[0] > 0; }
   bool is_full() const { return scale_ == 1; }
 
@@ -55,6 +59,7 @@ class EyeFilms {
   void set_film(const ShowView& look, int scale);
   void change_eyes();
   std::uint32_t samples_of_step(std::size_t eye, double pixels) const;
+  bool has_little_noise() const;
 
   LiveScene& live_;
   const Editor& editor_;
@@ -64,6 +69,7 @@ class EyeFilms {
   std::uint64_t version_ = 0;
   std::uint32_t view_ = 1;
   std::array<std::uint32_t, 2> samples_{};  // for both eyes
+  std::array<double, 2> noise_{};           // of their last pictures
   std::array<std::optional<Film>, 2> films_;
   std::size_t eye_ = 0;  // the eye whose film is in the session
   int scale_ = 0;        // of the film; 0: it is empty

@@ -23,9 +23,9 @@ nlohmann::ordered_json to_json(const glm::dvec3& v);
 nlohmann::ordered_json camera_text(const ShowView& look);
 
 /// Returns name, bounds (bounds_or_unit_of), shapes and instances by their object.id, materials,
-/// the device's name, and the samples per pixel of a finished picture.
+/// the device's name, and the samples per pixel and the noise (0: any) of a finished picture.
 nlohmann::ordered_json scene_text(const Scene& scene, const std::string& device,
-                                  std::uint32_t samples);
+                                  std::uint32_t samples, double noise);
 
 /// Returns the names of hidden things: shapes, then instances.
 nlohmann::ordered_json hidden_text(const Scene& scene, const Hidden& hidden);

@@ -34,7 +34,7 @@ export const texts = {
   keys: "Mouse, touch and keys", close: "Close",
   picture: "The scene as it is rendered. Arrow keys orbit, plus and minus come nearer and go away.",
   more: (shown, all) => `${shown} of ${all}`,
-  state: (p, size, target, device) => `${p.samples} of ${target} samples, ${size}, ${p.samples > 1 ? `noise ${+(100 * p.noise).toPrecision(2)} %, ` : ""}${device}`,
+  state: (p, size, target, noise, device) => `${p.samples}${noise ? "" : ` of ${target}`} samples, ${size}, ${p.samples > 1 ? `noise ${+(100 * p.noise).toPrecision(2)} %${noise ? ` of ${+(100 * noise).toPrecision(2)} %` : ""}, ` : ""}${device}`,
   coarse: (p, device) => `coarse (1 of ${p.scale * p.scale} pixels), ${device}`,
   nothing: "nothing", lost: "The connection to the program is lost. Trying again…", closed: "This address is not served. Start `caplet view` again: with the same --port this page goes on, else open the address that it prints.",
   under: (h) => `${h.object} · primitive ${h.primitive} · surface ${h.surface} · ${h.material} · t ${h.t.toPrecision(6)} · (${h.point.map((v) => v.toPrecision(5)).join(", ")}) · normal (${h.normal.map((v) => v.toFixed(3)).join(", ")})`,

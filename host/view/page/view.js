@@ -237,7 +237,7 @@ function draw() {
   picture_canvas.height = down;
   picture_canvas.getContext("2d").putImageData(new ImageData(bytes, across, down), 0, 0);
   mark();
-  $("state").textContent = picture.scale > 1 ? texts.coarse(picture, scene.device) : texts.state(picture, `${width} × ${height}`, scene.samples, scene.device);
+  $("state").textContent = picture.scale > 1 ? texts.coarse(picture, scene.device) : texts.state(picture, `${width} × ${height}`, scene.samples, scene.noise, scene.device);
   stage.dataset.samples = picture.scale > 1 ? 0 : picture.samples;
   stage.dataset.view = picture.view;
   stage.dataset.right = has_right() && right_picture.scale === 1 ? right_picture.samples : 0;

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// When the picture that pages look at is finished.
+#include "view/detail/eye_films.h"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "guests.h"
+#include "live_pictures.h"
+#include "support/test_device.h"
+#include "view/detail/shown_view.h"
+
+namespace caplet::view {
+namespace {
+
+/// The last two full pictures of each eye, of those until the films have no more.
+struct Ended {
+  std::vector<Picture> before = std::vector<Picture>(2), last = std::vector<Picture>(2);
+};
+
+Ended ended(const ViewerOptions& options, double separation = 0) {
+  LiveScene live(test::some_scene());
+  const Editor editor(live);
+  EyeFilms films(live, editor, test::test_device(), options);
+  ShowView look = look_of_scene(live.scene());
+  look.width = test::width;
+  look.height = test::height;
+  look.separation = separation;
+  films.begin(look);
+  Ended out;
+  while (films.has_more()) {
+    films.step([](bool) {});
+    Picture picture = films.picture();
+    if (picture.scale != 1) continue;
+    const auto eye = static_cast<std::size_t>(picture.eye);
+    out.before[eye] = std::exchange(out.last[eye], std::move(picture));
+  }
+  return out;
+}
+
+ViewerOptions options_to(double noise, int most = 4096) {
+  ViewerOptions out = test::options_of(most);
+  out.noise = noise;
+  out.step_seconds = 0.02;
+  return out;
+}
+
+// The noise is the first that is asked for. Of two eyes, both have it, and equal samples.
+TEST(EyeFilms, EndWithTheNoiseThatIsAskedFor) {
+  const Ended one = ended(options_to(0.04));
+  EXPECT_LE(one.last[0].noise, 0.04);
+  EXPECT_GT(one.before[0].noise, 0.04);
+  EXPECT_GE(one.last[0].samples, 16u);
+  EXPECT_LT(one.last[0].samples, 4096u);
+  const Ended two = ended(options_to(0.04), 0.2);
+  for (const Picture& last : two.last) EXPECT_LE(last.noise, 0.04);
+  EXPECT_EQ(two.last[0].samples, two.last[1].samples);
+  EXPECT_LT(two.last[1].samples, 4096u);
+}
+
+TEST(EyeFilms, EndWithTheMostSamplesWhateverTheNoise) {
+  const Ended few = ended(options_to(1e-4, 20));
+  EXPECT_EQ(few.last[0].samples, 20u);
+  EXPECT_GT(few.last[0].noise, 1e-4);
+  EXPECT_EQ(ended(options_to(0, 20)).last[0].samples, 20u);
+  EXPECT_GE(ended(options_to(1, 4096)).last[0].samples, 16u) << "few samples say little";
+}
+
+}  // namespace
+}  // namespace caplet::view
