@@ -12,6 +12,7 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/log.h"
+#include "cli/options.h"
 
 namespace caplet::cli {
 
@@ -26,9 +27,17 @@ void add_film_flags(CLI::App& command, FilmFlags& flags) {
           "on with; without -o nothing else")
       ->type_name("FILE.film")
       ->default_str("none; of --checkpoint and --resume the first output's name, .film");
-  command.add_option("--checkpoint", flags.checkpoint, "Write the film while rendering, so often")
-      ->check(CLI::Range(0.1, 1e9))
-      ->type_name("SECONDS");
+  command
+      .add_option_function<std::string>(
+          "--checkpoint",
+          [&flags](const std::string& text) {
+            flags.checkpoint = parse_seconds("--checkpoint", text);
+            if (*flags.checkpoint < 0.1)
+              throw InputError(SourceLocation{"--checkpoint"},
+                               fmt::format("'{}' is less than 0.1 seconds", text));
+          },
+          "Write the film while rendering, so often: seconds, or 5m, or 1h30m")
+      ->type_name("TIME");
   command.add_flag("--resume", flags.resume, "Go on after the samples of the film, if it is there");
   command
       .add_option(

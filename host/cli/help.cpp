@@ -2,9 +2,14 @@
 // Copyright Caplet authors
 //
 // Writes the text of --help, in 80 columns.
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 #include <memory>
 
+#include "base/error.h"
+#include "base/spelling.h"
+#include "cli/commands.h"
 #include "cli/description.h"
 
 namespace caplet::cli {
@@ -92,6 +97,26 @@ void use_help_text(CLI::App& app) {
   // Later versions of CLI11 use other names for options without a group.
   app.option_defaults()->group("Options");
   app.formatter(std::make_shared<HelpText>());
+}
+
+void add_help(CLI::App& app) {
+  const auto name = std::make_shared<std::string>();
+  CLI::App* command = app.add_subcommand("help", "Show the help of the program or of a command");
+  command->add_option("COMMAND", *name, "Name of a command");
+  command->footer(footer_with({"caplet help render"}));
+  command->callback([&app, name] {
+    const ProgramText program = describe_program(app);
+    if (name->empty())
+      return fmt::print("{}", help_text(program.program, "caplet", program.commands));
+    std::vector<std::string> names;
+    for (const CommandText& one : program.commands) {
+      if (one.name == *name) return fmt::print("{}", help_text(one, "caplet " + one.name, {}));
+      names.push_back(one.name);
+    }
+    throw InputError(SourceLocation{"help"},
+                     fmt::format("there is no command '{}'; the nearest is '{}'", *name,
+                                 nearest_name(*name, names)));
+  });
 }
 
 }  // namespace caplet::cli

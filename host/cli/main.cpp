@@ -23,6 +23,7 @@
 #include "base/utf8.h"
 #include "cli/commands.h"
 #include "cli/description.h"
+#include "cli/usage_errors.h"
 #include "device/second_try.h"
 #include "render/session.h"
 
@@ -37,10 +38,7 @@ void print_error(const std::string& message) {
 }
 
 int print_usage_error(const CLI::App& app, const CLI::ParseError& error) {
-  std::string message = error.what();
-  if (const auto unknown = app.remaining(); app.get_subcommands().empty() && !unknown.empty())
-    message = "unknown command or option '" + unknown.front() + "'";
-  print_error(message);
+  print_error(caplet::cli::usage_error(app, error));
   std::string help = "caplet --help";
   for (const CLI::App* command : app.get_subcommands())
     help = "caplet " + command->get_name() + " --help";
@@ -117,7 +115,7 @@ int whole_program(int argc, char** argv) {
   app.require_subcommand(1);
   app.footer(caplet::cli::footer_with(
       {"caplet render scene.pbrt -o picture.exr --preview picture.png"},
-      "`caplet COMMAND --help` explains a command.\n"
+      "`caplet help COMMAND` explains a command.\n"
       "Exit codes: 0 done, 1 failed while working, 2 the input or the "
       "usage is wrong, 3 verify found disagreement, 75 a render was stopped "
       "and its film is kept."));
@@ -134,6 +132,7 @@ int whole_program(int argc, char** argv) {
   caplet::cli::add_devices(app);
   caplet::cli::add_doctor(app);
   caplet::cli::add_bench(app, invocation);
+  caplet::cli::add_help(app);
   caplet::cli::add_try_device(app);
   caplet::cli::add_describe(app);
   return end(run(app, argc, argv));

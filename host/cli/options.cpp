@@ -12,6 +12,7 @@
 #include <string_view>
 #include <vector>
 
+#include "base/duration.h"
 #include "base/error.h"
 #include "base/spelling.h"
 #include "film/image.h"
@@ -245,6 +246,12 @@ std::string scene_extensions() {
     for (const std::string& extension : format.extensions)
       if (std::ranges::find(all, extension) == all.end()) all.push_back(extension);
   return fmt::format("{}", fmt::join(all, " "));
+}
+
+double parse_seconds(const std::string& option, const std::string& text) {
+  if (const auto seconds = seconds_of(text)) return *seconds;
+  throw InputError(SourceLocation{option},
+                   fmt::format("'{}' is not a positive time, such as 90, 5m or 1h30m", text));
 }
 
 double parse_noise(const std::string& text) {

@@ -58,6 +58,9 @@ std::string scene_extensions();
 /// Returns the defaults of pictures if neither the scene nor the user sets them, for help: samples
 /// per pixel of all formats ("16, 64 of swc"), least widths of capsules, and the size.
 std::string usual_samples();
+/// Parses a positive time as seconds: "90", "90s", "5m", "1h30m". Throws InputError that names the
+/// option.
+double parse_seconds(const std::string& option, const std::string& text);
 /// Parses "5%" or "0.05". Throws InputError that names --noise.
 double parse_noise(const std::string& text);
 std::string usual_least_width();

@@ -115,14 +115,11 @@ void add_quality(CLI::App& command, RenderFlags& o) {
       ->check(CLI::Range(0.0, 1e30))
       ->type_name("X")
       ->default_str("the scene's");
-  command.add_option("--time", o.time_limit, "Stop after the sample pass that passes this limit")
-      ->check([](const std::string& text) {
-        const double value = std::strtod(text.c_str(), nullptr);
-        return std::isfinite(value) && value > 0
-                   ? std::string()
-                   : "'" + text + "' is not a positive number of seconds";
-      })
-      ->type_name("SECONDS");
+  command
+      .add_option_function<std::string>(
+          "--time", [&o](const std::string& text) { o.time_limit = parse_seconds("--time", text); },
+          "Stop after the sample pass that passes this limit: seconds, or 5m, or 1h30m")
+      ->type_name("TIME");
 }
 
 void add_layer_choice(CLI::App& command, RenderFlags& o) {

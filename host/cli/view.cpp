@@ -25,6 +25,7 @@
 #include "cli/options.h"
 #include "cli/trial.h"
 #include "device/second_try.h"
+#include "film/sample_plan.h"
 #include "lower/live_scene.h"
 #include "view/addresses.h"
 
