@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// What the program says of a wrong command line.
+// This file makes the messages for wrong command lines.
 #pragma once
 
 #include <CLI/App.hpp>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Wrong command lines, help by name, and times with units.
+// These tests are of wrong command lines, help by name and times with units.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
