@@ -179,6 +179,13 @@ TEST(Develop, MarginsAreNeighboursAlone) {
   EXPECT_EQ(part.data_height, 1);
   EXPECT_EQ(part.y, whole.y + 2);
   EXPECT_EQ(some.of, 10u);
+  // Developed in two parts, with rows around them, the picture has the noise that it has as a
+  // whole.
+  PictureFlaws parts;
+  caplet::develop(film.rows(0, 5), Scene{}.view.film, Layers::all(), parts, {0, 2});
+  caplet::develop(film.rows(1, 5), Scene{}.view.film, Layers::all(), parts, {2, 0});
+  ASSERT_TRUE(all.noise.relative());
+  EXPECT_EQ(parts.noise.relative(), all.noise.relative());
   for (const Channel& channel : part.channels) {
     const Channel& of_whole = *whole.find(channel.name.c_str());
     for (std::size_t x = 0; x < 10; ++x) {
