@@ -15,6 +15,16 @@
 #define STATE_CONES(type) STATE(type)
 #define STATE_SIDES(type) STATE(type)
 #define STATE_MEDIA(type) STATE(type)
+#define STATE_TIMES(type) STATE(type)
+
+// anything_moves says whether instances may move (FlatScene::moves).
+#ifdef CAPLET_MOTION
+enum { anything_moves = 1 };
+#undef TREE_TIME
+#define TREE_TIME float time;
+#else
+enum { anything_moves = 0 };
+#endif
 
 #define GROUP_BEGIN(Type, group) typedef struct {
 #define BUFFER(name, type, access) access(type) name;
@@ -25,6 +35,8 @@ ALL_GROUPS
 #undef GROUP_BEGIN
 #undef BUFFER
 #undef GROUP_END
+#undef TREE_TIME
+#define TREE_TIME
 
 // Scene holds what sampling a light needs: its shape, its surfaces, its spectrum, and the materials
 // that let rays through it.

@@ -23,6 +23,7 @@
 #include "render/query.h"
 #include "report/pick_report.h"
 #include "report/pick_table.h"
+#include "scene/frozen.h"
 #include "table/ray_file.h"
 
 namespace caplet::cli {
@@ -41,6 +42,7 @@ struct PickFlags {
   std::string pixel, ray, rays, out, device, size, crop;
   ImportOptions import_options;
   std::size_t limit = 256;
+  std::optional<double> time;
   bool all = false, json = false, reference = false, quiet = false;
 };
 
@@ -202,6 +204,8 @@ void run_pick(const PickFlags& options, bool has_limit) {
   Scene scene = import_files(options.scenes, options.import_options);
   outputs.check_inputs();
   apply(overrides, scene);
+  if (moves(scene))
+    scene = frozen_at(std::move(scene), options.time.value_or(scene.view.film.shutter_open));
   if (pixel) {
     with_flag("--pixel", [&] { check_pixel(*pixel, scene.view.film); });
     ray = ray_of_pixel(scene, (*pixel)[0], (*pixel)[1]);
@@ -262,6 +266,10 @@ void add_pick(CLI::App& app) {
       ->type_name("WxH");
   command->add_option("--crop", o->crop, "Pixels that may be picked, as in `render`")
       ->type_name("x0,y0,x1,y1");
+  command
+      ->add_option("--time", o->time,
+                   "When rays see a scene that moves; else when its shutter opens")
+      ->type_name("SECONDS");
   command->option_defaults()->group("Output");
   command->add_flag("-q,--quiet", o->quiet, "Only warnings and errors");
   add_import_options(*command, o->import_options);

@@ -24,6 +24,7 @@
 #include "import/import.h"
 #include "report/heatmap.h"
 #include "report/verify_report.h"
+#include "scene/frozen.h"
 #include "verify/cases.h"
 #include "verify/torture.h"
 
@@ -70,10 +71,11 @@ std::string scene_label(const verify::SceneName& name) {
 bool replay(const VerifyFlags& o) {
   const std::vector<verify::Case> cases = verify::load_cases(o.replay);
   const std::vector<Device> devices = devices_of(o);
-  std::map<std::tuple<std::string, std::uint64_t, std::uint64_t>, std::vector<const verify::Case*>>
+  std::map<std::tuple<std::string, std::uint64_t, std::uint64_t, float>,
+           std::vector<const verify::Case*>>
       by_scene;
   for (const verify::Case& one : cases)
-    by_scene[{one.scene.file, one.scene.seed, one.scene.round}].push_back(&one);
+    by_scene[{one.scene.file, one.scene.seed, one.scene.round, one.scene.time}].push_back(&one);
   std::map<const verify::Case*, std::string> wrong;
   for (const auto& group : by_scene) {
     const std::vector<const verify::Case*>& members = group.second;
@@ -83,7 +85,10 @@ bool replay(const VerifyFlags& o) {
     std::vector<RayRecord> rays;
     rays.reserve(members.size());
     for (const verify::Case* one : members) rays.push_back(one->ray);
-    verify::SceneCheck check(scene, devices);
+    const bool is_moving = moves(scene);
+    const Scene frozen = is_moving ? verify::seen_at(scene, name.time) : Scene{};
+    verify::SceneCheck check(is_moving ? frozen : scene, devices, is_moving ? &scene : nullptr,
+                             name.time);
     std::mutex mutex;
     check.check(rays, [&](const verify::SceneCheck::Checked& ray) {
       std::string text;

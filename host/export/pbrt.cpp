@@ -5,6 +5,7 @@
 // mixes first, interfaces last); they are written in that order, so that a file that is read and
 // written again is the same text.
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <map>
 #include <memory>
@@ -15,6 +16,7 @@
 #include "base/atomic_file.h"
 #include "export/detail/families.h"
 #include "export/export.h"
+#include "scene/frozen.h"
 #include "scene/transform.h"
 
 namespace caplet {
@@ -41,6 +43,7 @@ class SceneWriter {
     name_all();
     stream_.text << written_first_line;
     set_space(stream_, film.space);
+    write_times();
     write_camera(camera);
     write_film(film);
     write_filter(filter);
@@ -57,9 +60,17 @@ class SceneWriter {
     for (std::uint32_t i = 0; i < objects.size(); ++i) write_object(i);
     for (const Shape& shape : shapes) ensure_operands(shape);
     for (const Shape& shape : shapes) write_shape(shape);
-    for (const auto& [object, world_from_object, where] : instances) {
+    for (const Instance& instance : instances)
+      if (is_moving_shape(instance)) write_moving_shape(instance);
+    for (const auto& instance : instances) {
+      const auto& [object, world_from_object, where, motion, pivot] = instance;
+      if (is_moving_shape(instance)) continue;
       stream_.go_on();
-      stream_.text << "AttributeBegin\n" << transform_of(world_from_object, where);
+      stream_.text << "AttributeBegin\n";
+      if (motion.empty())
+        stream_.text << transform_of(world_from_object, where);
+      else
+        write_motion(motion);
       stream_.text << "ObjectInstance " << quoted(names_.objects[object], where)
                    << "\nAttributeEnd\n";
     }
@@ -117,7 +128,8 @@ class SceneWriter {
   }
 
   bool is_written(std::uint32_t object) const {
-    return !scene_.objects[object].shapes.empty() || is_instanced_[object];
+    if (is_of_moving_shape_[object]) return false;
+    return !scene_.objects[object].shapes.empty() || uses_[object] > 0;
   }
 
   void name_all() {
@@ -136,8 +148,11 @@ class SceneWriter {
     names_.media.resize(scene_.media.size());
     for (const std::uint32_t i : media_)
       names_.media[i] = of_media.take(scene_.media[i].name, "medium");
-    is_instanced_.resize(scene_.objects.size(), false);
-    for (const Instance& instance : scene_.instances) is_instanced_[instance.object] = true;
+    uses_.resize(scene_.objects.size());
+    for (const Instance& instance : scene_.instances) ++uses_[instance.object];
+    is_of_moving_shape_.resize(scene_.objects.size());
+    for (const Instance& instance : scene_.instances)
+      if (is_moving_shape(instance)) is_of_moving_shape_[instance.object] = true;
     names_.objects.resize(scene_.objects.size());
     for (std::uint32_t i = 0; i < scene_.objects.size(); ++i)
       if (is_written(i)) names_.objects[i] = object_names_.take(scene_.objects[i].name, "object");
@@ -145,13 +160,85 @@ class SceneWriter {
 
   // --- Options ---
 
+  /// Returns when the shutter closes: a number that is read as the same exposure time.
+  static double closing_of(const FilmSettings& film) {
+    double close = film.shutter_open + film.exposure_time;
+    for (const double near : {std::nextafter(close, -HUGE_VAL), std::nextafter(close, HUGE_VAL)})
+      if (close - film.shutter_open != film.exposure_time &&
+          near - film.shutter_open == film.exposure_time)
+        close = near;
+    return close;
+  }
+
   std::string here() const { return scene_.source; }
+
+  /// Returns whether an instance is a shape that moves, as importers make it of a Shape statement.
+  bool is_moving_shape(const Instance& instance) const {
+    const Object& object = scene_.objects[instance.object];
+    return !instance.motion.empty() && instance.pivot == glm::dvec3(0) &&
+           uses_[instance.object] == 1 && object.shapes.size() == 1 &&
+           object.shapes[0].world_from_object == glm::dmat4(1);
+  }
+  void write_moving_shape(const Instance& instance) {
+    stream_.go_on();
+    ensure_operands(scene_.objects[instance.object].shapes[0]);
+    stream_.text << "AttributeBegin\n";
+    write_motion(instance.motion);
+    const std::string outer = material_;
+    write_shape(scene_.objects[instance.object].shapes[0]);
+    material_ = outer;
+    stream_.text << "AttributeEnd\n";
+  }
+
+  /// Writes where the pivots of all other instances that move are.
+  void write_pivots() {
+    std::optional<glm::dvec3> pivot;
+    const glm::dvec3 of_camera = rendering_origin(scene_.view.camera);
+    for (const Instance& instance : scene_.instances) {
+      if (instance.motion.empty() || is_moving_shape(instance)) continue;
+      if ((instance.pivot != of_camera && instance.pivot != glm::dvec3(0)) ||
+          instance.pivot != pivot.value_or(instance.pivot))
+        refuse(instance.where, "an instance that turns about a point of its own");
+      pivot = instance.pivot;
+    }
+    if (pivot && *pivot != of_camera)
+      stream_.text << "Option \"string rendercoordsys\" \"world\"\n";
+  }
+
+  /// Writes the two times of all that moves.
+  void write_times() {
+    const TransformKeys* first = nullptr;
+    const auto add = [&](const TransformKeys& keys, const SourceLocation& where) {
+      if (keys.empty()) return;
+      if (!first) first = &keys;
+      if (keys.size() != 2 || keys[0].time != (*first)[0].time || keys[1].time != (*first)[1].time)
+        refuse(where, "a motion of other times than the first one's two");
+    };
+    add(scene_.view.camera.motion, {here()});
+    for (const Instance& instance : scene_.instances) add(instance.motion, instance.where);
+    if (!first) return;
+    write_pivots();
+    stream_.text << "TransformTimes " << (*first)[0].time << " " << (*first)[1].time << "\n";
+  }
+
+  void write_motion(const TransformKeys& motion) {
+    write_motion("Transform " + matrix_text(motion[0].matrix) + "\n",
+                 "Transform " + matrix_text(motion[1].matrix) + "\n");
+  }
+  void write_motion(const std::string& start, const std::string& end) {
+    stream_.text << "ActiveTransform StartTime\n"
+                 << start << "ActiveTransform EndTime\n"
+                 << end << "ActiveTransform All\n";
+  }
 
   void write_camera(const Camera& camera) {
     const auto& [world_from_camera, projection, frame_aspect_ratio, screen_window, lens_radius,
-                 focal_distance, medium] = camera;
+                 focal_distance, medium, motion] = camera;
     const SourceLocation where{here()};
-    stream_.text << inverse_text(world_from_camera);
+    if (motion.empty())
+      stream_.text << inverse_text(world_from_camera);
+    else
+      write_motion(inverse_text(motion[0].matrix), inverse_text(motion[1].matrix));
     if (medium)
       stream_.text << "MediumInterface \"\" " << quoted(names_.media[*medium], where) << "\n";
     Statement out(std::string("Camera \"") + projection_names.at(projection.index()) + "\"",
@@ -165,8 +252,9 @@ class SceneWriter {
     Camera::fields(camera, OptionWriter{out});
     if (lens_radius != 0 && is_orthographic(camera))
       out.boolean(Camera::parallel_lens_field.name, true);
-    if (scene_.view.film.exposure_time != 1)
-      out.number("shutterclose", scene_.view.film.exposure_time);
+    const FilmSettings& film = scene_.view.film;
+    if (film.shutter_open != 0) out.number("shutteropen", film.shutter_open);
+    if (const double close = closing_of(film); close != 1) out.number("shutterclose", close);
     if (scene_.automatic_camera) out.boolean("automatic", true);
     if (scene_.has_no_up) out.boolean("noup", true);
     if (scene_.framing.toward_viewer) out.vector("view", *scene_.framing.toward_viewer);
@@ -176,8 +264,9 @@ class SceneWriter {
   }
 
   void write_film(const FilmSettings& film) {
-    const auto& [width, height, crop, filename, iso, exposure_time, max_component_value,
-                 white_balance, space, backdrop, denoise, matte_levels, least_width] = film;
+    const auto& [width, height, crop, filename, iso, exposure_time, shutter_open,
+                 max_component_value, white_balance, space, backdrop, denoise, matte_levels,
+                 least_width] = film;
     const SourceLocation where{here()};
     Statement out("Film \"rgb\"", nullptr, where);
     FilmSettings::fields(film, OptionWriter{out});
@@ -365,7 +454,8 @@ class SceneWriter {
   NameList object_names_;
   std::vector<std::uint32_t> materials_, media_;  // in the order of writing
   std::optional<std::uint32_t> interface_;
-  std::vector<bool> is_instanced_;
+  std::vector<std::size_t> uses_;                // instances of each object
+  std::vector<bool> is_of_moving_shape_;         // objects that are no more than such a shape
   std::string material_;                         // in the graphics state
   std::map<std::string, std::string> operands_;  // names of objects by their text
 };

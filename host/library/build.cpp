@@ -434,6 +434,7 @@ void Scene::set_camera(const std::string& type, const Parameters& parameters,
   one.view.camera.medium = data.model.view.camera.medium;
   data.model.view.camera = one.view.camera;
   data.model.view.film.exposure_time = one.view.film.exposure_time;
+  data.model.view.film.shutter_open = one.view.film.shutter_open;
   data.model.automatic_camera = one.automatic_camera;
   data.model.has_no_up = one.has_no_up;
   data.model.framing = one.framing;

@@ -38,6 +38,16 @@ const T& at(const std::vector<T>& values, std::size_t number, const char* what) 
 
 glm::dvec3 to_vector(const std::array<double, 3>& v) { return {v[0], v[1], v[2]}; }
 
+/// Throws InputError where there are not as many times as transforms, or one alone.
+TransformKeys keys_of(const std::vector<double>& times, std::span<const Transform> transforms) {
+  if (times.size() != transforms.size())
+    throw InputError("there are " + std::to_string(times.size()) + " times and " +
+                     std::to_string(transforms.size()) + " transforms");
+  TransformKeys out;
+  for (std::size_t i = 0; i < times.size(); ++i) out.push_back({times[i], to_model(transforms[i])});
+  return out;
+}
+
 }  // namespace
 
 std::uint64_t next_serial() {
@@ -194,6 +204,15 @@ Transform Scene::instance(std::uint32_t instance) const {
 void Scene::set_instance(std::uint32_t instance, const Transform& to) {
   changed().edit(InstanceEdit{instance, to_model(to)});
 }
+void Scene::set_instance_motion(std::uint32_t instance, const std::vector<double>& times,
+                                std::span<const Transform> transforms,
+                                const std::array<double, 3>& pivot) {
+  const TransformKeys keys = keys_of(times, transforms);
+  const glm::dmat4 place = keys.empty()
+                               ? at(data_->model.instances, instance, "instance").world_from_object
+                               : keys.front().matrix;
+  changed().edit(InstanceEdit{instance, place, keys, to_vector(pivot)});
+}
 
 void Scene::set_material(std::uint32_t material, const Material& to) {
   caplet::Material made = to_model(to, data_->model);
@@ -286,6 +305,7 @@ void Scene::look_at(const std::array<double, 3>& eye, const std::array<double, 3
   if (!is_mirrored) (*world_from_camera)[0] *= -1;
   View view = data_->model.view;
   view.camera.world_from_camera = *world_from_camera;
+  view.camera.motion.clear();
   apply_edit(changed().model, view);
   changed().model.automatic_camera = false;
   changed().open_camera = false;
@@ -296,6 +316,17 @@ void Scene::widen_to_least() {
   if (data_->open_camera) present();
   Data& data = changed();
   if (caplet::widen_to_least(data.model) > 0) data.as_a_whole_in_view();
+}
+
+void Scene::set_camera_motion(const std::vector<double>& times,
+                              std::span<const Transform> transforms) {
+  View view = data_->model.view;
+  view.camera.motion = keys_of(times, transforms);
+  if (!view.camera.motion.empty())
+    view.camera.world_from_camera = view.camera.motion.front().matrix;
+  apply_edit(changed().model, view);
+  changed().model.automatic_camera = false;
+  changed().open_camera = false;
 }
 
 double Scene::fov() const { return fov_of(data_->model.view.camera) * degrees_per_radian; }

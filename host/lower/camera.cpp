@@ -10,6 +10,9 @@
 #include <limits>
 
 #include "base/check.h"
+#include "lower/detail/floats.h"
+#include "lower/motion.h"
+#include "scene/frozen.h"
 
 namespace caplet {
 
@@ -28,9 +31,15 @@ void lower_camera(const Scene& scene, FlatView& out) {
 
   CameraRecord& record = out.camera;
   record = CameraRecord{};
-  for (int r = 0; r < 3; ++r)
-    for (int c = 0; c < 4; ++c)
-      record.world_from_camera[r * 4 + c] = static_cast<float>(camera.world_from_camera[c][r]);
+  out.camera_motion.clear();
+  const std::optional<MotionPath> motion = MotionPath::of(camera.motion, film);
+  glm::dmat4 stands = camera.world_from_camera;
+  if (!camera.motion.empty()) stands = AnimatedTransform(camera.motion).at(film.shutter_open);
+  write_matrix(record.world_from_camera, stands);
+  if (motion) {
+    record.motion_segments = motion->segments();
+    motion->append(false, out.camera_motion);
+  }
   const std::array<double, 4> plane = image_plane_of(camera, film);
   record.kind = narrow<uint>(camera.projection.index());  // cameras.def lists both
   record.mapping = std::visit([](const auto& of) { return of.mapping(); }, camera.projection);
@@ -52,12 +61,16 @@ void lower_camera(const Scene& scene, FlatView& out) {
   record.medium = camera.medium.value_or(CAPLET_NONE);
   const bool is_parallel =
       std::visit([](const auto& of) { return of.is_parallel; }, camera.projection);
-  record.origins = is_parallel || record.lens_radius > 0 ? 1 : 0;
+  // Other solids may hold the camera while it, or they, move.
+  record.origins = is_parallel || record.lens_radius > 0 || moves(scene) ? 1 : 0;
 }
 
 RayRecord ray_of_pixel(const Scene& scene, int x, int y) {
-  const CameraRay of = unproject(scene.view.camera, scene.view.film, {x + 0.5, y + 0.5});
-  const glm::dmat4& world = scene.view.camera.world_from_camera;
+  const Camera& camera = scene.view.camera;
+  const glm::dmat4 world = camera.motion.empty()
+                               ? camera.world_from_camera
+                               : AnimatedTransform(camera.motion).at(scene.view.film.shutter_open);
+  const CameraRay of = unproject(camera, scene.view.film, {x + 0.5, y + 0.5});
   const glm::dvec3 origin(world * glm::dvec4(of.origin, 1)),
       direction = glm::normalize(glm::dmat3(world) * of.direction);
   RayRecord ray{};

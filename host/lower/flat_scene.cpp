@@ -43,6 +43,11 @@ bool FlatScene::has_media() const {
   return !mediums.empty() || std::ranges::any_of(materials, passes);
 }
 
+bool FlatScene::moves() const {
+  return std::ranges::any_of(instances,
+                             [](const InstanceRecord& one) { return one.motion_segments > 0; });
+}
+
 bool FlatScene::multiscatters() const {
   return std::ranges::any_of(materials, [](const MaterialRecord& m) {
     return (m.flags & CAPLET_MATERIAL_MULTISCATTER) != 0;

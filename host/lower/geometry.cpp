@@ -91,7 +91,7 @@ class GeometryLowering {
     Subtree& top = world[0];
     for (std::size_t i = 1; i < world.size(); ++i) {
       encode(world[i]);
-      place(world[i], world[i].placed, CAPLET_NONE, top, lowered.placed);
+      place(world[i], world[i].placed, nullptr, CAPLET_NONE, top, lowered.placed);
     }
     for (LoweredShapes& object : lowered.objects)
       for (Subtree& subtree : object.subtrees)
@@ -100,16 +100,17 @@ class GeometryLowering {
       const Instance& instance = scene_.instances[i];
       for (const Subtree& subtree : lowered.objects[instance.object].subtrees)
         if (!subtree.primitives.empty())
-          place(subtree, instance.world_from_object * subtree.placed, narrow<std::uint32_t>(i), top,
-                lowered.placed);
+          place(subtree, instance.world_from_object * subtree.placed, &instance,
+                narrow<std::uint32_t>(i), top, lowered.placed);
     }
     encode(top);
     // World-space emitters come first: their light_offset is absolute.
-    add_emitters(top, CAPLET_NONE, Matrix(1), lowered.emitters);
+    add_emitters(top, CAPLET_NONE, Matrix(1), nullptr, lowered.emitters);
     for (const PlacedSubtree& placed : lowered.placed) {
       if (placed.subtree->emitter_count == 0) continue;
       out_.instances[placed.instance].light_base = narrow<uint>(lowered.emitters.size());
-      add_emitters(*placed.subtree, placed.instance, placed.world_from_subtree, lowered.emitters);
+      add_emitters(*placed.subtree, placed.instance, placed.world_from_subtree,
+                   placed.motion ? &*placed.motion : nullptr, lowered.emitters);
     }
     out_.world.root = top.tree.root;
     set_world_bounds(top.tree, out_.world);
@@ -439,25 +440,41 @@ class GeometryLowering {
     out_.bvh_depth = std::max(out_.bvh_depth, subtree.tree.depth);
   }
 
-  void place(const Subtree& subtree, const Matrix& world_from_subtree, std::uint32_t scene_instance,
-             Subtree& top, std::vector<PlacedSubtree>& placed) {
+  /// `of`: the instance of the scene; null: a subtree of the world.
+  void place(const Subtree& subtree, Matrix world_from_subtree, const Instance* of,
+             std::uint32_t scene_instance, Subtree& top, std::vector<PlacedSubtree>& placed) {
     const auto index = narrow<uint>(out_.instances.size());
     const auto shapes = narrow<std::uint32_t>(scene_.shapes.size());
-    out_.instances.push_back(
+    std::optional<MotionPath> motion;
+    if (of && !of->motion.empty()) {
+      const FilmSettings& film = scene_.view.film;
+      world_from_subtree =
+          AnimatedTransform(of->motion, of->pivot).at(film.shutter_open) * subtree.placed;
+      motion = MotionPath::of(of->motion, film, of->pivot, subtree.placed);
+    }
+    InstanceRecord record =
         instance_record(subtree, world_from_subtree,
-                        scene_instance == CAPLET_NONE ? CAPLET_NONE : shapes + scene_instance));
-    placed.push_back({&subtree, index, world_from_subtree, scene_instance, top.primitives.size()});
+                        scene_instance == CAPLET_NONE ? CAPLET_NONE : shapes + scene_instance);
+    if (motion) {
+      record.motion_segments = motion->segments();
+      record.motion_begin = narrow<uint>(out_.leaves.size());
+      motion->append(true, out_.leaves);
+      while (out_.leaves.size() % 8 != 0) out_.leaves.push_back(0);
+    }
+    out_.instances.push_back(record);
     FlatPrimitive& p = top.primitives.emplace_back();
     p = FlatPrimitive{shape_instance, index, {}};
-    set_instance_box(subtree, world_from_subtree, p);
+    set_instance_box(subtree, world_from_subtree, motion ? &*motion : nullptr, p);
+    placed.push_back({&subtree, index, world_from_subtree, scene_instance,
+                      top.primitives.size() - 1, std::move(motion)});
   }
 
   void add_emitters(const Subtree& subtree, uint instance, const Matrix& world_from_subtree,
-                    std::vector<Emitter>& emitters) {
+                    const MotionPath* motion, std::vector<Emitter>& emitters) {
     for (const Subtree::Emissive& emissive : subtree.emissive) {
       emitters.resize(emitters.size() + emissive.count);
-      set_emitters(subtree, emissive, instance, world_from_subtree, group_++, spectra_, out_,
-                   &emitters[emitters.size() - emissive.count]);
+      set_emitters(subtree, emissive, instance, world_from_subtree, motion, group_++, spectra_,
+                   out_, &emitters[emitters.size() - emissive.count]);
     }
   }
 

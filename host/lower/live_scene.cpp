@@ -209,7 +209,9 @@ struct LiveScene::State {
   }
 
   bool follow(const View& edit, const View& before) {
-    return edit.film.space == before.film.space &&
+    const bool same_shutter = edit.film.shutter_open == before.film.shutter_open &&
+                              edit.film.exposure_time == before.film.exposure_time;
+    return (same_shutter || !instances_move()) && edit.film.space == before.film.space &&
            edit.film.backdrop.has_value() == before.film.backdrop.has_value();
   }
 
@@ -228,6 +230,7 @@ struct LiveScene::State {
   /// Updates an instance's record, its box in the world, and its lights.
   void place_again(PlacedSubtree& placed) {
     const Subtree& subtree = *placed.subtree;
+    CHECK_EQ_(placed.motion.has_value(), false);
     placed.world_from_subtree =
         placed.scene_instance == CAPLET_NONE
             ? subtree.placed
@@ -240,30 +243,32 @@ struct LiveScene::State {
       changes.instances.add(placed.instance, 1);
     }
     FlatPrimitive& box = top().primitives[placed.top];
-    set_instance_box(subtree, placed.world_from_subtree, box);
+    set_instance_box(subtree, placed.world_from_subtree, nullptr, box);
     trees->move(top(), placed.top, changes);
     if (subtree.emitter_count == 0) return;
     for (const Subtree::Emissive& emissive : subtree.emissive)
-      emit_again(subtree, emissive, placed.instance, placed.world_from_subtree, record.light_base);
+      emit_again(subtree, emissive, placed.instance, placed.world_from_subtree, nullptr,
+                 record.light_base);
   }
 
   /// Updates the lights of a shape wherever its subtree is.
   void update_emitters(const Subtree& subtree, const Shape* shape) {
     for (const Subtree::Emissive& emissive : subtree.emissive) {
       if (emissive.shape != shape) continue;
-      if (&subtree == &top()) emit_again(subtree, emissive, CAPLET_NONE, Matrix(1), 0);
+      if (&subtree == &top()) emit_again(subtree, emissive, CAPLET_NONE, Matrix(1), nullptr, 0);
       for (const PlacedSubtree& placed : geometry().placed)
         if (placed.subtree == &subtree)
           emit_again(subtree, emissive, placed.instance, placed.world_from_subtree,
+                     placed.motion ? &*placed.motion : nullptr,
                      flat().instances[placed.instance].light_base);
     }
   }
 
   void emit_again(const Subtree& subtree, const Subtree::Emissive& emissive, uint instance,
-                  const Matrix& world_from_subtree, uint light_base) {
+                  const Matrix& world_from_subtree, const MotionPath* motion, uint light_base) {
     Emitter* first = &geometry().emitters[light_base + emissive.offset];
-    set_emitters(subtree, emissive, instance, world_from_subtree, first->group, lowering->spectra,
-                 flat(), first);
+    set_emitters(subtree, emissive, instance, world_from_subtree, motion, first->group,
+                 lowering->spectra, flat(), first);
     lights_are_old = true;
   }
 
@@ -299,16 +304,28 @@ struct LiveScene::State {
     lights_are_old = false;
   }
 
+  static bool is_displacement(const SceneEdit& edit) {
+    return std::holds_alternative<CapsuleEdit>(edit) ||
+           std::holds_alternative<TransformEdit>(edit) ||
+           std::holds_alternative<InstanceEdit>(edit);
+  }
+
+  /// Returns whether an instance moves, or did: then a displacement has everything lowered again.
+  bool instances_move() const {
+    return std::ranges::any_of(scene.instances,
+                               [](const Instance& one) { return !one.motion.empty(); }) ||
+           std::ranges::any_of(lowering->geometry.placed,
+                               [](const PlacedSubtree& one) { return one.motion.has_value(); });
+  }
+
   /// Returns whether other surfaces may separate media afterwards, or in another order of size.
   bool parts_media(const SceneEdit& edit, const SceneEdit& before) const {
     const auto passes = [](const SceneEdit& one) {
       const auto* material = std::get_if<MaterialEdit>(&one);
       return material && std::holds_alternative<InterfaceMaterial>(material->to);
     };
-    const bool moves = std::holds_alternative<CapsuleEdit>(edit) ||
-                       std::holds_alternative<TransformEdit>(edit) ||
-                       std::holds_alternative<InstanceEdit>(edit);
-    return (moves && !lowering->flat.boundaries.empty()) || passes(edit) != passes(before);
+    const bool displaces = is_displacement(edit);
+    return (displaces && !lowering->flat.boundaries.empty()) || passes(edit) != passes(before);
   }
 
   bool has_bad_tree() const {
@@ -329,6 +346,7 @@ struct LiveScene::State {
     try {
       const std::size_t spectra = flat().spectra.size(), tables = flat().spectrum_tables.size();
       const bool followed = !parts_media(edit, before) &&
+                            !(is_displacement(edit) && instances_move()) &&
                             std::visit(
                                 [&](const auto& one) {
                                   return follow(one, std::get<std::decay_t<decltype(one)>>(before));

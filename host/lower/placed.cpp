@@ -26,8 +26,16 @@ using glm::dvec3;
 
 /// Returns the bounds of the transformed shapes themselves while they are few; for large objects
 /// those of the tree's transformed box.
-Bounds placed_bounds(const Subtree& subtree, const Matrix& world_from_subtree) {
+Bounds placed_bounds(const Subtree& subtree, const Matrix& world_from_subtree,
+                     const MotionPath* motion) {
   Bounds box;
+  if (motion) {
+    for (int k = 0; k < 3; ++k) {
+      box.min[k] = subtree.tree.min[k];
+      box.max[k] = subtree.tree.max[k];
+    }
+    return motion->swept(box);
+  }
   if (subtree.primitives.size() <= 256) {
     for (const Shape* shape : subtree.shapes) {
       Shape moved = *shape;
@@ -50,11 +58,13 @@ Bounds placed_bounds(const Subtree& subtree, const Matrix& world_from_subtree) {
 
 /// Placement is shared by lights that are placed together.
 struct Placement {
-  explicit Placement(const Matrix& m)
+  explicit Placement(const Matrix& m, const MotionPath* path)
       : world_from_subtree(m),
+        motion(path),
         stays(m == Matrix(1)),
         normals(glm::transpose(glm::inverse(glm::dmat3(m)))) {}
   Matrix world_from_subtree;
+  const MotionPath* motion;  // null: it rests
   bool stays;
   glm::dmat3 normals;
 };
@@ -64,7 +74,9 @@ void set_reach(const FlatPrimitive& p, const Placement& to, bool flipped, Emitte
   double low[3], high[3];
   primitive_box(p, low, high);
   Bounds box{{low[0], low[1], low[2]}, {high[0], high[1], high[2]}};
-  if (!to.stays) {
+  if (to.motion) {
+    box = to.motion->swept(box);
+  } else if (!to.stays) {
     box = {};
     for (int corner = 0; corner < 8; ++corner) {
       dvec3 x;
@@ -83,7 +95,8 @@ void set_reach(const FlatPrimitive& p, const Placement& to, bool flipped, Emitte
     normal = to.normals * dvec3(p.data[disk_at_n], p.data[disk_at_n + 1], p.data[disk_at_n + 2]);
     length = glm::length(normal);
   }
-  const bool one_way = !emitter.two_sided && std::isfinite(length) && length > 0;
+  // A lamp that moves may also turn.
+  const bool one_way = !to.motion && !emitter.two_sided && std::isfinite(length) && length > 0;
   for (int k = 0; k < 3; ++k) {
     emitter.min[k] = box.min[k];
     emitter.max[k] = box.max[k];
@@ -92,7 +105,7 @@ void set_reach(const FlatPrimitive& p, const Placement& to, bool flipped, Emitte
 }
 
 /// Sets the ball around the image of the primitive's box, for kinds that are sampled by it.
-void set_ball(const FlatPrimitive& p, const Matrix& world_from_subtree, Emitter& emitter) {
+void set_ball(const FlatPrimitive& p, const Placement& to, Emitter& emitter) {
   const bool has_round_end =
       p.shape == shape_cylinder &&
       (cylinder_cap0(p.data) == CAPLET_CAP_ROUND || cylinder_cap1(p.data) == CAPLET_CAP_ROUND);
@@ -100,12 +113,19 @@ void set_ball(const FlatPrimitive& p, const Matrix& world_from_subtree, Emitter&
   if (!emitter.by_ball) return;
   double low[3], high[3];
   primitive_box(p, low, high);
-  const dvec3 a(low[0], low[1], low[2]), b(high[0], high[1], high[2]),
-      center = apply_point(world_from_subtree, 0.5 * (a + b));
+  const dvec3 a(low[0], low[1], low[2]), b(high[0], high[1], high[2]);
+  dvec3 center = apply_point(to.world_from_subtree, 0.5 * (a + b));
   double radius = 0;
-  for (int corner = 0; corner < 8; ++corner) {
-    const dvec3 x(corner & 1 ? b.x : a.x, corner & 2 ? b.y : a.y, corner & 4 ? b.z : a.z);
-    radius = std::max(radius, glm::length(apply_point(world_from_subtree, x) - center));
+  if (to.motion) {
+    // The ball holds the primitive at all times.
+    const Bounds box = to.motion->swept({a, b});
+    center = 0.5 * (box.min + box.max);
+    radius = 0.5 * glm::length(box.max - box.min);
+  } else {
+    for (int corner = 0; corner < 8; ++corner) {
+      const dvec3 x(corner & 1 ? b.x : a.x, corner & 2 ? b.y : a.y, corner & 4 ? b.z : a.z);
+      radius = std::max(radius, glm::length(apply_point(to.world_from_subtree, x) - center));
+    }
   }
   for (int k = 0; k < 3; ++k) emitter.ball[k] = center[k];
   // The centre is rounded to floats.
@@ -138,14 +158,14 @@ InstanceRecord instance_record(const Subtree& subtree, const Matrix& world_from_
 }
 
 void set_instance_box(const Subtree& subtree, const Matrix& world_from_subtree,
-                      FlatPrimitive& instance) {
-  const Bounds box = placed_bounds(subtree, world_from_subtree);
+                      const MotionPath* motion, FlatPrimitive& instance) {
+  const Bounds box = placed_bounds(subtree, world_from_subtree, motion);
   double largest = 0;
   for (int k = 0; k < 3; ++k)
     largest = std::max({largest, std::abs(box.min[k]), std::abs(box.max[k])});
   // Moving a ray into the object and a hit back costs a few roundings of the largest coordinate on
-  // either side: 32 units are ample.
-  const double slack = 32 * 0x1p-24 * largest;
+  // either side, and the matrices of a motion a few more: 32 units are ample, and 64.
+  const double slack = (motion ? 64 : 32) * 0x1p-24 * largest;
   for (int k = 0; k < 3; ++k) {
     instance.kept_box()[k] = std::nextafter(static_cast<float>(box.min[k] - slack), -INFINITY);
     instance.kept_box()[3 + k] = std::nextafter(static_cast<float>(box.max[k] + slack), INFINITY);
@@ -153,8 +173,8 @@ void set_instance_box(const Subtree& subtree, const Matrix& world_from_subtree,
 }
 
 void set_emitters(const Subtree& subtree, const Subtree::Emissive& emissive, std::uint32_t instance,
-                  const Matrix& world_from_subtree, std::uint32_t group, SpectrumTable& spectra,
-                  const FlatScene& flat, Emitter* out) {
+                  const Matrix& world_from_subtree, const MotionPath* motion, std::uint32_t group,
+                  SpectrumTable& spectra, const FlatScene& flat, Emitter* out) {
   const AreaEmission& emission = *emissive.shape->emission;
   const AreaMap area_map(world_from_subtree);
   std::vector<double> areas(emissive.count);
@@ -190,7 +210,7 @@ void set_emitters(const Subtree& subtree, const Subtree::Emissive& emissive, std
                         : 0;
   }
   emitter.luminance = luminance * emitter.scale;
-  const Placement placement(world_from_subtree);
+  const Placement placement(world_from_subtree, motion);
   each([&](std::size_t i) {
     const std::size_t at = emissive.first + i;
     const FlatPrimitive& p = subtree.primitives[at];
@@ -199,7 +219,7 @@ void set_emitters(const Subtree& subtree, const Subtree::Emissive& emissive, std
     to.slot = subtree.tree.slots[at];
     to.geometry = flat.primitive_geometry[p.id];
     to.area = areas[i];
-    set_ball(p, world_from_subtree, to);
+    set_ball(p, placement, to);
     set_reach(p, placement, (flat.geometries[to.geometry].flags & CAPLET_GEOMETRY_FLIP_NORMAL) != 0,
               to);
     // This guess affects only the choice among lights: half of the ball's area, however little of

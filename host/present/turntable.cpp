@@ -114,7 +114,9 @@ glm::dmat4 Turntable::turn(std::uint32_t number, std::uint32_t count) const {
 
 Camera Turntable::camera(std::uint32_t number, std::uint32_t count) const {
   Camera out = camera_;
-  if (number > 0) out.world_from_camera = turn(number, count) * camera_.world_from_camera;
+  if (number == 0) return out;
+  out.world_from_camera = turn(number, count) * camera_.world_from_camera;
+  move(out.motion, turn(number, count));
   return out;
 }
 

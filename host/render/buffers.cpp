@@ -26,9 +26,10 @@ struct PathPlaces {
       : of_STATE_LAYERS(floats_per_path(needs.layers)),
         of_STATE_CONES(needs.cones ? 1 : 0),
         of_STATE_SIDES(needs.sides ? 1 : 0),
-        of_STATE_MEDIA(needs.media ? 1 : 0) {}
+        of_STATE_MEDIA(needs.media ? 1 : 0),
+        of_STATE_TIMES(needs.times ? 1 : 0) {}
   std::size_t of_ONE = 0, of_STATE = 1, of_STATE_LAYERS, of_STATE_CONES, of_STATE_SIDES,
-              of_STATE_MEDIA;
+              of_STATE_MEDIA, of_STATE_TIMES;
 };
 
 template <class T>

@@ -75,6 +75,7 @@ struct PathNeeds {
   bool cones = false;  // of textured scenes
   bool sides = false;  // of scenes with a light tree
   bool media = false;  // of scenes with media
+  bool times = false;  // of scenes in which something moves
 };
 
 /// PathBuffers are the groups of paths under way, with room for `paths` paths and for `sort_bins`

@@ -21,6 +21,7 @@ DeviceScene::DeviceScene(const Device& device, const FlatScene& scene)
       light_radiance_(scene.lighting.radiance),
       has_light_tree_(!scene.light_nodes.empty()),
       has_media_(scene.has_media()),
+      moves_(scene.moves()),
       has_camera_stage_(camera_stage_pays(device)),
       bvh_nodes_(scene.bvh_nodes) {}
 
@@ -30,6 +31,7 @@ void DeviceScene::update(const FlatScene& scene, const SceneChanges& changes) {
   light_radiance_ = scene.lighting.radiance;
   has_light_tree_ = !scene.light_nodes.empty();
   has_media_ = scene.has_media();
+  moves_ = scene.moves();
   bvh_nodes_ = scene.bvh_nodes;
   // A kind that has disappeared may come back: kernels that have it are kept, so that no picture
   // waits for a compiler.

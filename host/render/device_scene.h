@@ -48,6 +48,8 @@ class DeviceScene {
   bool has_light_tree() const { return has_light_tree_; }
   /// Returns whether there are media, or surfaces that light passes.
   bool has_media() const { return has_media_; }
+  /// Returns whether instances move.
+  bool moves() const { return moves_; }
   /// Returns the number of nodes of its trees.
   std::uint64_t bvh_nodes() const { return bvh_nodes_; }
 
@@ -61,6 +63,7 @@ class DeviceScene {
   float light_radiance_ = 0;
   bool has_light_tree_ = false;
   bool has_media_ = false;
+  bool moves_ = false;
   bool has_camera_stage_ = false;
   std::uint64_t bvh_nodes_ = 0;
   std::uint64_t bytes_updated_ = 0;

@@ -126,10 +126,11 @@ bool for_all_rows() {
 
 StageOptions stage_options(const FlatScene& scene, const Device& device) {
   const bool all = for_all_rows();
-  StageOptions out{fmt::format("-DCAPLET_REAL_WIDTH={} -DCAPLET_LEAF_KIND_BITS={}{}{}{}{}",
+  StageOptions out{fmt::format("-DCAPLET_REAL_WIDTH={} -DCAPLET_LEAF_KIND_BITS={}{}{}{}{}{}",
                                device.encoding() == Encoding::wide ? 8 : 1, scene.leaf_kind_bits,
                                !scene.light_nodes.empty() ? " -DCAPLET_LIGHT_TREE" : "",
                                scene.sky_is_unseen ? " -DCAPLET_UNSEEN_SKY" : "",
+                               scene.moves() ? " -DCAPLET_MOTION" : "",
                                scene.has_chains || all ? " -DCAPLET_CHAINS" : "",
                                scene.multiscatters() || all ? " -DCAPLET_MULTISCATTER" : ""),
                    {{"shapes", shapes_on_trial(scene.shapes)},

@@ -41,12 +41,21 @@ Query::Query(const FlatScene& scene, const Device& device, const QueryOptions& o
 void Query::reserve(std::size_t rays, std::size_t hits, std::size_t picks) {
   const Device& device = scene_->device();
   if (rays > query_.query_rays.size()) query_.query_rays = Buffer<RayRecord>(device, rays);
+  const std::size_t times = scene_->moves() ? rays : 1;
+  if (times > query_.query_times.size()) query_.query_times = Buffer<float>(device, times);
   if (hits > crossings_.query_hits.size()) crossings_.query_hits = Buffer<HitRecord>(device, hits);
   if (hits > 0 && rays > crossings_.query_counts.size()) {
     crossings_.query_counts = Buffer<uint>(device, rays);
     crossings_.query_begin = Buffer<uint>(device, rays);
   }
   if (picks > picks_.picks.size()) picks_.picks = Buffer<PickRecord>(device, picks);
+}
+
+void Query::send(std::span<const RayRecord> rays, std::span<const float> times) {
+  query_.query_rays.write(rays);
+  if (!scene_->moves()) return;
+  const std::vector<float> opening(times.empty() ? rays.size() : 0);
+  query_.query_times.write(times.empty() ? std::span<const float>(opening) : times);
 }
 
 Bindings Query::bindings() const {
@@ -57,21 +66,25 @@ Bindings Query::bindings() const {
   return out;
 }
 
-std::vector<PickRecord> Query::closest(std::span<const RayRecord> rays) {
+std::vector<PickRecord> Query::closest(std::span<const RayRecord> rays,
+                                       std::span<const float> times) {
+  if (!times.empty()) CHECK_EQ_(times.size(), rays.size());
   const std::size_t batch = std::min(batch_rays_, rays.size());
   scene_->kernels().compile(std::array{Stage::pick}, batch_rays_);
   reserve(batch, 0, batch);
   std::vector<PickRecord> out(rays.size());
   for (std::size_t first = 0; first < rays.size(); first += batch) {
     const std::size_t count = std::min(batch, rays.size() - first);
-    query_.query_rays.write(rays.subspan(first, count));
+    send(rays.subspan(first, count), times.empty() ? times : times.subspan(first, count));
     scene_->kernels().run(Stage::pick, bindings(), count);
     picks_.picks.RawBuffer::read(&out[first], 0, count * sizeof(PickRecord));
   }
   return out;
 }
 
-HitLists Query::all(std::span<const RayRecord> rays, std::size_t capacity) {
+HitLists Query::all(std::span<const RayRecord> rays, std::size_t capacity,
+                    std::span<const float> times) {
+  if (!times.empty()) CHECK_EQ_(times.size(), rays.size());
   CHECK_LE_(std::size_t{1}, capacity);
   CHECK_LE_(capacity, max_query_capacity);
   const std::size_t batch =
@@ -86,7 +99,7 @@ HitLists Query::all(std::span<const RayRecord> rays, std::size_t capacity) {
   for (std::size_t first = 0; first < rays.size(); first += batch) {
     const std::size_t count = std::min(batch, rays.size() - first);
     reserve(batch, batch * capacity, 0);
-    query_.query_rays.write(rays.subspan(first, count));
+    send(rays.subspan(first, count), times.empty() ? times : times.subspan(first, count));
     scene_->kernels().run(Stage::pick_all, bindings(), count);
     crossings_.query_counts.RawBuffer::read(counts.data(), 0, count * sizeof(uint));
     std::size_t kept = 0;

@@ -32,7 +32,8 @@ struct HitLists {
                                         // are therefore not complete
 };
 
-/// Rays have t in (t_min, t_max) of their record and directions of any length; rays that are not
+/// Times are in [0, 1], from the opening of the shutter to its closing, one for each ray; none: all
+/// 0. Rays have t in (t_min, t_max) of their record and directions of any length; rays that are not
 /// finite or have no direction miss. Kernels are compiled at the first query of their kind. The
 /// memory of a query on the device does not grow with the number of rays. Throws RunError.
 class Query {
@@ -43,10 +44,12 @@ class Query {
   Query(const FlatScene& scene, const Device& device, const QueryOptions& options = {});
 
   /// Returns the nearest crossing of each ray; t is INFINITY where it misses.
-  std::vector<PickRecord> closest(std::span<const RayRecord> rays);
+  std::vector<PickRecord> closest(std::span<const RayRecord> rays,
+                                  std::span<const float> times = {});
   /// Returns every crossing of each ray, the nearest `capacity` (1 to max_query_capacity) where
   /// there are more.
-  HitLists all(std::span<const RayRecord> rays, std::size_t capacity);
+  HitLists all(std::span<const RayRecord> rays, std::size_t capacity,
+               std::span<const float> times = {});
 
   double compile_seconds() const { return scene_->kernels().compile_seconds(); }
 
@@ -55,6 +58,8 @@ class Query {
   /// Makes room; buffers that are too small lose their contents.
   void reserve(std::size_t rays, std::size_t hits, std::size_t picks);
   Bindings bindings() const;
+  /// Sends rays, and their times where something moves.
+  void send(std::span<const RayRecord> rays, std::span<const float> times);
 
   std::shared_ptr<DeviceScene> scene_;  // its own, or another's that it does not delete
   std::size_t batch_rays_, batch_hits_;

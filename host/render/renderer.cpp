@@ -49,15 +49,23 @@ int exponent_of(double x) {
 }
 
 /// Returns the extent of the whole scene and the camera, as seen from the world's origin.
-double extent_of(const WorldRecord& world, const CameraRecord& camera) {
+double extent_of(const WorldRecord& world, const FlatView& view) {
   double at = 0;
-  for (const int k : {3, 7, 11}) at += std::abs(double{camera.world_from_camera[k]});
+  for (const int k : {3, 7, 11}) at += std::abs(double{view.camera.world_from_camera[k]});
+  // The coefficients of a cubic are together at least its values.
+  const std::size_t cubics = 2 * std::size_t{view.camera.motion_segments};
+  for (std::size_t i = cubics; i < view.camera_motion.size(); i += CAPLET_MOTION_FLOATS) {
+    double there = 0;
+    for (std::size_t k = 3; k < CAPLET_MOTION_FLOATS; k += 4)
+      there += std::abs(double{view.camera_motion[i + k]});
+    at = std::max(at, there);
+  }
   return at + std::abs(double{world.center_x}) + std::abs(double{world.center_y}) +
          std::abs(double{world.center_z}) + double{world.radius};
 }
 
 PathNeeds needs_of(const DeviceScene& scene, Layers layers) {
-  return {layers, scene.has_textures(), scene.has_light_tree(), scene.has_media()};
+  return {layers, scene.has_textures(), scene.has_light_tree(), scene.has_media(), scene.moves()};
 }
 
 StageNeeds stage_needs(const DeviceScene& scene) {
@@ -148,7 +156,7 @@ void Renderer::reset(const FlatView& view) {
   layout.window = window_of(view.view);
   layout.layers = layers_;
   layout.color_exponent = exponent_of(scene_.light_radiance());
-  layout.length_exponent = exponent_of(extent_of(scene_.world(), view.camera));
+  layout.length_exponent = exponent_of(extent_of(scene_.world(), view));
   const std::size_t pixels = layout.window.pixels(), words = pixels * layout.words_per_pixel();
   if (words != film_.words.size() || film_.words.handle()() == nullptr) {
     film_ = {};  // the old one makes room first

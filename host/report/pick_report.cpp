@@ -10,6 +10,7 @@
 #include "lower/identity.h"
 #include "reference/scene_reference.h"
 #include "report/summary.h"
+#include "scene/frozen.h"
 
 namespace caplet::report {
 
@@ -108,7 +109,9 @@ bool is_sheet(const Shape& shape) {
 
 std::vector<ReferenceCrossing> reference_crossings(const Scene& scene, const RayRecord& ray,
                                                    bool all) {
-  const reference::SceneReference reference(scene);
+  // Rays see a scene that moves as it is when the shutter opens.
+  const reference::SceneReference reference(
+      moves(scene) ? frozen_at(scene, scene.view.film.shutter_open) : scene);
   const reference::Ray asked{dvec3(ray.ox, ray.oy, ray.oz), dvec3(ray.dx, ray.dy, ray.dz),
                              ray.t_min, ray.t_max};
   std::vector<reference::SceneHit> hits;

@@ -16,6 +16,7 @@
 #include "scene/all_cameras.h"
 #include "scene/camera_ray.h"
 #include "scene/field.h"
+#include "scene/motion.h"
 
 namespace caplet {
 
@@ -50,7 +51,7 @@ inline constexpr Field frame_aspect_ratio_field = {
     true};
 
 struct Camera {
-  glm::dmat4 world_from_camera{1};
+  glm::dmat4 world_from_camera{1};  // of one that moves: at its first key
   Projection projection;
   std::optional<double> frame_aspect_ratio;  // where there is a screen window
   std::optional<std::array<double, 4>>
@@ -58,7 +59,8 @@ struct Camera {
   double lens_radius = 0;       // where there is an image plane, camera units
   double focal_distance = 1e6;  // along z, camera units
   std::optional<std::uint32_t> medium =
-      {};  // the medium at a camera outside all solids: index into Scene::media
+      {};                     // the medium at a camera outside all solids: index into Scene::media
+  TransformKeys motion = {};  // world_from_camera
 
   static constexpr Field parallel_lens_field = {
       "parallellens", "rays of a lens stay parallel; else it makes a perspective"};

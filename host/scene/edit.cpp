@@ -53,7 +53,8 @@ Scene alone(const Scene& scene, const ShapeAt& place, Shape shape) {
   out.objects.emplace_back().shapes.push_back(std::move(shape));
   for (const Instance& instance : scene.instances)
     if (instance.object == *place.object)
-      out.instances.push_back({0, instance.world_from_object, instance.where});
+      out.instances.push_back(
+          {0, instance.world_from_object, instance.where, instance.motion, instance.pivot});
   if (out.instances.empty()) out.instances.emplace_back();
   return out;
 }
@@ -106,7 +107,8 @@ void check(const Scene& scene, const InstanceEdit& edit) {
   diagonal.geometry = CapsulesShape{{glm::vec3(box.min)}, {glm::vec3(box.max)}, {0}, {}, {}};
   Scene one;
   one.objects.emplace_back().shapes.push_back(std::move(diagonal));
-  one.instances.push_back({0, edit.world_from_object, instance.where});
+  one.instances.push_back({0, edit.world_from_object, instance.where,
+                           edit.motion.value_or(TransformKeys()), edit.pivot});
   check_alone(std::move(one), scene);
 }
 
@@ -157,7 +159,16 @@ void put(Scene& scene, const TransformEdit& edit) {
 }
 void put(Scene& scene, const EmissionEdit& edit) { shape_at(scene, edit.at).emission = edit.to; }
 void put(Scene& scene, const InstanceEdit& edit) {
-  scene.instances[edit.instance].world_from_object = edit.world_from_object;
+  Instance& instance = scene.instances[edit.instance];
+  if (edit.motion) {
+    instance.motion = *edit.motion;
+    instance.pivot = edit.pivot;
+  } else if (!instance.motion.empty()) {
+    // All keys go where the first one goes.
+    move(instance.motion, edit.world_from_object * glm::inverse(instance.world_from_object));
+    instance.motion.front().matrix = edit.world_from_object;
+  }
+  instance.world_from_object = edit.world_from_object;
 }
 void put(Scene& scene, const MaterialEdit& edit) {
   scene.materials[edit.material].model = edit.to;
@@ -175,7 +186,8 @@ EmissionEdit inverse_of(const Scene& scene, const EmissionEdit& edit) {
   return {edit.at, *light_at(scene, edit.at).emission};
 }
 InstanceEdit inverse_of(const Scene& scene, const InstanceEdit& edit) {
-  return {edit.instance, at(scene.instances, edit.instance, "instance").world_from_object};
+  const Instance& instance = at(scene.instances, edit.instance, "instance");
+  return {edit.instance, instance.world_from_object, instance.motion, instance.pivot};
 }
 MaterialEdit inverse_of(const Scene& scene, const MaterialEdit& edit) {
   const Material& material = at(scene.materials, edit.material, "material");

@@ -42,9 +42,12 @@ struct EmissionEdit {
   ShapeAt at;
   AreaEmission to;
 };
+/// Changes where an instance is, and how it moves; without keys its motion goes along.
 struct InstanceEdit {
   std::uint32_t instance = 0;
-  glm::dmat4 world_from_object{1};
+  glm::dmat4 world_from_object{1};  // where there are keys, the first one's
+  std::optional<TransformKeys> motion = {};
+  glm::dvec3 pivot{0};
 };
 /// The material keeps its name and index but not its textures.
 struct MaterialEdit {

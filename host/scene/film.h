@@ -58,6 +58,7 @@ struct FilmSettings {
   double iso = 100,
          exposure_time =
              1;  // film scale = exposure_time * iso / 100 (sensor-free rgb: 1 by default)
+  double shutter_open = 0;         // seconds; it closes exposure_time later
   double max_component_value = 0;  // largest exposed XYZ value of a sample; 0: unlimited
   double white_balance =
       0;  // kelvin: this daylight maps to the colour space's white; 0: no balancing

@@ -21,10 +21,21 @@ std::array<int, 2> strata_of(const SamplerSettings& sampler) {
 Bounds bounds_of(const Scene& scene) {
   Bounds bounds;
   for (const Shape& shape : scene.shapes) bounds.extend(bounds_of(shape));
-  for (const Instance& instance : scene.instances)
-    for (const Shape& shape : scene.objects[instance.object].shapes)
-      bounds.extend(
-          bounds_of(shape.geometry, instance.world_from_object * shape.world_from_object));
+  for (const Instance& instance : scene.instances) {
+    const auto add = [&](const glm::dmat4& world_from_object) {
+      for (const Shape& shape : scene.objects[instance.object].shapes)
+        bounds.extend(bounds_of(shape.geometry, world_from_object * shape.world_from_object));
+    };
+    if (instance.motion.empty()) {
+      add(instance.world_from_object);
+      continue;
+    }
+    const AnimatedTransform animated(instance.motion, instance.pivot);
+    for (std::size_t i = 1; i < instance.motion.size(); ++i)
+      for (int k = 0; k <= 16; ++k)
+        add(animated.at(instance.motion[i - 1].time +
+                        k / 16.0 * (instance.motion[i].time - instance.motion[i - 1].time)));
+  }
   return bounds;
 }
 

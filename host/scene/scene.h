@@ -23,6 +23,7 @@
 #include "scene/light.h"
 #include "scene/material.h"
 #include "scene/medium.h"
+#include "scene/motion.h"
 #include "scene/shape.h"
 #include "scene/spectrum.h"
 #include "scene/view.h"
@@ -37,9 +38,11 @@ struct Object {
   SourceLocation where;
 };
 struct Instance {
-  std::uint32_t object = 0;  // index into Scene::objects
-  glm::dmat4 world_from_object{1};
+  std::uint32_t object = 0;         // index into Scene::objects
+  glm::dmat4 world_from_object{1};  // of one that moves: at its first key
   SourceLocation where;
+  TransformKeys motion = {};
+  glm::dvec3 pivot{0};  // of the object, for its motion (AnimatedTransform)
 };
 
 /// Settings of the automatic camera.
@@ -76,7 +79,8 @@ struct Scene {
   std::optional<Legend> legend;   // the legend of its colours
 };
 
-/// Returns the bounds of all shapes in the world, including instances.
+/// Returns the bounds of all shapes in the world, including instances. Those that move count where
+/// they are at each key and at 15 times between keys, whether the shutter is open then or not.
 Bounds bounds_of(const Scene& scene);
 
 /// Counts primitives by kind, with instances expanded. Kinds are the names of shapes in scene

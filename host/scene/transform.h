@@ -26,6 +26,16 @@ inline bool is_affine(const glm::dmat4& matrix) {
   return matrix[0][3] == 0 && matrix[1][3] == 0 && matrix[2][3] == 0 && matrix[3][3] == 1;
 }
 
+/// Returns whether a matrix turns, mirrors, shifts and scales evenly, up to rounding.
+inline bool is_similarity(const glm::dmat4& matrix) {
+  const glm::dmat3 a(matrix), squares = glm::transpose(a) * a;
+  const double size = squares[0][0];
+  for (int c = 0; c < 3; ++c)
+    for (int r = 0; r < 3; ++r)
+      if (!(std::abs(squares[c][r] - (c == r ? size : 0)) <= 1e-9 * size)) return false;
+  return true;
+}
+
 /// Returns whether a length is 1 up to rounding. Such a vector is used as it is, without
 /// normalisation.
 inline bool is_unit(double length) {

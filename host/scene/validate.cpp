@@ -55,6 +55,7 @@ class Validator {
       if (instance.object >= scene_.objects.size())
         error(instance.where, "an instance of an object that does not exist");
       transform(instance.world_from_object, instance.where);
+      motion(instance.motion, instance.where);
     }
     if (said_.empty()) instances();
     if (said_.empty()) open_surfaces();
@@ -87,6 +88,22 @@ class Validator {
       error(where, "the transform is singular (it flattens the shape)");
     else if (said_.empty() && !moderate(glm::inverse(m)))
       error(where, "the inverse of the transform has entries beyond 1e18, where 32-bit floats end");
+  }
+
+  void motion(const TransformKeys& keys, const SourceLocation& where) {
+    for (std::size_t i = 0; i < keys.size(); ++i) {
+      transform(keys[i].matrix, where);
+      if (said_.empty() && !moderate(keys[i].matrix)) error(where, too_large);
+      if (!std::isfinite(keys[i].time)) error(where, "a time of the motion is not finite");
+      if (i == 0) continue;
+      if (!(keys[i].time > keys[i - 1].time))
+        error(where, "the times of the motion do not rise (TransformTimes, if it is stated)");
+      if (glm::determinant(glm::dmat3(keys[i].matrix)) *
+              glm::determinant(glm::dmat3(keys[0].matrix)) <
+          0)
+        error(where, "the motion turns a thing into its mirror image");
+    }
+    if (keys.size() == 1) error(where, "a motion has two keys or more");
   }
 
   void spectrum(const Spectrum& s, const SourceLocation& where, const std::string& what) {
@@ -481,11 +498,15 @@ class Validator {
       const Bounds& box = boxes[instance.object];
       if (box.empty()) continue;
       Bounds placed;
-      for (int corner = 0; corner < 8; ++corner)
-        placed.extend(glm::dvec3(instance.world_from_object *
-                                 glm::dvec4(corner & 1 ? box.max.x : box.min.x,
-                                            corner & 2 ? box.max.y : box.min.y,
-                                            corner & 4 ? box.max.z : box.min.z, 1)));
+      const auto place = [&](const glm::dmat4& world_from_object) {
+        for (int corner = 0; corner < 8; ++corner)
+          placed.extend(
+              glm::dvec3(world_from_object * glm::dvec4(corner & 1 ? box.max.x : box.min.x,
+                                                        corner & 2 ? box.max.y : box.min.y,
+                                                        corner & 4 ? box.max.z : box.min.z, 1)));
+      };
+      place(instance.world_from_object);
+      for (const TransformKey& key : instance.motion) place(key.matrix);
       if (!within_reach(placed))
         error(instance.where, too_far);
       else if (!moderate(instance.world_from_object))
@@ -587,6 +608,7 @@ class Validator {
     const Camera& c = scene_.view.camera;
     medium(c.medium, file, "the camera");
     transform(c.world_from_camera, file);
+    motion(c.motion, file);
     if (said_.empty() && !moderate(c.world_from_camera)) error(file, too_large);
     std::visit([&](const auto& of) { of.fields(of, CameraFields(*this, file)); }, c.projection);
     if (!(c.lens_radius >= 0 && std::isfinite(c.lens_radius)))

@@ -105,7 +105,8 @@ double tilt_of(const reference::Primitive& primitive, double moved) {
 
 }  // namespace
 
-Bounds::Bounds(const reference::SceneReference& reference) : reference_(&reference) {
+Bounds::Bounds(const reference::SceneReference& reference, bool is_moving)
+    : reference_(&reference), matrix_roundings_(is_moving ? 4 : 0) {
   places_.reserve(reference.size());
   for (std::size_t i = 0; i < reference.size(); ++i) {
     const auto placed = reference.placed(i);
@@ -135,13 +136,15 @@ LocalRay Bounds::local(std::size_t primitive, const reference::Ray& ray) const {
   const double distance = glm::length(out.ray.origin - placed.ball.center);
   const double terms =
       place.object_stretch * (glm::length(ray.origin) + place.world_size) + place.object_shift;
-  out.bound = eps * (bound_of(placed.primitive, placed.ball, place.corner, distance) + 6 * terms);
+  out.bound = eps * (bound_of(placed.primitive, placed.ball, place.corner, distance) +
+                     (6 + matrix_roundings_) * terms);
   return out;
 }
 
 double Bounds::rounding(std::size_t primitive) const {
   const Place& place = places_[primitive];
-  return 4 * eps * (place.world_size + place.world_stretch * place.object_shift);
+  return (4 + matrix_roundings_) * eps *
+         (place.world_size + place.world_stretch * place.object_shift);
 }
 
 double Bounds::tilt(std::size_t primitive) const {

@@ -27,7 +27,8 @@ struct LocalRay {
 
 class Bounds {
  public:
-  explicit Bounds(const reference::SceneReference& reference);
+  /// `is_moving`: devices have the transforms of this scene from motions (numerics.md).
+  explicit Bounds(const reference::SceneReference& reference, bool is_moving = false);
 
   LocalRay local(std::size_t primitive, const reference::Ray& ray) const;
   /// Returns the longest image, in the primitive's space, of a world vector of length 1.
@@ -50,6 +51,7 @@ class Bounds {
                     // ball's centre
   };
   const reference::SceneReference* reference_;
+  double matrix_roundings_;  // that an entry of a transform has more than a rounded one
   std::vector<Place> places_;
 };
 

@@ -53,6 +53,7 @@ Json to_json(const Failure& failure) {
     out["torture"] = {{"seed", failure.scene.seed}, {"round", failure.scene.round}};
   else
     out["scene"] = fs::absolute(failure.scene.file).lexically_normal().string();
+  if (failure.scene.time != 0) out["time"] = hexadecimal(failure.scene.time);
   const RayRecord& r = failure.ray;
   out["ray"] = {{"origin", {hexadecimal(r.ox), hexadecimal(r.oy), hexadecimal(r.oz)}},
                 {"direction", {hexadecimal(r.dx), hexadecimal(r.dy), hexadecimal(r.dz)}}};
@@ -80,7 +81,7 @@ float number(const Json& value, const fs::path& file) {
     if (const auto x = value.get<float>(); std::isfinite(x)) return x;
   }
   throw InputError(SourceLocation{file.string()},
-                   "a ray has six finite numbers, not " + json_dump(value));
+                   "a ray has finite numbers, not " + json_dump(value));
 }
 
 Case load(const fs::path& file) {
@@ -99,6 +100,8 @@ Case load(const fs::path& file) {
   try {
     if (const auto scene = json.find("scene"); scene != json.end()) {
       out.scene.file = scene->get<std::string>();
+      if (const auto time = json.find("time"); time != json.end())
+        out.scene.time = std::clamp(number(*time, file), 0.0f, 1.0f);
     } else {
       const auto whole = [&](const char* name) {
         const Json& value = json.at("torture").at(name);

@@ -153,8 +153,9 @@ struct Comparison::Pair {
   std::vector<const PickRecord*> found;
 };
 
-Comparison::Comparison(const Scene& scene, const reference::SceneReference& reference)
-    : scene_(scene), reference_(reference), bounds_(reference) {}
+Comparison::Comparison(const Scene& scene, const reference::SceneReference& reference,
+                       bool is_moving)
+    : scene_(scene), reference_(reference), bounds_(reference, is_moving) {}
 
 Expected Comparison::expected(const RayRecord& r) const {
   Expected out;

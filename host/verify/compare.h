@@ -72,8 +72,9 @@ struct Outcome {
 
 class Comparison {
  public:
-  /// Both arguments must outlive this.
-  Comparison(const Scene& scene, const reference::SceneReference& reference);
+  /// Scene and reference must outlive this. `is_moving`: as for Bounds.
+  Comparison(const Scene& scene, const reference::SceneReference& reference,
+             bool is_moving = false);
 
   Expected expected(const RayRecord& ray) const;
   Outcome compare(const Expected& expected, const Found& found) const;

@@ -16,6 +16,7 @@
 #include "base/interrupt.h"
 #include "lower/camera.h"
 #include "lower/lower.h"
+#include "scene/frozen.h"
 #include "verify/torture.h"
 
 namespace caplet::verify {
@@ -40,10 +41,12 @@ struct DeviceAnswers {
   }
 };
 
-DeviceAnswers ask(Query& query, std::span<const RayRecord> rays) {
-  DeviceAnswers out{query.closest(rays), query.all(rays, few_crossings), {}};
+DeviceAnswers ask(Query& query, std::span<const RayRecord> rays, float time) {
+  const std::vector<float> times(rays.size(), time);
+  DeviceAnswers out{query.closest(rays, times), query.all(rays, few_crossings, times), {}};
   for (const std::size_t ray : out.lists.overflowed)
-    out.long_lists[ray] = query.all(rays.subspan(ray, 1), many_crossings).crossings;
+    out.long_lists[ray] =
+        query.all(rays.subspan(ray, 1), many_crossings, std::span(times).first(1)).crossings;
   return out;
 }
 
@@ -99,6 +102,14 @@ void count(Statistics& out, const reference::SceneReference& reference, const Ex
   once_a_kind(primitives, [](KindStatistics& kind) { ++kind.disagreements; });
 }
 
+/// Returns when a round sees a scene that moves, a multiple of 2^-12: by the golden ratio, so that
+/// any number of rounds have their times well apart.
+float time_of(std::uint64_t seed, std::uint64_t round) {
+  constexpr double golden_ratio = 0.6180339887498949;
+  const double turns = static_cast<double>((seed + round) % 1'000'000) * golden_ratio;
+  return static_cast<float>(std::floor((turns - std::floor(turns)) * 4096) / 4096);
+}
+
 /// The results that the threads of a run collect.
 struct Work {
   std::vector<Statistics> statistics;
@@ -107,9 +118,18 @@ struct Work {
 
 }  // namespace
 
-SceneCheck::SceneCheck(const Scene& scene, const std::vector<Device>& devices)
-    : reference_(scene), comparison_(scene, reference_), device_seconds_(devices.size()) {
-  const FlatScene flat = lower(scene);
+Scene seen_at(const Scene& scene, float time) {
+  const FilmSettings& film = scene.view.film;
+  return frozen_at(scene, film.shutter_open + double{time} * film.exposure_time);
+}
+
+SceneCheck::SceneCheck(const Scene& scene, const std::vector<Device>& devices, const Scene* moving,
+                       float time)
+    : reference_(scene),
+      comparison_(scene, reference_, moving != nullptr),
+      device_seconds_(devices.size()),
+      time_(time) {
+  const FlatScene flat = lower(moving ? *moving : scene);
   for (const Device& device : devices) queries_.push_back(std::make_unique<Query>(flat, device));
 }
 
@@ -121,7 +141,7 @@ void SceneCheck::check(std::span<const RayRecord> rays,
     for (std::size_t d = 0; d < queries_.size(); ++d) {
       const auto start = Clock::now();
       const double compiled = queries_[d]->compile_seconds();
-      answers.push_back(ask(*queries_[d], chunk));
+      answers.push_back(ask(*queries_[d], chunk, time_));
       device_seconds_[d] += seconds_since(start) - (queries_[d]->compile_seconds() - compiled);
     }
     tbb::parallel_for(std::size_t{0}, chunk.size(), [&](std::size_t i) {
@@ -159,16 +179,22 @@ Report verify(const Scene* scene, const std::string& file, const std::vector<Dev
 
   std::uint64_t done = 0;
   for (std::uint64_t round = 0; done < options.rays && !report.interrupted; ++round) {
-    const SceneName name{file, options.seed, round};
-    const Scene torture = scene ? Scene{} : torture_scene(options.seed, round);
-    const Scene& shown = scene ? *scene : torture;
-    SceneCheck check(shown, devices);
+    const bool is_moving = scene && moves(*scene);
+    const SceneName name{file, options.seed, round, is_moving ? time_of(options.seed, round) : 0};
+    const Scene other = is_moving ? seen_at(*scene, name.time)
+                        : scene   ? Scene{}
+                                  : torture_scene(options.seed, round);
+    const Scene& shown = scene && !is_moving ? *scene : other;
+    SceneCheck check(shown, devices, is_moving ? scene : nullptr, name.time);
     if (check.reference().size() == 0) {
       report.is_empty = true;
       break;
     }
     const RaySource source(shown, check.reference(), options.seed + (scene ? 0 : round));
-    const std::uint64_t end = scene ? options.rays : std::min(options.rays, done + rays_a_round);
+    const std::uint64_t end =
+        scene && !is_moving
+            ? options.rays
+            : std::min(options.rays, done + (is_moving ? chunk_rays : rays_a_round));
     while (done < end) {
       if (interrupt_requested()) {
         report.interrupted = true;
@@ -236,7 +262,8 @@ Report verify(const Scene* scene, const std::string& file, const std::vector<Dev
 }
 
 std::vector<HeatPixel> heatmap(const Scene& scene, const std::vector<Device>& devices) {
-  SceneCheck check(scene, {devices.front()});
+  const Scene opening = moves(scene) ? seen_at(scene, 0) : Scene{};
+  SceneCheck check(moves(scene) ? opening : scene, {devices.front()});
   FlatView frame;
   lower_camera(scene, frame);
   const ViewRecord& p = frame.view;

@@ -24,8 +24,10 @@ namespace caplet::verify {
 /// A scene on one or more devices and in the reference.
 class SceneCheck {
  public:
-  /// The scene and the devices must outlive this. Throws RunError, InputError.
-  SceneCheck(const Scene& scene, const std::vector<Device>& devices);
+  /// The scene and the devices must outlive this. `moving`: the scene that `scene` is at `time`, in
+  /// [0, 1] of its shutter; devices have it, and find hits then. Throws RunError, InputError.
+  SceneCheck(const Scene& scene, const std::vector<Device>& devices, const Scene* moving = nullptr,
+             float time = 0);
 
   /// The devices' answers for a ray, and the expected one. `found` and `outcomes` have an entry per
   /// device.
@@ -47,13 +49,18 @@ class SceneCheck {
   Comparison comparison_;
   std::vector<std::unique_ptr<Query>> queries_;
   std::vector<double> device_seconds_;
+  float time_;
 };
 
 /// The scene of a case: a file, or torture_scene(seed, round).
 struct SceneName {
   std::string file;  // empty: a torture scene
   std::uint64_t seed = 0, round = 0;
+  float time = 0;  // of a scene that moves: when rays see it, in [0, 1] of its shutter
 };
+
+/// Returns a scene that moves as it is at a time in [0, 1] of its shutter.
+Scene seen_at(const Scene& scene, float time);
 
 /// A ray on which a device and the reference disagree.
 struct Failure {
@@ -100,7 +107,8 @@ struct Options {
 };
 
 /// `scene`: the scene to verify, and its file; null: torture scenes, a new one every 250,000 rays.
-/// Rays are those of RaySource. Ends early when interrupt_requested().
+/// A scene that moves is seen at another time every 65,472 rays. Rays are those of RaySource. Ends
+/// early when interrupt_requested().
 Report verify(const Scene* scene, const std::string& file, const std::vector<Device>& devices,
               const Options& options);
 

@@ -147,6 +147,7 @@ Editor::Step Editor::step_of(const Change& change) const {
                                      scene.instances[i]);
       Instance& instance = things->instances.back().second;
       instance.world_from_object = by * instance.world_from_object;
+      move(instance.motion, by);
     }
     return addition<Rearrange>(std::move(things));
   }

@@ -543,6 +543,7 @@ void visit_form(FormFields& fields, View& view, FormSubject::Kind of) {
     FilmSettings::fields(film, options);
     if (film.width != width || film.height != height)
       film.crop.reset();  // the crop was part of the old picture
+    fields.number("shutter opens", film.shutter_open, -infinity, infinity);
     fields.number("exposure time", film.exposure_time, 0, infinity);
     film.space = options.kind("colorspace", film.space, color_space_names);
   } else if (of == FormSubject::Kind::filter) {

@@ -33,6 +33,7 @@ ShowView look_of(const View& own) {
 
 View shown_view(const View& own, const ShowView& look, int scale, int eye) {
   View view = own;
+  if (view.camera.world_from_camera != look.world_from_camera) view.camera.motion.clear();
   view.camera.world_from_camera = look.world_from_camera;
   view.camera.projection = PerspectiveProjection{look.fov};
   view.camera.lens_radius = look.lens_radius;

@@ -87,7 +87,14 @@ class CAPLET_API Scene {
   void set_transform(std::uint32_t shape, const Transform& to);
   std::size_t instances() const;
   Transform instance(std::uint32_t instance) const;
+  /// Puts an instance elsewhere; its motion goes along.
   void set_instance(std::uint32_t instance, const Transform& to);
+  /// Moves an instance while the shutter of the camera is open: it is at `transforms` at `times`
+  /// (seconds, rising), two or more; between them it shifts, turns and stretches evenly, as pbrt's
+  /// do, and `pivot`, a point of the object, goes straight on. Without times it rests.
+  void set_instance_motion(std::uint32_t instance, const std::vector<double>& times,
+                           std::span<const Transform> transforms,
+                           const std::array<double, 3>& pivot = {});
   void set_material(std::uint32_t material, const Material& to);
   /// Add one and return its number; a texture may use only earlier ones. A session then takes the
   /// whole scene again.
@@ -103,6 +110,8 @@ class CAPLET_API Scene {
   /// the picture, unless the former camera mirrored it, as pbrt's LookAt does.
   void look_at(const std::array<double, 3>& eye, const std::array<double, 3>& target,
                const std::array<double, 3>& up);
+  /// Moves the camera likewise: `transforms` map its space (x right, y up, z forward) to the world.
+  void set_camera_motion(const std::vector<double>& times, std::span<const Transform> transforms);
   double fov() const;  // degrees, of the picture's shorter side
   void set_fov(double degrees);
 

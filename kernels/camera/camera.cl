@@ -15,11 +15,12 @@
 #include "camera/camera_types.cl"
 #include "camera/{cameras}.cl"
 
-// Returns the ray of `camera` through `raster` (pixels of the full image, (0, 0) the top left
-// corner) from the lens point at u_lens in [0, 1)^2. World space, unit direction, t in [0,
-// INFINITY).
-static inline RayRecord camera_ray(__global const CameraRecord* camera, float2 raster,
-                                   float2 u_lens) {
+// Returns the ray of `camera`, which stands at world_from_camera, through `raster` (pixels of the
+// full image, (0, 0) the top left corner) from the lens point at u_lens in [0, 1)^2. World space,
+// unit direction, t in [0, INFINITY).
+static inline RayRecord camera_ray_from(__global const CameraRecord* camera,
+                                        const Affine* world_from_camera, float2 raster,
+                                        float2 u_lens) {
   float3 origin = (float3)(0.0f), direction = (float3)(0.0f, 0.0f, 1.0f);
   switch (camera->kind) {
 #define CAMERA(name, Type)                                   \
@@ -30,8 +31,8 @@ static inline RayRecord camera_ray(__global const CameraRecord* camera, float2 r
 #undef CAMERA
     default: break;
   }
-  const float3 o = transform_point(camera->world_from_camera, origin);
-  const float3 d = normalize(transform_vector(camera->world_from_camera, direction));
+  const float3 o = affine_point(world_from_camera, origin);
+  const float3 d = normalize(affine_vector(world_from_camera, direction));
   RayRecord ray;
   ray.ox = o.x;
   ray.oy = o.y;
@@ -42,6 +43,13 @@ static inline RayRecord camera_ray(__global const CameraRecord* camera, float2 r
   ray.dz = d.z;
   ray.t_max = INFINITY;
   return ray;
+}
+
+// Does the same where the camera stands when the shutter opens.
+static inline RayRecord camera_ray(__global const CameraRecord* camera, float2 raster,
+                                   float2 u_lens) {
+  const Affine still = affine_load(camera->world_from_camera);
+  return camera_ray_from(camera, &still, raster, u_lens);
 }
 
 static inline float2 camera_spread(__global const CameraRecord* camera, float2 raster) {

@@ -43,12 +43,13 @@ static inline __global const float* area_data(const Tree* tree, __global const L
 
 // Returns the factor by which areas with normal n (object space, unit) grow from object space to
 // the world.
-static inline float area_scale(__global const InstanceRecord* instance, float3 n) {
-  __global const float* m = instance->world_from_object;
+static inline float area_scale(const Tree* tree, uint instance, float3 n) {
+  const Affine to_world = world_from_object(tree, instance),
+               to_object = object_from_world(tree, instance);
+  const float* m = to_world.m;
   const float3 r0 = (float3)(m[0], m[1], m[2]), r1 = (float3)(m[4], m[5], m[6]),
                r2 = (float3)(m[8], m[9], m[10]);
-  return length(transform_transposed(instance->object_from_world, n)) *
-         fabs(dot(r0, cross(r1, r2)));
+  return length(affine_transposed(&to_object, n)) * fabs(dot(r0, cross(r1, r2)));
 }
 
 static inline RoundCone area_round_cone(uint shape, __global const LightRecord* light,
@@ -69,10 +70,10 @@ static inline TriangleView area_triangle(const Tree* tree, __global const LightR
                                          __global const float* data, float3 p) {
   float3 v0 = triangle_v0(data), v1 = triangle_v1(data), v2 = triangle_v2(data);
   if (light->instance != CAPLET_NONE) {
-    __global const float* m = tree->instances[light->instance].world_from_object;
-    v0 = transform_point(m, v0);
-    v1 = transform_point(m, v1);
-    v2 = transform_point(m, v2);
+    const Affine to_world = world_from_object(tree, light->instance);
+    v0 = affine_point(&to_world, v0);
+    v1 = affine_point(&to_world, v1);
+    v2 = affine_point(&to_world, v2);
   }
   return triangle_view(v0, v1, v2, p);
 }
@@ -108,11 +109,11 @@ static inline float area_error(const Tree* tree, __global const LightRecord* lig
                                float3 x, float3 p) {
   float world = magnitude;
   if (light->instance != CAPLET_NONE) {
-    __global const float* to_world = tree->instances[light->instance].world_from_object;
-    __global const float* to_object = tree->instances[light->instance].object_from_world;
-    const float3 there = transform_magnitude(to_world, (float3)(magnitude));
-    const float3 back = transform_magnitude(to_object, fmax(there, fabs(p)));
-    world = norm1(transform_magnitude(to_world, fmax(back, (float3)(magnitude))));
+    const Affine to_world = world_from_object(tree, light->instance),
+                 to_object = object_from_world(tree, light->instance);
+    const float3 there = affine_magnitude(&to_world, (float3)(magnitude));
+    const float3 back = affine_magnitude(&to_object, fmax(there, fabs(p)));
+    world = norm1(affine_magnitude(&to_world, fmax(back, (float3)(magnitude))));
   }
   return 16.0f * CAPLET_EPS * (world + norm1(x - p));
 }
@@ -191,9 +192,11 @@ static inline int area_sample_by_area(const Scene* scene, const AreaLight* of, f
                                       AreaSample* s, float* per_area) {
   __global const float* data = of->data;
   float3 x, n;
-  const float3 q =
-      of->placed ? transform_point(scene->tree.instances[of->light->instance].object_from_world, p)
-                 : p;
+  float3 q = p;
+  if (of->placed) {
+    const Affine to_object = object_from_world(&scene->tree, of->light->instance);
+    q = affine_point(&to_object, p);
+  }
   if (of->shape == shape_disk) {
     const float3 center = disk_c(data);
     n = disk_n(data);
@@ -217,10 +220,12 @@ static inline int area_sample_by_area(const Scene* scene, const AreaLight* of, f
     if (of->flip) n = -n;
   }
   if (of->placed) {
-    __global const InstanceRecord* instance = scene->tree.instances + of->light->instance;
-    *per_area /= area_scale(instance, n);
-    x = transform_point(instance->world_from_object, x);
-    n = unit_or(transform_transposed(instance->object_from_world, n), n);
+    const uint instance = of->light->instance;
+    const Affine to_world = world_from_object(&scene->tree, instance),
+                 to_object = object_from_world(&scene->tree, instance);
+    *per_area /= area_scale(&scene->tree, instance, n);
+    x = affine_point(&to_world, x);
+    n = unit_or(affine_transposed(&to_object, n), n);
   }
   s->p = x;
   s->n = n;
@@ -291,10 +296,11 @@ static inline float area_pdf(const Scene* scene, __global const LightRecord* lig
     float3 object_n = n;
     float3 q = p, y = x;
     if (placed) {
-      __global const InstanceRecord* instance = scene->tree.instances + light->instance;
-      q = transform_point(instance->object_from_world, p);
-      y = transform_point(instance->object_from_world, x);
-      object_n = unit_or(transform_transposed(instance->world_from_object, n), n);
+      const Affine to_world = world_from_object(&scene->tree, light->instance),
+                   to_object = object_from_world(&scene->tree, light->instance);
+      q = affine_point(&to_object, p);
+      y = affine_point(&to_object, x);
+      object_n = unit_or(affine_transposed(&to_world, n), n);
     }
     if (shape == shape_disk) {
       per_area = CAPLET_INV_PI / sqr(disk_r(data));
@@ -306,7 +312,7 @@ static inline float area_pdf(const Scene* scene, __global const LightRecord* lig
       const RoundConeView view = round_cone_view(&k, q);
       per_area = round_cone_density(&k, &view, y);
     }
-    if (placed) per_area /= area_scale(scene->tree.instances + light->instance, object_n);
+    if (placed) per_area /= area_scale(&scene->tree, light->instance, object_n);
   }
   return per_area > 0.0f ? fmin(per_area * dot(away, away) / facing, CAPLET_MAX_DENSITY) : 0.0f;
 }

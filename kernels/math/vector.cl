@@ -35,6 +35,31 @@ static inline float3 transform_transposed(__global const float* m, float3 v) {
                   m[2] * v.x + m[6] * v.y + m[10] * v.z);
 }
 
+// Affine is such a matrix in registers.
+typedef struct {
+  float m[12];
+} Affine;
+static inline Affine affine_load(__global const float* m) {
+  Affine a;
+  for (int k = 0; k < 12; k++) a.m[k] = m[k];
+  return a;
+}
+static inline float3 affine_point(const Affine* a, float3 p) {
+  return (float3)(a->m[0] * p.x + a->m[1] * p.y + a->m[2] * p.z + a->m[3],
+                  a->m[4] * p.x + a->m[5] * p.y + a->m[6] * p.z + a->m[7],
+                  a->m[8] * p.x + a->m[9] * p.y + a->m[10] * p.z + a->m[11]);
+}
+static inline float3 affine_vector(const Affine* a, float3 v) {
+  return (float3)(a->m[0] * v.x + a->m[1] * v.y + a->m[2] * v.z,
+                  a->m[4] * v.x + a->m[5] * v.y + a->m[6] * v.z,
+                  a->m[8] * v.x + a->m[9] * v.y + a->m[10] * v.z);
+}
+static inline float3 affine_transposed(const Affine* a, float3 v) {
+  return (float3)(a->m[0] * v.x + a->m[4] * v.y + a->m[8] * v.z,
+                  a->m[1] * v.x + a->m[5] * v.y + a->m[9] * v.z,
+                  a->m[2] * v.x + a->m[6] * v.y + a->m[10] * v.z);
+}
+
 // Builds the frame of Duff et al., "Building an orthonormal basis, revisited", JCGT 2017. n of unit
 // length. sign: 1 or -1, and sign + n.z is not near 0. The rotation that takes +z (-z) to n by the
 // least angle takes +x to s.

@@ -47,8 +47,9 @@ static inline Surface surface_at(const Tree* tree, const Surfaces* surfaces, con
   float3 d = (float3)(ray->dx, ray->dy, ray->dz);
   const int placed = CAPLET_HAS_SHAPE(shape_instance) && hit->instance != CAPLET_NONE;
   if (placed) {
-    o = transform_point(tree->instances[hit->instance].object_from_world, o);
-    d = transform_vector(tree->instances[hit->instance].object_from_world, d);
+    const Affine to_object = object_from_world(tree, hit->instance);
+    o = affine_point(&to_object, o);
+    d = affine_vector(&to_object, d);
   }
   const uint primitive = as_uint(tree->leaves[hit->slot]);
   const uint index = surfaces->primitive_geometry[primitive];
@@ -78,8 +79,9 @@ static inline Surface surface_at(const Tree* tree, const Surfaces* surfaces, con
     found.ns = -found.ns;
   }
   if (placed) {
-    __global const InstanceRecord* instance = tree->instances + hit->instance;
-    found = surface_transformed(instance->world_from_object, instance->object_from_world, found);
+    const Affine to_world = world_from_object(tree, hit->instance),
+                 to_object = object_from_world(tree, hit->instance);
+    found = surface_transformed(&to_world, &to_object, found);
   }
 
   Surface s;

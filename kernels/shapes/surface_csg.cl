@@ -60,7 +60,10 @@ static inline uint csg_operand(const SurfaceQuery* q, CsgOperand* operand, Surfa
 
 // Returns the csg shape's surface from its operand's.
 static inline LocalSurface csg_surface(const CsgOperand* operand, LocalSurface s) {
-  if (operand->placed) s = surface_transformed(operand->transform + 12, operand->transform, s);
+  if (operand->placed) {
+    const Affine out = affine_load(operand->transform + 12), in = affine_load(operand->transform);
+    s = surface_transformed(&out, &in, s);
+  }
   if (operand->subtracted) {
     s.ng = -s.ng;
     s.ns = -s.ns;

@@ -9,6 +9,7 @@
 #include "groups.cl"
 #include "math/vector.cl"
 #include "shapes/fields.cl"
+#include "shapes/placed.cl"
 
 // LocalSurface is a point of a shape in the space in which its data is stored (world, or an
 // instance's object space).
@@ -128,33 +129,35 @@ static inline float angle_between(float3 axis, float3 n) {
   return atan2(length(n - axis * dot(n, axis)), dot(n, axis));
 }
 
-// Returns the sum over columns of |m| |p|, translation included; roundings of transform_point(m, p)
+// Returns the sum over columns of |m| |p|, translation included; roundings of affine_point(m, p)
 // are proportional to it.
-static inline float3 transform_magnitude(__global const float* m, float3 p) {
+static inline float3 affine_magnitude(const Affine* of, float3 p) {
+  const float* m = of->m;
   const float3 a = fabs(p);
   return (float3)(fabs(m[0]) * a.x + fabs(m[1]) * a.y + fabs(m[2]) * a.z + fabs(m[3]),
                   fabs(m[4]) * a.x + fabs(m[5]) * a.y + fabs(m[6]) * a.z + fabs(m[7]),
                   fabs(m[8]) * a.x + fabs(m[9]) * a.y + fabs(m[10]) * a.z + fabs(m[11]));
 }
 
-// Takes a surface point through an affine map (to_world, 3x4 row-major) with its inverse
-// (to_object).
-static inline LocalSurface surface_transformed(__global const float* to_world,
-                                               __global const float* to_object, LocalSurface s) {
-  const float3 magnitude = transform_magnitude(to_world, s.p);
-  const float3 normal = unit_or(transform_transposed(to_object, s.ng), s.ng);
-  const float3 shading = unit_or(transform_transposed(to_object, s.ns), normal);
+// Takes a surface point through an affine map (to_world) with its inverse (to_object).
+static inline LocalSurface surface_transformed(const Affine* to_world, const Affine* to_object,
+                                               LocalSurface s) {
+  float3 magnitude = affine_magnitude(to_world, s.p);
+  // An entry of a matrix that moves is off by some roundings of its row's largest entry.
+  if (anything_moves) magnitude = (float3)(norm1(magnitude));
+  const float3 normal = unit_or(affine_transposed(to_object, s.ng), s.ng);
+  const float3 shading = unit_or(affine_transposed(to_object, s.ns), normal);
   // This is the object-space uncertainty: that of the point, and the rounding of the way there and
   // back with both rounded matrices.
   const float object_error =
-      s.error + 8.0f * CAPLET_EPS * norm1(transform_magnitude(to_object, magnitude));
+      s.error + 8.0f * CAPLET_EPS * norm1(affine_magnitude(to_object, magnitude));
   LocalSurface out = s;
-  out.p = transform_point(to_world, s.p);
-  out.dpdu = transform_vector(to_world, s.dpdu);
-  out.dpdv = transform_vector(to_world, s.dpdv);
+  out.p = affine_point(to_world, s.p);
+  out.dpdu = affine_vector(to_world, s.dpdu);
+  out.dpdv = affine_vector(to_world, s.dpdv);
   out.ng = normal;
   out.ns = dot(shading, normal) < 0.0f ? -shading : shading;
-  out.error = length(transform_transposed(to_world, normal)) * object_error +
+  out.error = length(affine_transposed(to_world, normal)) * object_error +
               8.0f * CAPLET_EPS * dot(fabs(normal), magnitude);
   return out;
 }

@@ -9,7 +9,7 @@
 //   BUFFER(name, type, access)
 //       access: ONE (a record, read only), IN (an array, read only) or STATE; path buffers that
 //       only some renders have: STATE_LAYERS (BatchRecord.layer_floats a path), STATE_CONES,
-//       STATE_SIDES, STATE_MEDIA
+//       STATE_SIDES, STATE_MEDIA, STATE_TIMES
 //   GROUP_END(Type)
 // and writes GROUP_TREE, or ALL_GROUPS. Valid as OpenCL C 1.2 and as C++.
 #ifndef CAPLET_SHARED_GROUPS_H
@@ -17,13 +17,16 @@
 
 // --- The scene ---
 
-// Rays are traced through these buffers.
+// Rays are traced through these buffers. Kernels for scenes in which something moves know the
+// time that a Tree is of (groups.cl).
+#define TREE_TIME
 #define GROUP_TREE                                               \
   GROUP_BEGIN(Tree, tree)                                        \
   BUFFER(world, WorldRecord, ONE)                                 \
   BUFFER(nodes, float, IN)  /* CAPLET_NODE_FLOATS a node */      \
   BUFFER(leaves, float, IN) /* blocks of rows, shapes.def */     \
   BUFFER(instances, InstanceRecord, IN)                          \
+  TREE_TIME                                                      \
   GROUP_END(Tree)
 
 // These buffers tell about a hit after it is found.
@@ -94,6 +97,7 @@
   BUFFER(camera, CameraRecord, ONE)                                                                               \
   /* an axis after the other: positions (n + 1), cdf of |f| (n + 1), values (n + 1), integral of |f| over that of f */ \
   BUFFER(filter_table, float, IN)                                                                                \
+  BUFFER(camera_motion, float, IN) /* world_from_camera (math/motion.cl) */                                       \
   GROUP_END(Camera)
 
 // --- Paths under way ---
@@ -108,6 +112,13 @@
   BUFFER(path_ray, RayRecord, STATE) \
   BUFFER(path_hit, HitRecord, STATE) \
   GROUP_END(Rays)
+
+// Scenes in which something moves have these: when a path sees the scene, in [0, 1) from the
+// opening of the shutter to its closing.
+#define GROUP_TIMES                      \
+  GROUP_BEGIN(Times, times)              \
+  BUFFER(path_time, float, STATE_TIMES)  \
+  GROUP_END(Times)
 
 #define GROUP_RADIANCE                   \
   GROUP_BEGIN(Radiance, radiance)        \
@@ -194,6 +205,7 @@
   GROUP_BEGIN(Query, query)            \
   BUFFER(query, QueryRecord, ONE)       \
   BUFFER(query_rays, RayRecord, STATE) \
+  BUFFER(query_times, float, STATE) /* as path_time; one number where nothing moves */ \
   GROUP_END(Query)
 
 #define GROUP_CROSSINGS                                                                              \
@@ -213,7 +225,7 @@
 #define SCENE_GROUPS SHADING_GROUPS GROUP_MEDIA
 #define VIEW_GROUPS GROUP_VIEW GROUP_CAMERA
 #define PATH_GROUPS \
-  GROUP_BATCH GROUP_RAYS GROUP_RADIANCE GROUP_CARRIED GROUP_CONES GROUP_LAYERS GROUP_SHADOWS GROUP_MEDIUM_STACKS GROUP_QUEUES GROUP_SORT GROUP_COUNTERS
+  GROUP_BATCH GROUP_RAYS GROUP_TIMES GROUP_RADIANCE GROUP_CARRIED GROUP_CONES GROUP_LAYERS GROUP_SHADOWS GROUP_MEDIUM_STACKS GROUP_QUEUES GROUP_SORT GROUP_COUNTERS
 #define QUERY_GROUPS GROUP_QUERY GROUP_CROSSINGS GROUP_PICKS
 #define ALL_GROUPS SCENE_GROUPS VIEW_GROUPS PATH_GROUPS GROUP_FILM QUERY_GROUPS
 

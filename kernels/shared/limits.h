@@ -34,7 +34,8 @@
 #define CAPLET_LIGHT_NODE 56           // numbers a node
 #define CAPLET_LIGHT_NODE_CHILDREN 48  // the first child reference of these
 #define CAPLET_LIGHT_LEAF 0x80000000u  // of a child: a light
-#define CAPLET_LIGHT_TREE_FROM 16      // lights: fewer are chosen by the table alone
+#define CAPLET_MOTION_FLOATS 48    // of a matrix that moves, by segment of time (math/motion.cl)
+#define CAPLET_LIGHT_TREE_FROM 16  // lights: fewer are chosen by the table alone
 
 #define CAPLET_SPARSE_MAJORANT_CELLS 64
 #define CAPLET_MAJORANT_CELLS \

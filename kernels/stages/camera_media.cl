@@ -4,8 +4,10 @@
 // Finds the boundaries that contain the camera: for the first path, or for each one if their rays
 // begin at different points.
 #include "stages/crossings.cl"
+#include "stages/times.cl"
 
 static void stage_item(const Stage* g, uint item) {
+  SEE_AT(PATH_TIME(g, item));
   RayRecord ray = g->rays.path_ray[item];
   ray.t_min = 0.0f;
   ray.dx = 0.371391f;

@@ -2,6 +2,7 @@
 // Copyright Caplet authors
 //
 // Traces shadow rays: a light sample that is not occluded adds its radiance.
+#include "stages/times.cl"
 #include "trace/shadow.cl"
 
 static __global const RayRecord* traced_ray_at(const Stage* g, uint item) {
@@ -16,4 +17,5 @@ static void traced_hit(const Stage* g, uint item, const HitRecord* hit) {
 #define TRACED_ROOT(g) ((g)->tree.world->root)
 #define TRACED_ENOUGH(g, item) \
   ((g)->shadows.path_shadow_target[(g)->shadows.queue_shadow[item]].enough)
+#define TRACED_TIME(g, item) PATH_TIME(g, (g)->shadows.queue_shadow[item])
 #include "trace/many.cl"

@@ -6,12 +6,14 @@
 #include "media/passing.cl"
 #include "media/sample_distance.cl"
 #include "stages/path.cl"
+#include "stages/times.cl"
 #include "trace/alpha.cl"
 #include "trace/shadow.cl"
 
 static void stage_item(const Stage* g, uint item) {
-  const AlphaScene scene = {g->tree, g->surfaces, g->spectra, g->materials};
   const uint path = g->shadows.queue_shadow[item];
+  SEE_AT(PATH_TIME(g, path));
+  const AlphaScene scene = {g->tree, g->surfaces, g->spectra, g->materials};
   RayRecord ray = g->shadows.path_shadow[path];
   MediumStack stack = {g->medium_stacks.shadow_inside[path], g->medium_stacks.shadow_around[path]};
   const ShadowTarget target = g->shadows.path_shadow_target[path];

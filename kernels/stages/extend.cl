@@ -2,6 +2,8 @@
 // Copyright Caplet authors
 //
 // Finds the closest hit of every ray in the queue.
+#include "stages/times.cl"
+
 static __global const RayRecord* traced_ray_at(const Stage* g, uint item) {
   return g->rays.path_ray + g->queues.queue[item];
 }
@@ -10,4 +12,5 @@ static void traced_hit(const Stage* g, uint item, const HitRecord* hit) {
 }
 #define TRACED_TREE(g) (&(g)->tree)
 #define TRACED_ROOT(g) ((g)->tree.world->root)
+#define TRACED_TIME(g, item) PATH_TIME(g, (g)->queues.queue[item])
 #include "trace/many.cl"

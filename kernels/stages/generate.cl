@@ -5,10 +5,24 @@
 // and the seed alone.
 #include "camera/camera.cl"
 #include "math/filter.cl"
+#include "math/motion.cl"
 #include "math/spectrum.cl"
 #include "stages/cone_share.cl"
 #include "stages/layers.cl"
 #include "stages/path.cl"
+
+// Returns the camera ray of a path, and gives the path its time.
+static inline RayRecord camera_ray_at(const Stage* g, uint path, PathSample s, float2 raster,
+                                      float2 u_lens) {
+  __global const CameraRecord* camera = g->camera.camera;
+  const uint segments = camera->motion_segments;
+  if (!anything_moves && segments == 0u) return camera_ray(camera, raster, u_lens);
+  const float time = sampler_1d(s, APART_SAMPLE(time));
+  if (anything_moves) g->times.path_time[path] = time;
+  const Affine stands = segments == 0u ? affine_load(camera->world_from_camera)
+                                       : motion_at(g->camera.camera_motion, segments, 1u, 0u, time);
+  return camera_ray_from(camera, &stands, raster, u_lens);
+}
 
 static void stage_item(const Stage* g, uint path) {
   __global const ViewRecord* view = g->view.view;
@@ -18,7 +32,7 @@ static void stage_item(const Stage* g, uint path) {
       filter_sample(g->camera.filter_table, view->filter_width, view->filter_height,
                     sampler_2d(s, CAMERA_SAMPLE(filter)), &filter_weight);
   const float2 raster = (float2)((float)s.x + 0.5f, (float)s.y + 0.5f) + offset;
-  g->rays.path_ray[path] = camera_ray(g->camera.camera, raster, sampler_2d(s, CAMERA_SAMPLE(lens)));
+  g->rays.path_ray[path] = camera_ray_at(g, path, s, raster, sampler_2d(s, CAMERA_SAMPLE(lens)));
 
   float4 pdf;
   const float4 wavelengths = wavelengths_sample(g->observer.wavelength_table,

@@ -39,6 +39,7 @@ enum {
 enum {
 #define CAMERA_DIMENSION(name)
 #define SCATTERING_DIMENSION(name)
+#define APART_DIMENSION(name, address) apart_dimension_##name = address,
 #define MEDIUM_DIMENSION(name, address) medium_dimension_##name = address,
 #define HASHED_DIMENSION(name, salt)
 #include "shared/dimensions.def"
@@ -56,6 +57,7 @@ enum {
 #define CAMERA_SAMPLE(name) camera_dimension_##name
 #define SCATTERING_SAMPLE(name, depth) \
   (camera_dimension_count + scattering_dimension_count * (depth) + scattering_dimension_##name)
+#define APART_SAMPLE(name) apart_dimension_##name
 #define MEDIUM_SAMPLE(name, depth) (medium_dimension_##name + (depth))
 #define HASHED_SAMPLE(name) hashed_dimension_##name()
 

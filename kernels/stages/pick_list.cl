@@ -3,8 +3,10 @@
 //
 // Turns the lists of pick_all into records one after the other.
 #include "stages/pick_record.cl"
+#include "stages/times.cl"
 
 static void stage_item(const Stage* g, uint item) {
+  SEE_AT(QUERY_TIME(g, item));
   const uint capacity = g->query.query->capacity;
   const uint count = min(g->crossings.query_counts[item], capacity),
              begin = g->crossings.query_begin[item];

@@ -6,9 +6,11 @@
 #include "stages/crossings.cl"
 #include "media/passing.cl"
 #include "stages/path.cl"
+#include "stages/times.cl"
 
 static void stage_item(const Stage* g, uint item) {
   const uint path = g->queues.queue[item];
+  SEE_AT(PATH_TIME(g, path));
   const RayRecord ray = g->rays.path_ray[path];
   const HitRecord hit = g->rays.path_hit[path];
   const int begins = (g->carried.path_flags[path] >> PATH_DEPTH_SHIFT) == 0u && ray.t_min == 0.0f;

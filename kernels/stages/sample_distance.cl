@@ -7,6 +7,7 @@
 #include "math/phase.cl"
 #include "media/sample_distance.cl"
 #include "stages/media.cl"
+#include "stages/times.cl"
 
 // A point of a medium where a path is scattered.
 typedef struct {
@@ -78,6 +79,7 @@ static inline void scatter(const Stage* g, Outbox* out, uint path, const Scatter
 
 static void sending_item(const Stage* g, Outbox* out, uint item) {
   const uint path = g->queues.queue[item];
+  SEE_AT(PATH_TIME(g, path));
   const RayRecord ray = g->rays.path_ray[path];
   const HitRecord hit = g->rays.path_hit[path];
   PathState state = load_path_state(g, path);

@@ -13,6 +13,7 @@
 #include "lights/lights.cl"
 #include "stages/cone.cl"
 #include "stages/layers.cl"
+#include "stages/times.cl"
 #ifdef SHADE_IN_MEDIA
 #include "stages/media.cl"
 #else
@@ -337,10 +338,12 @@ static inline void scatter(const Stage* g, Outbox* out, const ShadingPoint* poin
 }
 
 static void sending_item(const Stage* g, Outbox* out, uint item) {
+  const uint path = g->queues.queue[item];
+  SEE_AT(PATH_TIME(g, path));
   const Scene scene = {g->tree, g->surfaces, g->spectra, g->lights, g->materials};
   const int is_occlusion = (g->view.view->strategy & CAPLET_STRATEGY_OCCLUSION) != 0u;
   ShadingPoint point;
-  const uint path = point.path = g->queues.queue[item];
+  point.path = path;
   point.ray = g->rays.path_ray[path];
   point.hit = g->rays.path_hit[path];
   if (in_media && point.hit.slot == CAPLET_SCATTERED) return;

@@ -7,6 +7,7 @@
 
 #include "groups.cl"
 #include "math/vector.cl"
+#include "shapes/placed.cl"
 #include "shapes/shapes.cl"
 
 // With zero, infinite and NaN rays traversal would follow children that do not exist.

@@ -164,10 +164,9 @@ static inline uint trace_list(const Tree* tree, uint root, RayRecord ray, uint c
       const uint kind = CAPLET_LEAF_KIND(current), row = CAPLET_LEAF_ROW(current);
       if (CAPLET_HAS_SHAPE(shape_instance) && kind == shape_instance) {
         instance = ((__global const uint*)leaves)[(size_t)row * 8];
-        __global const InstanceRecord* placed = tree->instances + instance;
         floor = top;
-        current = (int)placed->root;
-        if (ray_to_instance(placed, world_o, world_d, t_min, leaves, &slab, &shape)) continue;
+        current = (int)tree->instances[instance].root;
+        if (ray_to_instance(tree, instance, world_o, world_d, t_min, &slab, &shape)) continue;
       } else {
         list_add_leaf(&list, &shape, kind, row, instance);
       }

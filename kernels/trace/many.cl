@@ -9,6 +9,7 @@
 //   TRACED_TREE(g), TRACED_ROOT(g)   // const Tree*, and the number of the node where rays begin
 //   TRACED_ENOUGH(g, item)           // if some rays need not find the closest hit: one nearer than
 //                                    // this will do (INFINITY: any)
+//   TRACED_TIME(g, item)             // when the ray sees the scene, where something moves (Tree)
 //   TRACED_NEIGHBOURS                // 1: rays are neighbours of those before them
 // Programs may be built with CAPLET_ONE_BY_ONE to trace a ray after the other, or with
 // CAPLET_PORTABLE to trace many at once on any device.
@@ -24,6 +25,9 @@
 #define TRACED_MAY_END_EARLY 0
 #define TRACED_ENOUGH(g, item) 0.0f
 #endif
+#ifndef TRACED_TIME
+#define TRACED_TIME(g, item) 0.0f
+#endif
 #include "trace/eight.cl"
 #include "trace/trace.cl"
 
@@ -34,8 +38,9 @@ static inline RayRecord traced_ray(const Stage* g, uint item) { return *traced_r
 #if defined(CAPLET_ONE_BY_ONE) || (!defined(CAPLET_EIGHT_IS_FAST) && !defined(CAPLET_PORTABLE))
 static void stage_share(const Stage* g, uint begin, uint end) {
   for (; begin < end; begin++) {
+    const Tree then = tree_at(TRACED_TREE(g), TRACED_TIME(g, begin));
     const HitRecord hit =
-        trace_ray(TRACED_TREE(g), TRACED_ROOT(g), traced_ray(g, begin), TRACED_ENOUGH(g, begin));
+        trace_ray(&then, TRACED_ROOT(g), traced_ray(g, begin), TRACED_ENOUGH(g, begin));
     traced_hit(g, begin, &hit);
   }
 }
@@ -51,8 +56,9 @@ static void stage_share(const Stage* g, uint begin, uint end) { trace_pool(g, be
 #endif
 #else
 static void stage_item(const Stage* g, uint item) {
+  const Tree then = tree_at(TRACED_TREE(g), TRACED_TIME(g, item));
   const HitRecord hit =
-      trace_ray_at(TRACED_TREE(g), TRACED_ROOT(g), traced_ray_at(g, item), TRACED_ENOUGH(g, item));
+      trace_ray_at(&then, TRACED_ROOT(g), traced_ray_at(g, item), TRACED_ENOUGH(g, item));
   traced_hit(g, item, &hit);
 }
 #endif

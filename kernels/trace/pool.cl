@@ -96,20 +96,20 @@ static inline void pool_visit(PooledRay* r, __global const float* nodes) {
 static inline void pool_enter_instance(PooledRay* r, const Stage* g, const Tree* tree) {
   const uint instance =
       ((__global const uint*)tree->leaves)[(size_t)CAPLET_LEAF_ROW(r->current) * 8];
-  __global const InstanceRecord* placed = tree->instances + instance;
+  const Tree then = tree_at(tree, TRACED_TIME(g, r->item));
   const RayRecord ray = traced_ray(g, r->item);
   r->instance = instance;
   r->enter[r->top] = 0;
   r->child[r->top++] = CAPLET_POOL_LEAVE_INSTANCE;
   const int valid =
-      ray_to_instance(placed, (float3)(ray.ox, ray.oy, ray.oz), (float3)(ray.dx, ray.dy, ray.dz),
-                      r->t_min, tree->leaves, &r->slab, &r->shape);
+      ray_to_instance(&then, instance, (float3)(ray.ox, ray.oy, ray.oz),
+                      (float3)(ray.dx, ray.dy, ray.dz), r->t_min, &r->slab, &r->shape);
   r->near = near_ray((float3)(r->shape.ox, r->shape.oy, r->shape.oz),
                      (float3)(r->shape.dx, r->shape.dy, r->shape.dz));
   r->flip = octant_of(&r->slab);
   if (!valid) return;
   r->enter[r->top] = 0;
-  r->child[r->top++] = (int)placed->root;
+  r->child[r->top++] = (int)tree->instances[instance].root;
 }
 
 static inline void pool_leave_instance(PooledRay* r, const Stage* g, const Tree* tree) {

@@ -76,17 +76,16 @@ static inline void stream_ray(StreamSpace* space, uint id, const SlabRay* s, con
 static void stream_instance(const Stage* g, uint first, const Tree* tree, uint instance,
                             StreamSpace* space, StreamSpace* inner, NearestHit* nearest,
                             StreamLists* l, int top, int at, int n) {
-  __global const InstanceRecord* placed = tree->instances + instance;
   const int begin = at + n;
   for (int i = 0; i < n; i++) {
     const uint id = l->ids[at + i];
+    const Tree then = tree_at(tree, TRACED_TIME(g, first + id));
     const RayRecord ray = traced_ray(g, first + id);
     const float t_min = space->slabs[id].t_min;
     SlabRay slab;
     ShapeRay shape;
-    const int valid =
-        ray_to_instance(placed, (float3)(ray.ox, ray.oy, ray.oz), (float3)(ray.dx, ray.dy, ray.dz),
-                        t_min, tree->leaves, &slab, &shape);
+    const int valid = ray_to_instance(&then, instance, (float3)(ray.ox, ray.oy, ray.oz),
+                                      (float3)(ray.dx, ray.dy, ray.dz), t_min, &slab, &shape);
     stream_ray(inner, id, &slab, &shape, t_min, nearest[id].t, valid);
   }
   for (int flip = 0; flip < 8; flip++) {
@@ -97,8 +96,8 @@ static void stream_instance(const Stage* g, uint first, const Tree* tree, uint i
       begun += inner->octants[id] == flip;
     }
     if (begun == 0) continue;
-    stream_within_instance(g, first, tree, placed->root, flip, instance, inner, nearest, l, top,
-                           begin, begun);
+    stream_within_instance(g, first, tree, tree->instances[instance].root, flip, instance, inner,
+                           nearest, l, top, begin, begun);
   }
   for (int i = 0; i < n; i++) {
     const uint id = l->ids[at + i];

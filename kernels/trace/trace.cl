@@ -168,15 +168,16 @@ static inline int pop_entry(const ulong* stack, int* top, int floor, float t_bes
 
 // Transforms the ray to the space of an instance: its direction is not normalised, so t stays the
 // same. Returns 0 if it is not valid in floats.
-static inline int ray_to_instance(__global const InstanceRecord* placed, float3 world_o,
-                                  float3 world_d, float t_min, __global const float* leaves,
-                                  SlabRay* slab, ShapeRay* shape) {
-  const float3 o = transform_point(placed->object_from_world, world_o);
-  const float3 d = transform_vector(placed->object_from_world, world_d);
+static inline int ray_to_instance(const Tree* tree, uint instance, float3 world_o, float3 world_d,
+                                  float t_min, SlabRay* slab, ShapeRay* shape) {
+  const Affine to_object = object_from_world(tree, instance);
+  const float3 o = affine_point(&to_object, world_o);
+  const float3 d = affine_vector(&to_object, world_d);
+  const uint flags = tree->instances[instance].flags;
   *slab = slab_ray(o, d);
-  *shape = shape_ray(o, d, t_min, leaves);
-  if (placed->flags & CAPLET_INSTANCE_NO_ENTERING) shape->sees_entering = 0;
-  if (placed->flags & CAPLET_INSTANCE_NO_LEAVING) shape->sees_leaving = 0;
+  *shape = shape_ray(o, d, t_min, tree->leaves);
+  if (flags & CAPLET_INSTANCE_NO_ENTERING) shape->sees_entering = 0;
+  if (flags & CAPLET_INSTANCE_NO_LEAVING) shape->sees_leaving = 0;
   return line_is_valid(o, d);
 }
 
@@ -207,10 +208,9 @@ static inline HitRecord trace_ray(const Tree* tree, uint root, RayRecord ray, co
       const uint kind = CAPLET_LEAF_KIND(current), row = CAPLET_LEAF_ROW(current);
       if (CAPLET_HAS_SHAPE(shape_instance) && kind == shape_instance) {
         instance = ((__global const uint*)leaves)[(size_t)row * 8];
-        __global const InstanceRecord* placed = tree->instances + instance;
         floor = top;
-        current = (int)placed->root;
-        if (ray_to_instance(placed, world_o, world_d, t_min, leaves, &slab, &shape)) continue;
+        current = (int)tree->instances[instance].root;
+        if (ray_to_instance(tree, instance, world_o, world_d, t_min, &slab, &shape)) continue;
       } else {
         for (uint lane = 0; lane < CAPLET_WIDTH; lane += CAPLET_REAL_WIDTH)
           test_leaf(tree, kind, row, lane, &shape, instance, &nearest);

@@ -86,10 +86,10 @@ static inline ShapeRay walk_ray(const Tree* tree, CAPLET_RAY_SPACE const RayReco
   const float t_min = read->t_min;
   uint unseen = 0;
   if (CAPLET_HAS_SHAPE(shape_instance) && instance != CAPLET_NONE) {
-    __global const InstanceRecord* placed = tree->instances + instance;
-    o = transform_point(placed->object_from_world, o);
-    d = transform_vector(placed->object_from_world, d);
-    unseen = placed->flags;
+    const Affine to_object = object_from_world(tree, instance);
+    o = affine_point(&to_object, o);
+    d = affine_vector(&to_object, d);
+    unseen = tree->instances[instance].flags;
   }
   ShapeRay shape = shape_ray(o, d, t_min > 0.0f ? t_min : 0.0f, tree->leaves);
   if (unseen & CAPLET_INSTANCE_NO_ENTERING) shape.sees_entering = 0;

@@ -623,9 +623,28 @@ class Scene:
         return self._native.instance(number)
 
     def set_instance(self, number, transform):
-        """Moves an instance."""
+        """Puts an instance elsewhere; its motion goes along."""
         self._native.set_instance(number, arrays.transform(transform))
         self._changed()
+
+    def animate_instance(self, number, times, transforms, pivot=(0, 0, 0)):
+        """Moves an instance while the shutter is open: transforms (n, 4, 4) at n times (seconds, rising), two or more.
+
+        Between them it shifts, turns and stretches evenly, as in pbrt, and the pivot, a point of the object, goes straight
+        on. With empty lists it rests. The shutter is that of the camera: `shutteropen`, `shutterclose` (0 and 1 second).
+        """
+        self._native.set_instance_motion(number, *self._keys(times, transforms), _point(pivot, "pivot"))
+        self._changed()
+
+    def animate_camera(self, times, transforms):
+        """Moves the camera likewise; transforms take its space (x right, y up, z forward) to the world."""
+        self._native.set_camera_motion(*self._keys(times, transforms))
+        self._changed()
+
+    @staticmethod
+    def _keys(times, transforms):
+        times = [float(time) for time in times]
+        return times, arrays.transforms(transforms if len(times) else np.zeros((0, 4, 4)))
 
     def _first(self, object):
         return self._native.shape_in(object, 0) if object else 0

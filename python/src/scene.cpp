@@ -348,6 +348,15 @@ void bind_statements(nb::class_<HeldScene>& held) {
       .def("set_instance", in_turn([](Scene& scene, std::uint32_t number, const Array& to) {
              scene.set_instance(number, transform_of(to));
            }))
+      .def("set_instance_motion",
+           in_turn([](Scene& scene, std::uint32_t number, const std::vector<double>& times,
+                      const Array& transforms, const std::array<double, 3>& pivot) {
+             scene.set_instance_motion(number, times, transforms_of(transforms), pivot);
+           }))
+      .def("set_camera_motion",
+           in_turn([](Scene& scene, const std::vector<double>& times, const Array& transforms) {
+             scene.set_camera_motion(times, transforms_of(transforms));
+           }))
       .def("add_instances",
            in_turn([](Scene& scene, const std::string& object, const Array& transforms) {
              return scene.add_instances(object, transforms_of(transforms));

@@ -506,3 +506,48 @@ def test_scenes_of_strangers_stay_in_their_folder(tmp_path):
         assert len(caplet.load(scene, no_outside=False).shapes) == 2
     with pytest.raises(caplet.InputError, match="outside"):
         caplet.load(tmp_path / "up" / "link.swc", no_outside=True)
+
+
+def test_instances_and_cameras_move(tmp_path):
+    def ball():
+        scene = caplet.Scene()
+        scene.add("sphere", radius=0.5, material=materials.diffuse(reflectance=0), object="ball", emission={"L": (1, 1, 1)})
+        scene.add_instances("ball", np.eye(4))
+        scene.camera = cameras.orthographic(eye=(0, 0, 5), target=(0, 0, 0), screenwindow=(-2, 2, -2, 2))
+        return scene
+
+    right = np.eye(4)
+    right[0, 3] = 1.5
+    render = {"spp": 512, "size": (16, 16)}
+    still = ball()
+    moving = ball()
+    moving.animate_instance(0, [0, 1], [np.eye(4), right])
+    image = np.asarray(caplet.render(moving, **render))[..., 1]
+    # The window is 4 wide: a ball of radius 1/2 covers pi / 64 of it, all the time.
+    assert abs(image.mean() - np.pi / 64) < 0.002
+    # The pixel right of the middle is covered while the ball passes: half a chord beyond the pixel's middle of 1.5 a second.
+    assert abs(image[8, 8] - (0.125 + math.sqrt(0.25 - 0.125**2)) / 1.5) < 0.03
+    assert abs(image[8, 13] - (1.5 + 0.5 - 1.375) / 1.5) < 0.06 and image[8, 3] == 0
+
+    moving.save(tmp_path / "moving.pbrt")
+    assert same_pictures(moving, caplet.load(tmp_path / "moving.pbrt"))
+    moving.set_instance(0, right)
+    assert np.asarray(caplet.render(moving, **render))[8, 13, 1] > 0.9
+    moving.animate_instance(0, [], [])
+    moving.set_instance(0, np.eye(4))
+    assert same_pictures(moving, still)
+
+    # A camera that goes left sees what one sees of a ball that goes right.
+    left = np.eye(4)
+    left[:3] = np.asarray(still._native.camera()).reshape(-1, 4)[:3]
+    gone = left.copy()
+    gone[0, 3] -= 1.5
+    still.animate_camera([0, 1], [left, gone])
+    seen = np.asarray(caplet.render(still, **render))[..., 1]
+    assert abs(seen.mean() - image.mean()) < 0.002 and np.abs(seen - image).max() < 0.12
+
+    for wrong in (([0, 1], [right]), ([1, 0], [right, right]), ([0], [right]), ([0, 1], [right, right @ np.diag([-1, 1, 1, 1])])):
+        with pytest.raises(caplet.InputError):
+            moving.animate_instance(0, *wrong)
+    with pytest.raises(caplet.InputError):
+        moving.animate_instance(7, [0, 1], [right, right])

@@ -95,8 +95,10 @@ std::vector<BadInput> bad_inputs() {
       scene("unknown_directive", head + "Shapes \"sphere\"\n" + capsule, "scene.pbrt:5:1",
             "Shapes"),
       scene("unknown_shape", head + "Shape \"potato\"\n" + capsule, "scene.pbrt:5:", "potato"),
-      scene("known_unsupported_motion", head + "ActiveTransform EndTime\n" + capsule,
+      scene("unknown_active_transform", head + "ActiveTransform EndTim\n" + capsule,
             "scene.pbrt:5:17", "EndTime"),
+      scene("motion_into_the_mirror", head + "ActiveTransform EndTime\nScale 1 -1 1\n" + capsule,
+            "scene.pbrt:7:", "mirror"),
       scene(
           "cylinder_without_axis",
           head +

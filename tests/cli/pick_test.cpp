@@ -362,6 +362,38 @@ TEST(Pick, JsonOfARayBesideTheReference) {
   EXPECT_TRUE(nlohmann::json::parse(miss.out).at("reference").is_null());
 }
 
+// A ball of radius 1 goes from x = 0 to 4 in two seconds; the camera goes with it, to half as far.
+TEST(Pick, ScenesThatMoveAtATime) {
+  const auto folder = test::temporary_folder();
+  std::ofstream(folder / "moving.pbrt")
+      << "TransformTimes 0 2\nActiveTransform EndTime\nTranslate -2 0 0\nActiveTransform All\n"
+         "Translate 0 0 10\nCamera \"perspective\" \"float shutteropen\" 0.5 \"float "
+         "shutterclose\" 1\nFilm \"rgb\" \"integer xresolution\" 3 \"integer yresolution\" 3\n"
+         "WorldBegin\nLightSource \"point\"\nActiveTransform EndTime\nTranslate 4 0 0\n"
+         "Shape \"sphere\"\n";
+  const auto picked = [&](std::vector<std::string> more) {
+    std::vector<std::string> all{"pick", "moving.pbrt", "--json", "--reference"};
+    all.insert(all.end(), more.begin(), more.end());
+    const Result result = test::run_program(all, folder);
+    EXPECT_EQ(result.code, 0) << result.err;
+    return nlohmann::json::parse(result.out);
+  };
+  const std::string down = "1,0,5,0,0,-1";
+  // When the shutter opens the ball is at x = 1.
+  for (const auto& report : {picked({"--ray", down}), picked({"--ray", down, "--time", "0.5"})}) {
+    EXPECT_NEAR(report.at("t").get<double>(), 4, 1e-5);
+    EXPECT_NEAR(report.at("reference").at("t").get<double>(), 4, 1e-9);
+  }
+  const auto later = picked({"--ray", down, "--time", "0.75"});
+  EXPECT_NEAR(later.at("t").get<double>(), 5 - std::sqrt(0.75), 1e-5);
+  EXPECT_NEAR(later.at("reference").at("t").get<double>(), 5 - std::sqrt(0.75), 1e-9);
+  EXPECT_EQ(picked({"--ray", down, "--time", "2"}).at("hit"), false);
+  // The pixel in the middle sees what is before the camera: at 1.2 s it is at x = 1.2, the ball
+  // at 2.4.
+  EXPECT_EQ(picked({"--pixel", "1,1", "--time", "1.2"}).at("hit"), false);
+  EXPECT_NEAR(picked({"--pixel", "1,1", "--time", "0"}).at("point").at(2).get<double>(), -1, 1e-5);
+}
+
 TEST(Pick, PixelsOfTheImage) {
   const auto folder = folder_with_scene();
   const auto pick = [&](std::vector<std::string> more) {

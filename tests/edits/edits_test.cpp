@@ -386,6 +386,39 @@ TEST_F(OneEdit, ALight) {
                   "an emissive capsule is moved");
 }
 
+// Motions come, go along with what they are of, and go again; other edits keep them.
+TEST_F(OneEdit, AMotion) {
+  const dmat4 place = glm::translate(dmat4(1), dvec3(0.5, 0.2, 1)),
+              end = glm::rotate(glm::translate(place, dvec3(1, 0, 0.5)), 1.2, dvec3(0, 0, 1));
+  const SceneEdit moving =
+      InstanceEdit{2, place, TransformKeys{{0, place}, {1, end}}, {0, 0, 0.25}};
+  const SceneEdit back = inverse(edited.live.scene(), moving);
+  edited.edit(moving);
+  EXPECT_TRUE(edited.live.flat().moves());
+  edited.expect_fresh("an emissive instance that moves");
+  edited.edit(TransformEdit{{{}, 1}, place});
+  edited.expect_fresh("beside it");
+  edited.edit(InstanceEdit{2, glm::translate(place, dvec3(0, 1, 0))});
+  edited.expect_fresh("it goes elsewhere");
+  const Instance& there = edited.live.scene().instances[2];
+  EXPECT_NEAR(glm::length(dvec3(there.motion[1].matrix[3]) - dvec3(end[3]) - dvec3(0, 1, 0)), 0,
+              1e-12);
+  View view = edited.live.scene().view;
+  view.film.shutter_open = 0.25;
+  view.film.exposure_time = 0.5;
+  edited.edit(view);
+  edited.expect_fresh("under another shutter");
+  AreaEmission light = *shape_at(edited.live.scene(), {0u, 0}).emission;
+  light.scale *= 2;
+  edited.edit(EmissionEdit{{0u, 0}, light});
+  edited.expect_fresh("and brighter");
+  edited.edit(back);
+  EXPECT_FALSE(edited.live.flat().moves());
+  edited.expect_fresh("at rest again");
+  EXPECT_THROW(edited.edit(InstanceEdit{2, place, TransformKeys{{1, place}, {0, end}}}),
+               InputError);
+}
+
 TEST_F(OneEdit, ATransform) {
   const dmat4 turned = glm::rotate(glm::translate(dmat4(1), dvec3(0.5, 0.2, 1)), 0.7,
                                    glm::normalize(dvec3(1, 2, 3)));

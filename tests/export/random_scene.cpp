@@ -13,6 +13,7 @@
 #include <random>
 
 #include "import/import.h"
+#include "scene/frozen.h"
 
 namespace caplet::test {
 
@@ -303,6 +304,7 @@ class Maker {
     lights();
     shapes();
     camera();
+    motions();
     scene_.source = "random";
     return std::move(scene_);
   }
@@ -485,6 +487,26 @@ class Maker {
           {static_cast<std::uint32_t>(scene_.objects.size() - 1), random_.transform(), {}});
   }
 
+  /// A motion from `first` on, by a turn and a shift.
+  TransformKeys keys(const glm::dmat4& first) {
+    glm::dmat3 turn = random_.turn();
+    if (glm::determinant(turn) < 0) turn = -turn;
+    glm::dmat4 end = glm::dmat4(turn) * first;
+    end[3] = first[3] + glm::dvec4(random_.direction(), 0);
+    return {{0.5, first}, {2, end}};
+  }
+
+  /// Some instances move, and the camera.
+  void motions() {
+    if (random_.one_in(2)) scene_.view.camera.motion = keys(scene_.view.camera.world_from_camera);
+    const bool about_camera = random_.one_in(2);
+    for (Instance& instance : scene_.instances) {
+      if (random_.one_in(3)) continue;
+      instance.motion = keys(instance.world_from_object);
+      if (about_camera) instance.pivot = rendering_origin(scene_.view.camera);
+    }
+  }
+
   void camera() {
     scene_.view.camera.world_from_camera = glm::dmat4(random_.turn());
     scene_.view.camera.world_from_camera[3] = glm::dvec4(20.0 * random_.direction(), 1);
@@ -508,9 +530,9 @@ class Maker {
     if (scene_.view.filter.kind == PixelFilter::Kind::mitchell)
       scene_.view.filter.b = 0.2, scene_.view.filter.c = 0.4;
     if (scene_.view.filter.kind == PixelFilter::Kind::sinc) scene_.view.filter.tau = 2.5;
-    scene_.view.film = {64,           48,   std::array<int, 4>{3, 50, 2, 40},
-                        "a name.exr", 200,  0.7,
-                        12.5,         5200, static_cast<ColorSpace>(random_.below(4))};
+    scene_.view.film = {
+        64,   48,   std::array<int, 4>{3, 50, 2, 40},         "a name.exr", 200, 0.7, 0.25,
+        12.5, 5200, static_cast<ColorSpace>(random_.below(4))};
     SamplerSettings& sampler = scene_.view.sampler;
     sampler.kind = static_cast<SamplerSettings::Kind>(random_.below(4));
     sampler.samples_per_pixel = 1 + static_cast<int>(random_.below(1000));

@@ -172,8 +172,19 @@ const Bad bad_scenes[] = {
      "\"sphere\"",
      "scene.pbrt:2:23: unknown MakeNamedMedium \"homogenous\"; the nearest known name is "
      "\"homogeneous\""},
-    {"RefusedMotion", "ActiveTransform EndTime\nWorldBegin\nShape \"sphere\"",
-     "scene.pbrt:1:17: ActiveTransform \"EndTime\" is not rendered yet"},
+    {"MotionIntoTheMirror", "WorldBegin\nActiveTransform EndTime\nScale 1 1 -1\nShape \"sphere\"",
+     "scene.pbrt:4:1: the motion turns a thing into its mirror image"},
+    {"MotionBackInTime",
+     "TransformTimes 2 1\nWorldBegin\nActiveTransform EndTime\nTranslate 1 0 0\nShape \"sphere\"",
+     "scene.pbrt:5:1: the times of the motion do not rise (TransformTimes, if it is stated)"},
+    {"MotionToNothing", "WorldBegin\nActiveTransform EndTime\nScale 0 1 1\nShape \"sphere\"",
+     "scene.pbrt:3:1: Scale has no inverse"},
+    {"MotionWithinAMotion",
+     "WorldBegin\nObjectBegin \"a\"\nActiveTransform EndTime\nTranslate 1 0 0\nShape "
+     "\"sphere\"\nObjectEnd\nActiveTransform StartTime\nTranslate 1 0 0\nActiveTransform "
+     "All\nObjectInstance \"a\"",
+     "scene.pbrt:10:1: a shape moves within the object \"a\", which moves itself: one of them must "
+     "rest"},
     {"UnknownSensor", "Film \"rgb\" \"string sensor\" \"nikon_d85\"\nWorldBegin\nShape \"sphere\"",
      "scene.pbrt:1:12: Film \"rgb\": \"sensor\" is \"nikon_d85\"; the nearest known name is "
      "\"nikon_d850\""},

@@ -649,9 +649,6 @@ TEST(Statements, ThatAreRefused) {
               ElementsAre(HasSubstr("scene.pbrt:3:20: Material \"diffuse\": \"reflectance\" uses "
                                     "Texture \"ptex\" (scene.pbrt:2:1)")));
   EXPECT_THAT(
-      said("WorldBegin\nActiveTransform StartTime\nShape \"sphere\""),
-      ElementsAre(HasSubstr("scene.pbrt:2:17: ActiveTransform \"StartTime\" is not rendered yet")));
-  EXPECT_THAT(
       said("Integrator \"function\"\n" + std::string(ball)),
       ElementsAre(HasSubstr("scene.pbrt:1:1: Integrator \"function\" is not rendered yet")));
 }

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <cstring>
 #include <fstream>
@@ -15,10 +16,13 @@
 
 #include "base/error.h"
 #include "base/interrupt.h"
+#include "film/image.h"
+#include "import/import.h"
 #include "support/data.h"
 #include "support/kinds.h"
 #include "support/test_device.h"
 #include "verify/cases.h"
+#include "verify/rays.h"
 #include "verify/torture.h"
 #include "verify/verify.h"
 
@@ -113,6 +117,28 @@ TEST(Verify, ThisDeviceAgreesOnTheTortureSet) {
     // A bound that is never used to a hundredth would not be one.
     EXPECT_GT(s.kinds[k].worst(), 0.01) << reference::kind_names[k];
   }
+}
+
+// Its rays see it at two times. At another one they would not agree.
+TEST(Verify, ThisDeviceAgreesOnASceneThatMoves) {
+  const Scene scene =
+      import_scene(test::source_folder() / "scenes" / "motion.pbrt", FileImageReader());
+  const Report report = verify(&scene, "motion.pbrt", devices(), {.rays = 70'000, .seed = 3});
+  const Statistics& s = report.devices[0].statistics;
+  EXPECT_EQ(s.rays, 70'000u);
+  EXPECT_GT(s.hits, 35'000u);
+  EXPECT_EQ(report.disagreements(), 0u)
+      << report.devices[0].failures.front().disagreements.front().text;
+  const Scene then = seen_at(scene, 0.5f);
+  SceneCheck check(then, devices(), &scene, 0.25f);
+  const RaySource source(then, check.reference(), 4);
+  std::vector<RayRecord> rays;
+  for (std::uint64_t i = 0; i < 2'000; ++i) rays.push_back(source.ray(i).ray);
+  std::atomic<int> wrong = 0;
+  check.check(rays, [&](const SceneCheck::Checked& ray) {
+    wrong += ray.outcomes[0].disagreements.empty() ? 0 : 1;
+  });
+  EXPECT_GT(wrong, 200);
 }
 
 TEST(Verify, ThreadsAndRunsDoNotMatter) {
@@ -468,6 +494,7 @@ TEST(Cases, KeepTheBitsOfTheirRays) {
   failure.disagreements = {{Fault::surface, 1, "what"}};
   Failure of_file = failure;
   of_file.scene = {"some.pbrt"};
+  of_file.scene.time = 0.3f;
   save_cases(folder, {failure, of_file});
   const std::vector<Case> cases = load_cases(folder);
   ASSERT_EQ(cases.size(), 2u);
@@ -475,6 +502,8 @@ TEST(Cases, KeepTheBitsOfTheirRays) {
     EXPECT_EQ(std::memcmp(&one.ray, &failure.ray, sizeof(RayRecord)), 0);
   EXPECT_EQ(cases[0].scene.seed, 3u);
   EXPECT_EQ(cases[0].scene.round, 4u);
+  EXPECT_EQ(cases[0].scene.time, 0);
+  EXPECT_EQ(cases[1].scene.time, 0.3f);
   EXPECT_EQ(cases[1].scene.file, std::filesystem::absolute("some.pbrt").string());
   EXPECT_EQ(load_cases(folder / "case-00002.json").size(), 1u);
 }

@@ -17,9 +17,13 @@ void OptionBuilder::camera(const Statement& at, const std::string& type, Paramet
   Parameters given = to_.parameters(at, at.of(type), std::move(own));
   to_.has_camera = true;
   to_.check_place();
-  const glm::dmat4 world_from_camera = to_.state.transform.inverse();
-  to_.coordinate_systems["camera"] = world_from_camera;
+  const glm::dmat4 world_from_camera = to_.state.transform.start.inverse(),
+                   at_end = to_.state.transform.end.inverse();
+  to_.coordinate_systems["camera"] = {world_from_camera, at_end};
   if (to_.check_type(at, type)) set_camera(type, given, world_from_camera, to_.draft.scene);
+  if (to_.state.transform.moves())
+    to_.draft.scene.view.camera.motion = {{to_.transform_times[0], world_from_camera},
+                                          {to_.transform_times[1], at_end}};
   to_.draft.scene.view.camera.medium = to_.state.media.outside;
 }
 
@@ -48,6 +52,7 @@ void OptionBuilder::option(const Statement& at, const std::string& name, const T
   if (!to_.check_type(at, name)) return;
   if (const auto seed = set_option(name, value, at.where.file, to_.draft.diagnostics))
     to_.option_seed = seed;
+  if (name == "rendercoordsys") to_.renders_in_world = value.text == "world";
 }
 
 }  // namespace caplet::pbrt

@@ -59,7 +59,7 @@ void SceneBuilder::named_material(const Statement&, const Word& name) {
 void SceneBuilder::texture(const Statement& at, const std::string& name, const Word& kind,
                            const Word& texture_class, ParameterList own) {
   Parameters given = to_.parameters(at, at.of(name), std::move(own), "texture");
-  if (to_.state.transform.is_skewed()) to_.check_place();
+  if (to_.state.transform.start.is_skewed()) to_.check_place();
   if (kind.text != "float" && kind.text != "spectrum") {
     const std::string old = v3_name("Texture", kind.text),
                       said = "a texture is \"float\" or \"spectrum\", not " + in_quotes(kind.text);
@@ -73,10 +73,10 @@ void SceneBuilder::texture(const Statement& at, const std::string& name, const W
                   table.refused.end() ||
               check_name("Texture", texture_class.text, texture_class.where, draft_.diagnostics);
   if (!known) return;
-  TextureValue value = make_texture(
-      name, kind.text, texture_class.text, given, draft_.textures,
-      {to_.state.transform.matrix(), to_.state.transform.inverse(), draft_.image_finder()},
-      draft_.scene);
+  TextureValue value = make_texture(name, kind.text, texture_class.text, given, draft_.textures,
+                                    {to_.state.transform.start.matrix(),
+                                     to_.state.transform.start.inverse(), draft_.image_finder()},
+                                    draft_.scene);
   if (!draft_.textures.add(name, std::move(value)))
     draft_.diagnostics.error(at.where, "the texture " + in_quotes(name) + " is defined twice");
 }
@@ -84,7 +84,7 @@ void SceneBuilder::texture(const Statement& at, const std::string& name, const W
 void SceneBuilder::make_named_medium(const Statement& at, const std::string& name,
                                      ParameterList own) {
   Parameters given = to_.parameters(at, at.of(name), std::move(own), "medium");
-  if (to_.state.transform.is_skewed()) to_.check_place();
+  if (to_.state.transform.start.is_skewed()) to_.check_place();
   const bool has_type = given.has("type");
   const std::string type = given.text("type", "");
   const auto [found, fresh] = draft_.media.statements.emplace(name, MediumStatement{});
@@ -101,7 +101,8 @@ void SceneBuilder::make_named_medium(const Statement& at, const std::string& nam
     draft_.diagnostics.error(given.where("type"), refusal.text, refusal.text);
     return;
   }
-  found->second.medium = make_medium(type, name, given, to_.state.transform.matrix());
+  to_.warn_that_stays(at, "a medium");
+  found->second.medium = make_medium(type, name, given, to_.state.transform.start.matrix());
   found->second.sound = true;
 }
 
@@ -119,7 +120,9 @@ void SceneBuilder::medium_interface(const Statement&, const Word& inside,
 
 void SceneBuilder::light_source(const Statement& at, const std::string& type, ParameterList own) {
   Parameters given = to_.parameters(at, at.of(type), std::move(own), "light");
-  const glm::dmat4 world_from_light = to_.state.transform.place_of_light(type, draft_.diagnostics);
+  const glm::dmat4 world_from_light =
+      to_.state.transform.start.place_of_light(type, draft_.diagnostics);
+  to_.warn_that_stays(at, "a light without a shape");
   if (!to_.check_type(at, type)) return;
   if (auto light = make_light(type, given, world_from_light, to_.light_files))
     draft_.scene.lights.push_back(std::move(*light));
@@ -144,13 +147,17 @@ void SceneBuilder::shape(const Statement& at, const std::string& type, Parameter
     return finished_object(name, problem);
   };
   Shape shape = make_shape(type, given, state.material, {draft_.textures, by_name, finished});
-  shape.world_from_object = state.transform.matrix();
+  if (!state.transform.moves()) shape.world_from_object = state.transform.start.matrix();
   shape.reverse_orientation = state.reverse_orientation;
   shape.emission = state.emission;
   shape.media = state.media;
   if (!shape.one_sided && given.has("onesided"))
     draft_.materials.said_two_sided.insert(shape.where.to_string());
   const auto& open = draft_.objects.open;
+  if (state.transform.moves()) {
+    to_.draft.objects.add_moving(std::move(shape), to_.keys(), draft_.scene);
+    return;
+  }
   (open ? draft_.scene.objects[*open].shapes : draft_.scene.shapes).push_back(std::move(shape));
 }
 

@@ -10,6 +10,7 @@
 #include "base/spelling.h"
 #include "import/detail/pbrt/builder.h"
 #include "import/detail/pbrt/names.h"
+#include "scene/frozen.h"
 
 namespace caplet::pbrt {
 
@@ -157,13 +158,28 @@ void StateBuilder::object_instance(const Statement& at, const std::string& name)
     throw SyntaxError{at.where,
                       "ObjectInstance within the ObjectBegin of " + objects.open_where.to_string()};
   to_.check_place();
-  objects.instances.push_back({name, to_.state.transform.matrix(), at.where});
+  const glm::dvec3 pivot =
+      to_.renders_in_world ? glm::dvec3(0) : rendering_origin(to_.draft.scene.view.camera);
+  objects.instances.push_back(
+      {name, to_.state.transform.start.matrix(), at.where, to_.keys(), pivot});
+}
+
+void ObjectDraft::add_moving(Shape shape, TransformKeys motion, Scene& scene) {
+  const auto object = static_cast<std::uint32_t>(scene.objects.size());
+  const SourceLocation where = shape.where;
+  const std::string name = shape.name;
+  scene.objects.push_back({name, {}, where});
+  scene.objects.back().shapes.push_back(std::move(shape));
+  if (open)
+    moving.push_back({static_cast<std::uint32_t>(*open), object, std::move(motion)});
+  else
+    scene.instances.push_back({object, motion.front().matrix, where, std::move(motion)});
 }
 
 void StateBuilder::world_begin(const Statement&) {
   to_.in_world = true;
-  to_.state.transform.restart(glm::dmat4(1));
-  to_.coordinate_systems["world"] = to_.state.transform.matrix();
+  to_.state.transform = {};
+  to_.coordinate_systems["world"] = {glm::dmat4(1), glm::dmat4(1)};
 }
 
 }  // namespace caplet::pbrt

@@ -10,6 +10,7 @@
 #include "import/detail/pbrt/builder.h"
 #include "import/detail/pbrt/resolve.h"
 #include "scene/append.h"
+#include "scene/transform.h"
 
 namespace caplet::pbrt {
 
@@ -72,7 +73,8 @@ class AsStated {
   void put(Shape& shape, bool is_instanced) {
     const GraphicsState& state = to_.state;
     each_material(shape, [&](std::uint32_t& material) { material = use_of(material); });
-    if (!is_instanced) shape.world_from_object = state.transform.matrix() * shape.world_from_object;
+    if (!is_instanced && !state.transform.moves())
+      shape.world_from_object = state.transform.start.matrix() * shape.world_from_object;
     shape.where = at_.where;
     shape.reverse_orientation = shape.reverse_orientation != state.reverse_orientation;
     if (state.emission) shape.emission = state.emission;
@@ -80,7 +82,14 @@ class AsStated {
     shape.one_sided = shape.one_sided || one_sided_;
   }
   void put(Instance& instance) {
-    instance.world_from_object = to_.state.transform.matrix() * instance.world_from_object;
+    if (to_.state.transform.moves()) {
+      if (!is_similarity(instance.world_from_object))
+        to_.draft.diagnostics.error(at_.where, "moves an instance that the file stretches");
+      instance.pivot = glm::dvec3(glm::inverse(instance.world_from_object)[3]);
+      instance.motion = to_.keys();
+      for (TransformKey& key : instance.motion) key.matrix *= instance.world_from_object;
+    }
+    instance.world_from_object = to_.state.transform.start.matrix() * instance.world_from_object;
     instance.where = at_.where;
   }
 
@@ -137,6 +146,14 @@ void add_shapes_of_file(const Statement& at, const std::string& type, Parameters
   for (std::size_t i = first_instance; i < scene.instances.size(); ++i)
     as_stated.put(scene.instances[i]);
   if (says_sides && !one_sided) to.draft.materials.said_two_sided.insert(at.where.to_string());
+  if (to.state.transform.moves()) {
+    const auto first = scene.shapes.begin() + static_cast<std::ptrdiff_t>(first_shape);
+    std::vector<Shape> moving(std::make_move_iterator(first),
+                              std::make_move_iterator(scene.shapes.end()));
+    scene.shapes.erase(first, scene.shapes.end());
+    for (Shape& shape : moving) to.draft.objects.add_moving(std::move(shape), to.keys(), scene);
+    return;
+  }
   if (!open) return;
   const auto begin = scene.shapes.begin() + static_cast<std::ptrdiff_t>(first_shape);
   std::move(begin, scene.shapes.end(), std::back_inserter(scene.objects[*open].shapes));

@@ -62,7 +62,7 @@ bool is_file_shape(std::string_view type) {
 const std::vector<NameTable>& name_tables() {
   static const std::vector<NameTable> tables = {
       {"Accelerator", {"bvh", "kdtree"}, {}},
-      {"ActiveTransform", {"All"}, {"EndTime", "StartTime"}},
+      {"ActiveTransform", {"All", "EndTime", "StartTime"}, {}},
       {"AreaLightSource", {"diffuse"}, {}},
       table_of("Camera", with(projection_names, {}), {"realistic"}),
       table_of("ColorSpace", {color_space_names.begin(), color_space_names.end()}, {}),

@@ -170,10 +170,12 @@ void set_camera(const std::string& type, Parameters& parameters,
   }
   const double open = parameters.number("shutteropen", 0),
                close = parameters.number("shutterclose", 1);
-  if (close > open)
+  if (close > open) {
     scene.view.film.exposure_time = close - open;
-  else
+    scene.view.film.shutter_open = open;
+  } else {
     parameters.error("shutterclose", "must be after shutteropen");
+  }
   scene.automatic_camera = parameters.boolean("automatic", false);
   scene.has_no_up = parameters.boolean("noup", false);
   scene.framing = framing_of(parameters, is_orthographic(camera) && scene.automatic_camera);
@@ -186,6 +188,7 @@ void set_film(const std::string& type, Parameters& parameters, ColorSpace space,
               const ImageReader* images) {
   FilmSettings film;
   film.exposure_time = scene.view.film.exposure_time;
+  film.shutter_open = scene.view.film.shutter_open;
   film.space = space;
   FilmSettings::fields(film, FieldReader{parameters});
   film.filename = parameters.text("filename", "pbrt.exr");

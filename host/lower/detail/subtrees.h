@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <deque>
 #include <glm/mat4x4.hpp>
+#include <optional>
 #include <vector>
 
 #include "lower/detail/emitter.h"
@@ -16,6 +17,7 @@
 #include "lower/encode.h"
 #include "lower/flat_primitive.h"
 #include "lower/flat_scene.h"
+#include "lower/motion.h"
 #include "lower/spectrum.h"
 #include "scene/scene.h"
 
@@ -45,6 +47,7 @@ struct PlacedSubtree {
   glm::dmat4 world_from_subtree;
   std::uint32_t scene_instance;  // index into Scene::instances; CAPLET_NONE: a subtree of the world
   std::size_t top;               // index into the primitives of the world's first subtree
+  std::optional<MotionPath> motion = {};  // world_from_subtree, of one that moves
 };
 
 /// Lengths holds the lengths of the arrays that shapes add to.
@@ -96,14 +99,15 @@ SubtreeKey subtree_key(const Shape& shape, const glm::dmat4& world_from_object);
 /// Returns the record of a subtree as placed; `object`: InstanceRecord.object.
 InstanceRecord instance_record(const Subtree& subtree, const glm::dmat4& world_from_subtree,
                                std::uint32_t object);
-/// Writes the box of an instance into its primitive of the top tree.
+/// Writes the box of an instance into its primitive of the top tree. `motion`: its path; null: it
+/// rests.
 void set_instance_box(const Subtree& subtree, const glm::dmat4& world_from_subtree,
-                      FlatPrimitive& instance);
+                      const MotionPath* motion, FlatPrimitive& instance);
 
 /// Sets the lights of an emissive shape of a subtree as placed, one for each of its primitives.
 void set_emitters(const Subtree& subtree, const Subtree::Emissive& emissive, std::uint32_t instance,
-                  const glm::dmat4& world_from_subtree, std::uint32_t group, SpectrumTable& spectra,
-                  const FlatScene& flat, Emitter* out);
+                  const glm::dmat4& world_from_subtree, const MotionPath* motion,
+                  std::uint32_t group, SpectrumTable& spectra, const FlatScene& flat, Emitter* out);
 
 /// Sets the bounding sphere of the world; it is the unit sphere where the tree is empty, so that
 /// lights have a power.

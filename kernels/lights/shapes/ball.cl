@@ -41,8 +41,9 @@ static inline int primitive_crossing(const Tree* tree, const Surfaces* surfaces,
       surfaces->geometries[surfaces->primitive_geometry[as_uint(tree->leaves[slot])]];
   float3 o = p, d = wi;
   if (instance != CAPLET_NONE) {
-    o = transform_point(tree->instances[instance].object_from_world, p);
-    d = transform_vector(tree->instances[instance].object_from_world, wi);
+    const Affine to_object = object_from_world(tree, instance);
+    o = affine_point(&to_object, p);
+    d = affine_vector(&to_object, wi);
   }
   ShapeRay ray = shape_ray(o, d, t_min, tree->leaves);
   if (instance != CAPLET_NONE) {

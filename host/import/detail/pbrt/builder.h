@@ -5,6 +5,7 @@
 // only then is known.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <glm/mat4x4.hpp>
 #include <map>
@@ -26,7 +27,9 @@ namespace caplet::pbrt {
 struct Building {
   Draft draft;
   GraphicsState state = {};
-  std::map<std::string, glm::dmat4> coordinate_systems = {};
+  std::map<std::string, std::array<glm::dmat4, 2>> coordinate_systems = {};  // at both times
+  std::array<double, 2> transform_times = {0, 1};
+  bool renders_in_world = false;  // Option "rendercoordsys"
   LightFiles light_files{draft.images};
   std::optional<std::uint32_t> option_seed = {}, sampler_seed = {};
   bool in_world = false, has_camera = false;
@@ -39,6 +42,10 @@ struct Building {
   /// As check_name of names.h.
   bool check_type(const Statement& at, const std::string& type);
   void check_place() { state.transform.check_place(draft.diagnostics); }
+  /// Returns the keys of the current transform; none where it rests.
+  TransformKeys keys() const;
+  /// Warns where the current transform moves that `what` stays where it is at the start.
+  void warn_that_stays(const Statement& at, const std::string& what);
 };
 
 class OptionBuilder : public OptionTarget {
@@ -70,11 +77,14 @@ class TransformBuilder : public TransformTarget {
   void rotate(const Statement& at, double degrees, const glm::dvec3& axis) override;
   void scale(const Statement& at, const glm::dvec3& factors) override;
   void transform(const Statement& at, const glm::dmat4& matrix) override;
-  void transform_times(const Statement&, double, double) override {}
+  void transform_times(const Statement& at, double start, double end) override;
   void translate(const Statement& at, const glm::dvec3& offset) override;
 
  private:
-  CurrentTransform& current() { return to_.state.transform; }
+  template <class Change>
+  void each_active(const Change& change) {
+    to_.state.transform.each_active(change);
+  }
 
   Building& to_;
 };

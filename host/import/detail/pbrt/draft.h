@@ -93,11 +93,23 @@ struct ObjectDraft {
     std::string name;
     glm::dmat4 world_from_object;
     SourceLocation where;
+    TransformKeys motion;
+    glm::dvec3 pivot;
+  };
+  /// A shape that moves within an object: an object of its own, placed in every instance.
+  struct MovingShape {
+    std::uint32_t of;      // the object that it was stated in
+    std::uint32_t object;  // its own
+    TransformKeys motion;  // object_from_shape
   };
   std::map<std::string, std::uint32_t> names;
   std::optional<std::size_t> open;  // the object that is being defined
   SourceLocation open_where;
   std::vector<Instance> instances;
+  std::vector<MovingShape> moving;
+
+  /// Adds a shape that moves, which is in its own space, to the world or to the open object.
+  void add_moving(Shape shape, TransformKeys motion, Scene& scene);
 };
 
 struct Draft {

@@ -18,8 +18,8 @@
 
 namespace caplet::pbrt {
 
-/// The current transform, and what is wrong with it.
-class CurrentTransform {
+/// A transform, and what is wrong with it.
+class OneTransform {
  public:
   const glm::dmat4& matrix() const { return ctm_; }
   glm::dmat4 inverse() const;
@@ -48,6 +48,25 @@ class CurrentTransform {
   std::optional<Fault>
       skewed_;  // the first that is not affine; the matrix contains it, for directions only
   std::optional<glm::dmat4> inverse_;  // if the file states it, so that it need not be computed
+};
+
+/// The current transform at the two times of TransformTimes. Directives change those that
+/// ActiveTransform names.
+struct CurrentTransform {
+  OneTransform start, end;
+  bool start_is_active = true, end_is_active = true;
+
+  /// Calls `change` with each active transform.
+  template <class Change>
+  void each_active(const Change& change) {
+    if (start_is_active) change(start);
+    if (end_is_active) change(end);
+  }
+  bool moves() const { return start.matrix() != end.matrix(); }
+  void check_place(Diagnostics& diagnostics) const {
+    start.check_place(diagnostics);
+    if (moves()) end.check_place(diagnostics);
+  }
 };
 
 struct GraphicsState {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 #include "import/detail/pbrt/resolve.h"
+#include "scene/transform.h"
 
 namespace caplet::pbrt {
 
@@ -19,11 +20,35 @@ void check_attributes(Draft& draft) {
           "no statement after this Attribute knows the parameter " + in_quotes(parameter->name));
 }
 
+/// Places an object, and the shapes that move within it.
+void place(Draft& draft, const ObjectDraft::Instance& use, std::uint32_t object) {
+  std::vector<Instance>& instances = draft.scene.instances;
+  instances.push_back({object, use.world_from_object, use.where, use.motion,
+                       use.motion.empty() ? glm::dvec3(0) : use.pivot});
+  for (const ObjectDraft::MovingShape& shape : draft.objects.moving) {
+    if (shape.of != object) continue;
+    if (!use.motion.empty()) {
+      draft.diagnostics.error(use.where, "a shape moves within the object " + in_quotes(use.name) +
+                                             ", which moves itself: one of them must rest");
+      return;
+    }
+    if (!is_similarity(use.world_from_object)) {
+      draft.diagnostics.error(use.where, "a shape moves within the object " + in_quotes(use.name) +
+                                             ", which is stretched here");
+      return;
+    }
+    TransformKeys motion = shape.motion;
+    move(motion, use.world_from_object);
+    const glm::dmat4 first = motion.front().matrix;
+    instances.push_back({shape.object, first, use.where, std::move(motion)});
+  }
+}
+
 void resolve_instances(Draft& draft) {
   const ObjectDraft& objects = draft.objects;
   for (const ObjectDraft::Instance& use : objects.instances) {
     if (const auto found = objects.names.find(use.name); found != objects.names.end())
-      draft.scene.instances.push_back({found->second, use.world_from_object, use.where});
+      place(draft, use, found->second);
     else
       draft.diagnostics.error(use.where, "the object " + in_quotes(use.name) + " is not defined" +
                                              draft.nearest(use.name, objects.names));

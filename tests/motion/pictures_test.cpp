@@ -1,0 +1,294 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// Pictures of moving things against closed forms, and against the mean of pictures of the scene
+// frozen at many times.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdio>
+#include <functional>
+#include <glm/geometric.hpp>
+#include <glm/gtc/matrix_transform.hpp>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "film/develop.h"
+#include "lower/lower.h"
+#include "render_scene.h"
+#include "scene/frozen.h"
+
+namespace caplet::test {
+namespace {
+
+using glm::dvec2;
+
+/// Looks down the z axis at [-2, 2] x [-2, 2], x to the right and y up.
+const std::string from_above =
+    "Scale -1 1 1\nLookAt 0 0 10  0 0 0  0 1 0\n"
+    "Camera \"orthographic\" \"float screenwindow\" [-2 2 -2 2]\n"
+    "Film \"rgb\" \"integer xresolution\" 32 \"integer yresolution\" 32\n"
+    "PixelFilter \"box\"\nIntegrator \"path\" \"integer maxdepth\" 3\n";
+const std::string shining =
+    "AreaLightSource \"diffuse\" \"rgb L\" [1 1 1]\n"
+    "Material \"diffuse\" \"rgb reflectance\" [0 0 0]\n";
+
+/// Compares each pixel with the share of the exposure and of the pixel's area at which `covers`
+/// says that something is at a place.
+void expect_coverage(const std::string& text,
+                     const std::function<bool(const dvec2& at, double time)>& covers) {
+  const int samples = 256;
+  const Scene scene = scene_of_text(text);
+  const Rendered ours = render_model(scene, samples);
+  const Channel &green = channel(ours.image, "G"), &variance = channel(ours.image, "variance.G");
+  double sum = 0, squares = 0, partly = 0, all = 0, expected_all = 0, noise = 0;
+  for (int y = 0; y < 32; ++y)
+    for (int x = 0; x < 32; ++x) {
+      const std::size_t pixel = static_cast<std::size_t>(32 * y + x);
+      int covered = 0;
+      for (int j = 0; j < 8; ++j)
+        for (int i = 0; i < 8; ++i)
+          for (int k = 0; k < 64; ++k)
+            covered +=
+                covers({-2 + (x + (i + 0.5) / 8) / 8, 2 - (y + (j + 0.5) / 8) / 8}, (k + 0.5) / 64)
+                    ? 1
+                    : 0;
+      const double expected = covered / 4096.0;
+      all += green.floats[pixel];
+      expected_all += expected;
+      noise += variance.floats[pixel];
+      if (covered == 0) {
+        EXPECT_LT(green.floats[pixel], 0.01) << x << " " << y;  // less than a step of the sum
+        continue;
+      }
+      // The luminance of the four wavelengths of a sample is noise as well; and the sum above is
+      // off by a step of 1/64 of time at most.
+      const double z = (green.floats[pixel] - expected) /
+                       std::sqrt(variance.floats[pixel] + 1e-3 * 1e-3 + 0.25 / 64 / 64 / 64);
+      sum += z;
+      squares += z * z;
+      ++partly;
+    }
+  EXPECT_NEAR(all / expected_all, 1, 4 * std::sqrt(noise) / expected_all + 0.002);
+  EXPECT_LT(std::abs(sum / partly), 4 / std::sqrt(partly));
+  EXPECT_LT(squares / partly, 1.7);
+  EXPECT_GT(partly, 100);
+}
+
+double distance_to_segment(const dvec2& p, const dvec2& a, const dvec2& b) {
+  const double s = std::clamp(glm::dot(p - a, b - a) / glm::dot(b - a, b - a), 0.0, 1.0);
+  return glm::length(p - (a + s * (b - a)));
+}
+
+TEST(MotionPictures, OfASphereThatFalls) {
+  expect_coverage(from_above + "WorldBegin\n" + shining +
+                      "Translate -0.5 1.5 0\nActiveTransform EndTime\nTranslate 1 -2.5 0\n"
+                      "Shape \"sphere\" \"float radius\" 0.4\n",
+                  [](const dvec2& at, double time) {
+                    return glm::length(at - (dvec2(-0.5, 1.5) + time * dvec2(1, -2.5))) < 0.4;
+                  });
+}
+
+TEST(MotionPictures, OfACapsuleThatTurnsAndFalls) {
+  expect_coverage(
+      from_above + "WorldBegin\n" + shining +
+          "Translate 0 0.75 0\nActiveTransform EndTime\nTranslate 0 -1 0\nRotate 120 0 0 1\n"
+          "Shape \"capsule\" \"point3 p0\" [-1 0 0] \"point3 p1\" [1 0 0] \"float radius\" 0.2\n",
+      [](const dvec2& at, double time) {
+        const double angle = time * 120 * std::numbers::pi / 180;
+        const dvec2 middle(0, 0.75 - time), half(std::cos(angle), std::sin(angle));
+        return distance_to_segment(at, middle - half, middle + half) < 0.2;
+      });
+}
+
+// Only while the shutter is open; and nothing moves before the first and after the last key.
+TEST(MotionPictures, OfTheTimeThatTheShutterIsOpen) {
+  std::string text = from_above;
+  text.insert(text.find("Camera \"orthographic\"") + 21,
+              " \"float shutteropen\" 2.5 \"float shutterclose\" 4.5");
+  expect_coverage("TransformTimes 3 4\n" +
+                      text.replace(text.find("Film \"rgb\""), 10, "Film \"rgb\" \"float iso\" 50") +
+                      "WorldBegin\n" + shining +
+                      "ActiveTransform EndTime\nTranslate 1.2 0 0\n"
+                      "Shape \"sphere\" \"float radius\" 0.5\n",
+                  [](const dvec2& at, double time) {
+                    const double moved = std::clamp(2 * time - 0.5, 0.0, 1.0);
+                    return glm::length(at - dvec2(1.2 * moved, 0)) < 0.5;
+                  });
+}
+
+TEST(MotionPictures, OfACameraThatMoves) {
+  std::string text = from_above;
+  text.insert(0, "ActiveTransform EndTime\nTranslate 1 0.5 0\nActiveTransform All\n");
+  expect_coverage(
+      text + "WorldBegin\n" + shining + "Shape \"sphere\" \"float radius\" 0.5\n",
+      // Camera space is moved, of which x points left of the picture before the mirror.
+      [](const dvec2& at, double time) { return glm::length(at - time * dvec2(1, 0.5)) < 0.5; });
+}
+
+// The irradiance under a sphere of radiance L that is above the horizon is L pi sin^2(its half
+// angle) cos(its angle to the normal), whatever else it does; here averaged over its way.
+TEST(MotionPictures, OfTheLightOfALampThatMoves) {
+  const Scene scene = scene_of_text(
+      "Scale -1 1 1\nLookAt 0 0 10  0 0 0  0 1 0\n"
+      "Camera \"orthographic\" \"float screenwindow\" [-0.01 0.01 -0.01 0.01]\n"
+      "Film \"rgb\" \"integer xresolution\" 8 \"integer yresolution\" 8\nPixelFilter \"box\"\n"
+      "Integrator \"path\" \"integer maxdepth\" 1\nWorldBegin\n"
+      "Material \"diffuse\" \"rgb reflectance\" [0.5 0.5 0.5]\nShape \"disk\" \"float radius\" 5\n"
+      "AreaLightSource \"diffuse\" \"rgb L\" [10 10 10]\n"
+      "Translate -3 0.5 1.5\nActiveTransform EndTime\nTranslate 5 0 1\nRotate 90 1 0 0\n"
+      "Shape \"sphere\" \"float radius\" 0.25\n");
+  double expected = 0;
+  for (int k = 0; k < 1000; ++k) {
+    const double time = (k + 0.5) / 1000;
+    const glm::dvec3 at = glm::dvec3(-3, 0.5, 1.5) + time * glm::dvec3(5, 0, 1);
+    const double distance = glm::length(at);
+    expected += 0.5 * 10 * std::pow(0.25 / distance, 2) * at.z / distance / 1000;
+  }
+  const Mean mean = mean_of(render_model(scene, 1024).image, "G");
+  EXPECT_NEAR(mean.value, expected, 4 * mean.error + 2e-3 * expected);
+  EXPECT_LT(mean.error, 0.01 * expected);
+}
+
+/// The picture of a scene and the mean of pictures of it frozen at the middles of `times` parts of
+/// its exposure agree in their means and, with z of both pictures' stated errors, pixel by pixel.
+void expect_mean_of_frozen(const std::string& text, int samples, int times = 64) {
+  const Scene scene = scene_of_text(text);
+  const Picture ours = picture_of(render_model(scene, samples).image);
+  Picture theirs;
+  for (int k = 0; k < times; ++k) {
+    const FilmSettings& film = scene.view.film;
+    Scene frozen = frozen_at(scene, film.shutter_open + (k + 0.5) / times * film.exposure_time);
+    frozen.view.sampler.seed = 100 + static_cast<std::uint32_t>(k);
+    const Picture one = picture_of(render_model(frozen, std::max(samples / times, 2)).image);
+    if (theirs.rgb.empty()) {
+      theirs = one;
+      theirs.rgb.assign(one.rgb.size(), 0);
+      theirs.variance.assign(one.rgb.size(), 0);
+    }
+    for (std::size_t i = 0; i < one.rgb.size(); ++i) {
+      theirs.rgb[i] += one.rgb[i] / static_cast<float>(times);
+      theirs.variance[i] += one.variance[i] / static_cast<float>(times * times);
+    }
+  }
+  const Figures figures = compare(ours, theirs);
+  double sum = 0, variance = 0;
+  for (std::size_t i = 0; i < ours.rgb.size(); ++i) {
+    sum += theirs.rgb[i];
+    variance += ours.variance[i] + theirs.variance[i];
+  }
+  const double error = std::sqrt(3 * variance) / sum;
+  std::printf("mean %+.4f (error %.4f), z %.3f +- %.3f, beyond 3 %.4f\n", figures.mean, error,
+              figures.z_mean, figures.z_sd, figures.beyond_3);
+  EXPECT_LT(std::abs(figures.mean), 4 * error + 0.002);
+  EXPECT_LT(error, 0.02);
+  EXPECT_LT(std::abs(figures.z_mean), 0.25);
+  EXPECT_LT(figures.z_sd, 1.3);
+  EXPECT_LT(figures.beyond_3, 0.02);
+}
+
+const std::string in_front =
+    "Scale -1 1 1\nLookAt 0 -6 3  0 0 0.3  0 0 1\nCamera \"perspective\" \"float fov\" 40\n"
+    "Film \"rgb\" \"integer xresolution\" 32 \"integer yresolution\" 32\n"
+    "Integrator \"path\" \"integer maxdepth\" 5\nPixelFilter \"box\"\n";
+const std::string ground =
+    "Material \"diffuse\" \"rgb reflectance\" [0.5 0.5 0.5]\nShape \"disk\" \"float radius\" 8\n";
+
+// Lamps of every kind of sampling: triangles by solid angle, disks, capsules and cylinders by area,
+// others by a ball.
+TEST(MotionPictures, OfLampsOfAllKindsAreTheMeanOfFrozenOnes) {
+  expect_mean_of_frozen(
+      in_front + "WorldBegin\n" + ground +
+          "AreaLightSource \"diffuse\" \"rgb L\" [8 8 8]\nTranslate 0 0 1.5\n"
+          "ActiveTransform EndTime\nTranslate 1 0 0.3\nRotate 70 0 1 0\nActiveTransform All\n"
+          "Shape \"trianglemesh\" \"integer indices\" [0 1 2] \"point3 P\" [-2 0 0 -1 0 0 -1.5 1 "
+          "0]\n"
+          "Shape \"capsule\" \"point3 p0\" [0 0 0] \"point3 p1\" [1 0 0] \"float radius\" 0.2\n"
+          "Shape \"cylinder\" \"float radius\" 0.2 \"float zmin\" -0.3 \"float zmax\" 0.3\n"
+          "Shape \"box\" \"point3 p0\" [-0.2 0.8 -0.2] \"point3 p1\" [0.2 1.2 0.2]\n"
+          "AttributeBegin\nTranslate -1 1 0\nScale 0.3 0.15 0.4\nShape \"sphere\"\nAttributeEnd\n"
+          "AttributeBegin\nTranslate 1 1.5 0\nShape \"disk\" \"float radius\" 0.3\nAttributeEnd\n",
+      1024);
+}
+
+// A light tree has boxes and cones of lights.
+TEST(MotionPictures, OfManyLampsAreTheMeanOfFrozenOnes) {
+  std::string text = in_front + "WorldBegin\n" + ground;
+  for (int i = 0; i < 24; ++i)
+    text +=
+        "AttributeBegin\nAreaLightSource \"diffuse\" \"rgb L\" [6 6 6]\nRotate " +
+        std::to_string(15 * i) +
+        " 0 0 1\nTranslate 2.5 0 0.5\nActiveTransform EndTime\nTranslate -1.5 0 0.5\n"
+        "Rotate 100 1 0 0\nActiveTransform All\nShape \"trianglemesh\" \"integer indices\" [0 1 "
+        "2] \"point3 P\" [0 0 0 0.3 0 0 0 0.3 0]\nAttributeEnd\n";
+  expect_mean_of_frozen(text, 1024);
+}
+
+TEST(MotionPictures, OfGlassFogAndHolesAreTheMeanOfFrozenOnes) {
+  expect_mean_of_frozen(
+      in_front +
+          "MakeNamedMedium \"fog\" \"string type\" \"homogeneous\" \"rgb sigma_s\" [2 2 2] \"rgb "
+          "sigma_a\" [0.2 0.2 0.2]\nWorldBegin\n"
+          "LightSource \"infinite\" \"rgb L\" [0.6 0.6 0.6]\n"
+          "LightSource \"point\" \"rgb I\" [20 20 20] \"point3 from\" [2 -3 4]\n" +
+          ground +
+          "AttributeBegin\nTranslate -1.2 0 0.7\nActiveTransform EndTime\nTranslate 0.8 0 0.2\n"
+          "Rotate 90 0 0 1\nActiveTransform All\nMaterial \"interface\"\n"
+          "MediumInterface \"fog\" \"\"\n"
+          "Shape \"box\" \"point3 p0\" [-0.5 -0.5 -0.5] \"point3 p1\" [0.5 0.5 0.5]\nAttributeEnd\n"
+          "AttributeBegin\nTranslate 1.2 0 0.6\nActiveTransform EndTime\nTranslate 0 0 0.7\n"
+          "Rotate 60 0 1 0\nActiveTransform All\nMaterial \"dielectric\"\n"
+          "Shape \"capsule\" \"point3 p0\" [-0.4 0 0] \"point3 p1\" [0.4 0 0] \"float radius\" "
+          "0.3\n"
+          "AttributeEnd\n"
+          "AttributeBegin\nTranslate 0.3 1 0.2\nActiveTransform StartTime\nTranslate -0.8 0 0\n"
+          "ActiveTransform All\nMaterial \"diffuse\" \"rgb reflectance\" [0.7 0.2 0.2]\n"
+          "Shape \"sphere\" \"float radius\" 0.8 \"float alpha\" 0.5\nAttributeEnd\n",
+      1024);
+}
+
+TEST(MotionPictures, OfACameraThatTurnsAreTheMeanOfFrozenOnes) {
+  std::string text = in_front;
+  text.insert(0,
+              "ActiveTransform EndTime\nRotate 20 0 1 0\nTranslate 0.3 0.4 1\nActiveTransform "
+              "All\n");
+  expect_mean_of_frozen(
+      text + "WorldBegin\nLightSource \"infinite\" \"rgb L\" [0.6 0.6 0.6]\n" + ground +
+          "AttributeBegin\nTranslate 0 0 0.5\nActiveTransform EndTime\nTranslate 1 0 0\n"
+          "ActiveTransform All\nMaterial \"diffuse\" \"rgb reflectance\" [0.1 0.1 0.8]\n"
+          "Shape \"sphere\" \"float radius\" 0.5\nAttributeEnd\n",
+      512);
+}
+
+// A camera in a fog that moves away is within it for a time.
+TEST(MotionPictures, OfACameraThatFogLeavesAreTheMeanOfFrozenOnes) {
+  expect_mean_of_frozen(
+      in_front +
+          "MakeNamedMedium \"fog\" \"string type\" \"homogeneous\" \"rgb sigma_s\" [0.5 0.5 0.5] "
+          "\"rgb sigma_a\" [0.5 0.5 0.5]\nWorldBegin\n"
+          "LightSource \"infinite\" \"rgb L\" [1 1 1]\n" +
+          ground +
+          "AttributeBegin\nTranslate 0 -6 3\nActiveTransform EndTime\nTranslate 0 0 4\n"
+          "ActiveTransform All\nMaterial \"interface\"\nMediumInterface \"fog\" \"\"\n"
+          "Shape \"sphere\" \"float radius\" 1.5\nAttributeEnd\n",
+      512);
+}
+
+// What moves is seen at one time by all of a path: a mirror shows the ball where it is.
+TEST(MotionPictures, ArePicturesOfTheSamplesAlone) {
+  const Scene scene = scene_of_text(
+      in_front + "WorldBegin\nLightSource \"infinite\" \"rgb L\" [1 1 1]\n" + ground +
+      "ActiveTransform EndTime\nTranslate 1 0 0\nRotate 90 0 0 1\nActiveTransform All\n"
+      "Translate 0 0 0.5\nShape \"box\" \"point3 p0\" [-0.5 -0.5 -0.5] \"point3 p1\" [0.5 0.5 "
+      "0.5]\n");
+  RenderOptions small, large;
+  small.batch_paths = 333;
+  large.batch_paths = 100'000;
+  const Picture a = picture_of(render_model(scene, 8, small).image),
+                b = picture_of(render_model(scene, 8, large).image);
+  EXPECT_EQ(a.rgb, b.rgb);
+}
+
+}  // namespace
+}  // namespace caplet::test
