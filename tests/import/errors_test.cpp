@@ -54,14 +54,15 @@ TEST(Errors, OfOneKindAreOneLineWithTheirNumber) {
 TEST(Errors, OfFeaturesOfManyStatementsAreGrouped) {
   std::string text = "WorldBegin\n";
   for (int i = 0; i < 10'000; ++i)
-    text += "Material \"measured\"\nShape \"sphere\"\nActiveTransform End\nMakeNamedMaterial \"" +
-            std::to_string(i) +
-            "\" \"string type\" \"diffuse\" \"string normalmap\" \"n.png\"\nNamedMaterial \"" +
-            std::to_string(i) + "\"\nShape \"disk\"\n";
+    text +=
+        "Material \"measured\"\nShape \"sphere\"\nActiveTransform EndTim\nMakeNamedMaterial \"" +
+        std::to_string(i) +
+        "\" \"string type\" \"diffuse\" \"string normalmap\" \"n.png\"\nNamedMaterial \"" +
+        std::to_string(i) + "\"\nShape \"disk\"\n";
   EXPECT_THAT(
       complaints(text),
       ElementsAre(
-          "scene.pbrt:4:17: unknown ActiveTransform \"End\"; the nearest known name is "
+          "scene.pbrt:4:17: unknown ActiveTransform \"EndTim\"; the nearest known name is "
           "\"EndTime\" (and 9999 more of this kind)",
           "scene.pbrt:2:1: Material \"measured\" is not rendered yet (and 9999 more of this kind)",
           "scene.pbrt:5:47: MakeNamedMaterial \"0\": \"normalmap\" no such file \"n.png\" (and "

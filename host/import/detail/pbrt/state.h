@@ -24,6 +24,7 @@ class OneTransform {
   const glm::dmat4& matrix() const { return ctm_; }
   glm::dmat4 inverse() const;
   bool is_skewed() const { return skewed_.has_value(); }
+  bool is_sound() const { return !flat_ && !skewed_; }
   void multiply(const Statement& at, const glm::dmat4& matrix);
   /// Replaces the matrix; a singular or non-affine transform before it still counts.
   void set(const glm::dmat4& ctm);
@@ -63,9 +64,9 @@ struct CurrentTransform {
     if (end_is_active) change(end);
   }
   bool moves() const { return start.matrix() != end.matrix(); }
+  /// Reports what is wrong with both; a fault of both once.
   void check_place(Diagnostics& diagnostics) const {
-    start.check_place(diagnostics);
-    if (moves()) end.check_place(diagnostics);
+    (start.is_sound() ? end : start).check_place(diagnostics);
   }
 };
 
