@@ -643,8 +643,10 @@ class Scene:
 
     @staticmethod
     def _keys(times, transforms):
-        times = [float(time) for time in times]
-        return times, arrays.transforms(transforms if len(times) else np.zeros((0, 4, 4)))
+        times = arrays.floats(times, "times").astype(np.float64, copy=False)
+        if times.ndim != 1:
+            raise InputError(f"times: shape (n,) is needed, not {times.shape}")
+        return times.tolist(), arrays.transforms(transforms if len(times) else np.zeros((0, 4, 4)))
 
     def _first(self, object):
         return self._native.shape_in(object, 0) if object else 0
