@@ -33,6 +33,8 @@ void print_text(const nlohmann::ordered_json& info) {
   }
   fmt::print("materials    {}\nlights       {}\n", info["materials"].get<std::uint64_t>(),
              info["lights"].get<std::uint64_t>());
+  if (const auto moving = info["moving"].get<std::uint64_t>(); moving > 0)
+    fmt::print("moving       {} of {} instances\n", moving, info["instances"].get<std::uint64_t>());
   fmt::print("image        {} x {}, {} samples per pixel\n", info["image"]["width"].get<int>(),
              info["image"]["height"].get<int>(), info["samples_per_pixel"].get<int>());
   fmt::print("bytes        {} host, {} device\n", info["bytes"]["host"].get<std::uint64_t>(),

@@ -32,7 +32,8 @@ void lower_camera(const Scene& scene, FlatView& out) {
   CameraRecord& record = out.camera;
   record = CameraRecord{};
   out.camera_motion.clear();
-  const std::optional<MotionPath> motion = MotionPath::of(camera.motion, film);
+  const std::optional<MotionPath> motion =
+      MotionPath::of(camera.motion, film, glm::dvec3(0), glm::dmat4(1), {scene.source});
   glm::dmat4 stands = camera.world_from_camera;
   if (!camera.motion.empty()) stands = AnimatedTransform(camera.motion).at(film.shutter_open);
   write_matrix(record.world_from_camera, stands);

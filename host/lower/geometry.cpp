@@ -450,7 +450,7 @@ class GeometryLowering {
       const FilmSettings& film = scene_.view.film;
       world_from_subtree =
           AnimatedTransform(of->motion, of->pivot).at(film.shutter_open) * subtree.placed;
-      motion = MotionPath::of(of->motion, film, of->pivot, subtree.placed);
+      motion = MotionPath::of(of->motion, film, of->pivot, subtree.placed, of->where);
     }
     InstanceRecord record =
         instance_record(subtree, world_from_subtree,

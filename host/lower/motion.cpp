@@ -61,7 +61,8 @@ bool is_near(const Matrix& a, const Matrix& b) {
 }  // namespace
 
 std::optional<MotionPath> MotionPath::of(const TransformKeys& keys, const FilmSettings& film,
-                                         const glm::dvec3& pivot, const Matrix& right) {
+                                         const glm::dvec3& pivot, const Matrix& right,
+                                         const SourceLocation& where) {
   if (keys.empty()) return std::nullopt;
   const AnimatedTransform animated(keys, pivot);
   const double open = film.shutter_open, close = open + film.exposure_time;
@@ -93,7 +94,9 @@ std::optional<MotionPath> MotionPath::of(const TransformKeys& keys, const FilmSe
              is_near(glm::inverse(within(u)), value(segment.inverse, u));
     if (near || halvings == most_halvings) {
       if (out.segments_.size() == most_segments)
-        throw InputError("a motion takes more than 4096 segments");
+        throw InputError(where,
+                         "the motion takes more than 4096 segments of time: what turns is too "
+                         "far from what it turns about");
       out.segments_.push_back(segment);
       return;
     }

@@ -23,11 +23,12 @@ class MotionPath {
  public:
   /// Returns the path of `keys` while the shutter of `film` is open; no value if nothing moves
   /// then. `pivot`: AnimatedTransform's. Each matrix is multiplied by `right` from the right.
-  /// Throws InputError if the path takes more than 4,096 segments, which no path of rotations less
-  /// than half a turn does.
+  /// Throws InputError, with the place, if the path takes more than 4,096 segments: where a thing
+  /// turns about a point 10^8 times its size away.
   static std::optional<MotionPath> of(const TransformKeys& keys, const FilmSettings& film,
                                       const glm::dvec3& pivot = glm::dvec3(0),
-                                      const glm::dmat4& right = glm::dmat4(1));
+                                      const glm::dmat4& right = glm::dmat4(1),
+                                      const SourceLocation& where = {});
 
   std::uint32_t segments() const { return static_cast<std::uint32_t>(segments_.size()); }
   /// Returns the matrix at time 0.

@@ -12,7 +12,12 @@ Camera camera_of_eye(const Scene& scene, const Stereo& stereo, Eye eye) {
   Camera camera = scene.view.camera;
   const glm::dvec3 right(camera.world_from_camera[0]), forward(camera.world_from_camera[2]);
   const double side = eye == Eye::left ? -0.5 : 0.5;
-  camera.world_from_camera[3] += glm::dvec4(side * stereo.separation * glm::normalize(right), 0);
+  const auto set_aside = [&](glm::dmat4& matrix) {
+    const glm::dvec3 aside = glm::normalize(glm::dvec3(matrix[0]));
+    matrix[3] += glm::dvec4(side * stereo.separation * aside, 0);
+  };
+  set_aside(camera.world_from_camera);
+  for (TransformKey& key : camera.motion) set_aside(key.matrix);
   if (!stereo.convergence || fov_of(camera) == 0) return camera;  // the image plane has no distance
   // By similar triangles, in the camera's own units, which transforms may stretch: the point in the
   // centre at that distance moves as far to one side as the eye has moved to the other.

@@ -4,6 +4,7 @@
 
 #include <sys/resource.h>
 
+#include <algorithm>
 #include <set>
 
 #include "base/utf8.h"
@@ -90,6 +91,8 @@ nlohmann::ordered_json scene_summary(const Scene& scene, const FlatScene& flat) 
   out["lights"] = light_count(flat);
   out["objects"] = scene.objects.size();
   out["instances"] = scene.instances.size();
+  out["moving"] = std::ranges::count_if(scene.instances,
+                                        [](const Instance& one) { return !one.motion.empty(); });
   out["image"] = {{"width", scene.view.film.width}, {"height", scene.view.film.height}};
   out["samples_per_pixel"] = scene.view.sampler.samples_per_pixel;
   out["max_depth"] = scene.view.integrator.max_depth;

@@ -378,6 +378,9 @@ TEST(Pick, ScenesThatMoveAtATime) {
     EXPECT_EQ(result.code, 0) << result.err;
     return nlohmann::json::parse(result.out);
   };
+  EXPECT_EQ(nlohmann::json::parse(test::run_program({"info", "moving.pbrt", "--json"}, folder).out)
+                .at("moving"),
+            1);
   const std::string down = "1,0,5,0,0,-1";
   // When the shutter opens the ball is at x = 1.
   for (const auto& report : {picked({"--ray", down}), picked({"--ray", down, "--time", "0.5"})}) {

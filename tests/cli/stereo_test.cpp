@@ -79,6 +79,19 @@ TEST(Stereo, ViewsAreThoseOfCamerasMovedByHand) {
   expect_view(both, views, 1, by_hand("0.25", " \"float screenwindow\" [-1.625 1.375 -1 1]"));
 }
 
+// Both eyes go where the camera goes.
+TEST(Stereo, OfACameraThatMoves) {
+  const auto moving = [](const std::string& x) {
+    return scene_from("ActiveTransform EndTime\nTranslate 0 1 0\nActiveTransform All\nLookAt " + x +
+                      " 0 -5 " + x + " 0 0 0 1 0\nCamera \"perspective\"" + fov + "\n");
+  };
+  const auto folder = test::folder_with_scene(moving("0"));
+  EXPECT_EQ(test::render(folder, {"-o", "both.exr", "--layers", "all", "--stereo", "0.5"}).code, 0);
+  const LayeredImage both = read_exr(folder / "both.exr");
+  expect_view(both, {"left", "right"}, 0, rendered(folder, moving("-0.25")));
+  expect_view(both, {"left", "right"}, 1, rendered(folder, moving("0.25")));
+}
+
 TEST(Stereo, TheLibraryOpensBothViews) {
   const auto folder = test::folder_with_scene();
   EXPECT_EQ(test::render(folder, {"-o", "both.exr", "--stereo", "0.1"}).code, 0);

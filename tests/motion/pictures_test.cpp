@@ -153,7 +153,7 @@ TEST(MotionPictures, OfTheLightOfALampThatMoves) {
 
 /// The picture of a scene and the mean of pictures of it frozen at the middles of `times` parts of
 /// its exposure agree in their means and, with z of both pictures' stated errors, pixel by pixel.
-void expect_mean_of_frozen(const std::string& text, int samples, int times = 64) {
+void expect_mean_of_frozen(const std::string& text, int samples, int times = 32) {
   const Scene scene = scene_of_text(text);
   const Picture ours = picture_of(render_model(scene, samples).image);
   Picture theirs;
@@ -209,7 +209,7 @@ TEST(MotionPictures, OfLampsOfAllKindsAreTheMeanOfFrozenOnes) {
           "Shape \"box\" \"point3 p0\" [-0.2 0.8 -0.2] \"point3 p1\" [0.2 1.2 0.2]\n"
           "AttributeBegin\nTranslate -1 1 0\nScale 0.3 0.15 0.4\nShape \"sphere\"\nAttributeEnd\n"
           "AttributeBegin\nTranslate 1 1.5 0\nShape \"disk\" \"float radius\" 0.3\nAttributeEnd\n",
-      1024);
+      512);
 }
 
 // A light tree has boxes and cones of lights.
@@ -245,7 +245,7 @@ TEST(MotionPictures, OfGlassFogAndHolesAreTheMeanOfFrozenOnes) {
           "AttributeBegin\nTranslate 0.3 1 0.2\nActiveTransform StartTime\nTranslate -0.8 0 0\n"
           "ActiveTransform All\nMaterial \"diffuse\" \"rgb reflectance\" [0.7 0.2 0.2]\n"
           "Shape \"sphere\" \"float radius\" 0.8 \"float alpha\" 0.5\nAttributeEnd\n",
-      1024);
+      512);
 }
 
 TEST(MotionPictures, OfACameraThatTurnsAreTheMeanOfFrozenOnes) {
