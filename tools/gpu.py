@@ -29,7 +29,7 @@ from gpu_kit import pack, page, surroundings  # noqa: E402
 
 # Whole images: scene, size, and two numbers of samples. The difference of their times leaves out start, compilation and writing.
 IMAGES = [("walk", "512x512", 16, 528), ("capsules", "1280x720", 64, 1088), ("gallery", "960x540", 16, 528), ("cornell", "512x512", 16, 2064),
-          ("many-lights", "512x512", 16, 2064), ("smoke", "960x540", 8, 72)]
+          ("many-lights", "512x512", 16, 2064), ("smoke", "960x540", 8, 72), ("motion", "960x540", 16, 528)]
 BENCHES = [("capsules", 1000000), ("triangles", 1000000), ("shapes", 100000)]
 # Whole images to a noise.
 NOISES = [("gallery", "960x540", "3%"), ("capsules", "1280x720", "2%"), ("hair", "480x270", "5%"), ("reference/ignis-cbox-d6", "512x512", "2%")]
@@ -180,7 +180,8 @@ class Hour:
         """How true the noise is that films state (programs/noise_trial.cpp)."""
         def made():
             tried = self.tried(f"trial-{scene.stem}", 60 * self.options.trial_minutes + 120)
-            code, out, err = tried.run("caplet_noise_trial", scene, "--device", "0", "--minutes", self.options.trial_minutes, "--noise", 0.05, 0.01)
+            code, out, err = tried.run("caplet_noise_trial", scene, "--device", "0", "--minutes", self.options.trial_minutes, "--seeds",
+                                       self.options.trial_seeds, "--width", 64, "--height", 36, "--noise", 0.05, 0.01)
             return {"lines": [json.loads(line) for line in out.splitlines()], **({} if code == 0 else {"fails": tried.how(code, err)})}
         self.part("trial", scene.name, made)
 
@@ -275,11 +276,13 @@ def main(arguments):
     parser = argparse.ArgumentParser(prog="./run gpu", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--pack", type=pathlib.Path, metavar="FOLDER", help="make the folder that goes to the machine with the GPU")
     parser.add_argument("--more", type=pathlib.Path, nargs="*", default=[], help="scenes, with what they read, that go along")
+    parser.add_argument("--no-pictures", action="store_true", help="pack no pictures by PoCL, which take minutes")
     parser.add_argument("--minutes", type=float, default=40, help="most minutes of all (default %(default)s)")
     parser.add_argument("--out", type=pathlib.Path, default=pathlib.Path("gpu-results"), help="folder of the results (default %(default)s)")
     usual = [step for step in STEPS if step != "trial"]
     parser.add_argument("--steps", type=some_steps, default=usual, help=f"default: {','.join(usual)}; trial: how true the stated noise is")
     parser.add_argument("--trial-minutes", type=float, default=3, help="of trial, for each scene (default %(default)s)")
+    parser.add_argument("--trial-seeds", type=int, default=256, help="the most seeds of trial (default %(default)s)")
     parser.add_argument("--scenes", type=lambda text: text.split(","), default=[], help="parts of names of the pictures' scenes; default: all")
     parser.add_argument("--rays", type=int, default=1000000, help="of verify, beside the pictures (default %(default)s)")
     parser.add_argument("--launches", type=lambda text: text.split("/"), default=[], help="values of CAPLET_LAUNCH in place of the sweep's, with / between")
@@ -290,7 +293,7 @@ def main(arguments):
     parser.add_argument("--compiled", type=pathlib.Path, metavar="FILE", help="tar file of compiled kernels")
     options = parser.parse_args(arguments)
     if options.pack:
-        return pack.make(ROOT, options.pack.resolve(), options.more, options.workers)
+        return pack.make(ROOT, options.pack.resolve(), options.more, options.workers, not options.no_pictures)
     homes.BINARIES.update(pack.binaries(ROOT))
     hour = Hour(options)
     caches = hour.out / "work" / "kernels"

@@ -243,18 +243,22 @@ class SceneWriter {
       stream_.text << "MediumInterface \"\" " << quoted(names_.media[*medium], where) << "\n";
     Statement out(std::string("Camera \"") + projection_names.at(projection.index()) + "\"",
                   nullptr, where);
-    std::visit([&](const auto& of) { of.fields(of, OptionWriter{out}); }, projection);
+    std::visit([&](const auto& of) { of.fields(of, OptionWriter{out, stream_}); }, projection);
     if (frame_aspect_ratio) out.number(frame_aspect_ratio_field.name, *frame_aspect_ratio);
     if (screen_window) {
       const auto& w = *screen_window;
       out.numbers("float", "screenwindow", {w[0], w[1], w[2], w[3]});
     }
-    Camera::fields(camera, OptionWriter{out});
+    Camera::fields(camera, OptionWriter{out, stream_});
     if (lens_radius != 0 && is_orthographic(camera))
       out.boolean(Camera::parallel_lens_field.name, true);
     const FilmSettings& film = scene_.view.film;
     if (film.shutter_open != 0) out.number("shutteropen", film.shutter_open);
     if (const double close = closing_of(film); close != 1) out.number("shutterclose", close);
+    if (film.readout != 0) out.number(readout_field.name, film.readout);
+    if (film.readout_order != 0)
+      out.text(readout_order_field.name,
+               readout_orders[static_cast<std::size_t>(film.readout_order)]);
     if (scene_.automatic_camera) out.boolean("automatic", true);
     if (scene_.has_no_up) out.boolean("noup", true);
     if (scene_.framing.toward_viewer) out.vector("view", *scene_.framing.toward_viewer);
@@ -264,12 +268,12 @@ class SceneWriter {
   }
 
   void write_film(const FilmSettings& film) {
-    const auto& [width, height, crop, filename, iso, exposure_time, shutter_open,
-                 max_component_value, white_balance, space, backdrop, denoise, matte_levels,
-                 least_width] = film;
+    const auto& [width, height, crop, filename, iso, exposure_time, shutter_open, readout,
+                 readout_order, diagonal, max_component_value, white_balance, space, backdrop,
+                 denoise, matte_levels, least_width] = film;
     const SourceLocation where{here()};
     Statement out("Film \"rgb\"", nullptr, where);
-    FilmSettings::fields(film, OptionWriter{out});
+    FilmSettings::fields(film, OptionWriter{out, stream_});
     if (crop) {
       const auto& c = *crop;
       out.list("integer", "pixelbounds", c.size(),
@@ -291,6 +295,7 @@ class SceneWriter {
   /// Writes the fields of options.
   struct OptionWriter {
     Statement& to;
+    const Stream& stream;
     void number(const Field& field, double value) {
       if (std::isfinite(value)) to.number(field.name, value);
     }
@@ -301,6 +306,16 @@ class SceneWriter {
       to.text(field.name, names[static_cast<std::size_t>(value)]);
     }
     void field_of_view(double radians) { to.number(fov_field.name, degrees_of(radians)); }
+    void lens(const Field& field, const std::shared_ptr<const Lens>& of) {
+      if (of) to.file(field.name, of->file, "the camera's lens", stream);
+    }
+    void aperture(const Field& field, const std::shared_ptr<const ApertureMask>& of) {
+      if (!of) return;
+      if (std::ranges::find(aperture_names, of->name) != aperture_names.end())
+        to.text(field.name, of->name);
+      else
+        to.file(field.name, of->name, "the camera's aperture", stream);
+    }
     void seed(const Field& field, std::uint32_t value) {
       if (value != 0) to.whole(field.name, static_cast<std::int32_t>(value));
     }
@@ -309,7 +324,7 @@ class SceneWriter {
   void write_option(const char* directive, const char* type, const Options& options) {
     const SourceLocation where{here()};
     Statement out(std::string(directive) + " \"" + type + "\"", nullptr, where);
-    Options::fields(options, OptionWriter{out});
+    Options::fields(options, OptionWriter{out, stream_});
     out.write(stream_);
   }
 

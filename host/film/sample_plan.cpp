@@ -28,18 +28,9 @@ constexpr std::uint32_t least_step = 8;
 // another look at the film costs more than these samples (2 %).
 constexpr double aim_below = 0.99;
 
-/// Around is the sum over some pixels with an estimate of the variance of a sample of luminance,
-/// and of luminance.
-struct Around {
-  double variance = 0, luminance = 0, pixels = 0;
-  void add(const Around& other) {
-    variance += other.variance;
-    luminance += other.luminance;
-    pixels += other.pixels;
-  }
-};
+using OwnSum = SampledPixels::OwnSum;
 
-Around around(const Film& film, std::size_t pixel) {
+OwnSum own_of(const Film& film, std::size_t pixel) {
   std::array<double, 3> xyz{};
   if (!replicates_differ(film, pixel, xyz)) return {};
   return {xyz[1] * xyz[1] * sample_variance_factor(film, pixel),
@@ -53,18 +44,16 @@ struct RelativeVariance {
   bool seen = false;
 };
 
-std::vector<RelativeVariance> relative_variances(const Film& film) {
-  const Window& window = film.layout().window;
-  std::vector<Around> own(window.pixels());
-  tbb::parallel_for(std::size_t{0}, own.size(),
-                    [&](std::size_t pixel) { own[pixel] = around(film, pixel); });
-  Around all;
-  for (const Around& pixel : own) all.add(pixel);
+std::vector<RelativeVariance> relative_variances(const SampledPixels& pixels) {
+  const std::vector<OwnSum>& own = pixels.own();
+  OwnSum all;
+  for (const OwnSum& pixel : own) all.add(pixel);
   const double floor = all.pixels > 0 ? noise_floor * all.luminance / all.pixels : 0;
-  const std::vector<Around> others = sums_around(own, window.width, window.height);
+  const std::vector<OwnSum> others =
+      sums_around(own, pixels.window().width, pixels.window().height);
   std::vector<RelativeVariance> out(own.size());
   tbb::parallel_for(std::size_t{0}, own.size(), [&](std::size_t pixel) {
-    const Around& near = others[pixel];
+    const OwnSum& near = others[pixel];
     const double mean = near.pixels > 0 ? near.luminance / near.pixels : 0,
                  luminance = std::max(0.0, mean) + floor;
     if (!(luminance > 0)) return;
@@ -79,12 +68,12 @@ std::vector<RelativeVariance> relative_variances(const Film& film) {
 /// variance.
 class Wanted {
  public:
-  Wanted(const Film& film, const NoiseTarget& target)
-      : film_(film), target_(target), variances_(relative_variances(film)) {
+  Wanted(const SampledPixels& pixels, const NoiseTarget& target)
+      : pixels_(pixels), target_(target), variances_(relative_variances(pixels)) {
     double own = 0, squares = 0, seen = 0;
     for (std::size_t pixel = 0; pixel < variances_.size(); ++pixel) {
       if (!variances_[pixel].seen) continue;
-      const double variance = variances_[pixel].own / film_.samples(pixel);
+      const double variance = variances_[pixel].own / pixels_.samples(pixel);
       own += variance;
       squares += variance * variance;
       ++seen;
@@ -122,9 +111,9 @@ class Wanted {
     const auto add = [&](const tbb::blocked_range<std::size_t>& pixels, double sum) {
       for (std::size_t pixel = pixels.begin(); pixel != pixels.end(); ++pixel)
         if (variances_[pixel].others > 0)
-          sum +=
-              variances_[pixel].others /
-              std::max<double>(film_.samples(pixel), per_root > 0 ? samples(pixel, per_root) : 1.0);
+          sum += variances_[pixel].others /
+                 std::max<double>(pixels_.samples(pixel),
+                                  per_root > 0 ? samples(pixel, per_root) : 1.0);
       return sum;
     };
     // Deterministic: the same sum for any number of threads.
@@ -132,38 +121,47 @@ class Wanted {
         tbb::blocked_range<std::size_t>(0, variances_.size(), 4096), 0.0, add, std::plus<>()));
   }
 
-  const Film& film_;
+  const SampledPixels& pixels_;
   const NoiseTarget& target_;
   const std::vector<RelativeVariance> variances_;
   double noise_ = 0, per_root_ = 0;
 };
 
-/// Returns `samples` rounded up to 8, 12, 16, 24, 32, ...: few counts make large batches.
+/// Returns `samples` rounded up to 8, 16, 24, 32, 48, 64, 96, ...
 std::uint32_t step_of(double samples) {
   const auto whole = static_cast<std::uint32_t>(std::ceil(std::clamp(samples, 1.0, 0x1p30)));
   const std::uint32_t power = std::max(least_step, std::bit_ceil(whole)), less = power / 4 * 3;
-  return less >= whole && less >= least_step ? less : power;
+  return less >= whole && less % least_step == 0 ? less : power;
 }
 
-/// Calls look_at(number, x, y) for the pixels of a window, tile by tile.
+/// Returns how many of a pixel's `count` samples a record of it has: 8, 32, 128, ..., of which it
+/// then has at most 6. Few kinds of records make few batches, which are large.
+std::uint32_t record_of(std::uint32_t count) {
+  std::uint32_t each = least_step;
+  while (count / each > 6) each *= 4;
+  return count % each == 0 ? each : count;
+}
+
+/// Calls look_at(number, x, y) for the pixels of a window's rows [band, band + tile), tile by tile.
 template <class LookAt>
-void for_tiles(const Window& window, const LookAt& look_at) {
-  for (int band = 0; band < window.height; band += tile)
-    for (int column = 0; column < window.width; column += tile)
-      for (int y = band; y < std::min(band + tile, window.height); ++y)
-        for (int x = column; x < std::min(column + tile, window.width); ++x)
-          look_at(static_cast<std::size_t>(y) * static_cast<std::size_t>(window.width) +
-                      static_cast<std::size_t>(x),
-                  narrow<uint>(window.x + x), narrow<uint>(window.y + y));
+void for_tiles(const Window& window, int band, const LookAt& look_at) {
+  for (int column = 0; column < window.width; column += tile)
+    for (int y = band; y < std::min(band + tile, window.height); ++y)
+      for (int x = column; x < std::min(column + tile, window.width); ++x)
+        look_at(static_cast<std::size_t>(y) * static_cast<std::size_t>(window.width) +
+                    static_cast<std::size_t>(x),
+                narrow<uint>(window.x + x), narrow<uint>(window.y + y));
 }
 
 }  // namespace
 
 PixelSamples next_samples(const Film& film, std::uint32_t begin, std::uint32_t count) {
   PixelSamples out{count, {}};
-  for_tiles(film.layout().window, [&](std::size_t pixel, uint x, uint y) {
-    out.pixels.push_back({x, y, begin + film.samples(pixel), 0});
-  });
+  const Window& window = film.layout().window;
+  for (int band = 0; band < window.height; band += tile)
+    for_tiles(window, band, [&](std::size_t pixel, uint x, uint y) {
+      out.pixels.push_back({x, y, begin + film.samples(pixel), 0});
+    });
   return out;
 }
 
@@ -173,10 +171,11 @@ std::vector<PixelSamples> SamplePlan::take(double paths_wanted) {
     PixelSamples& last = samples.back();
     const std::size_t pixels = static_cast<std::size_t>(
         std::clamp(paths_wanted / last.count, 1.0, static_cast<double>(last.pixels.size())));
-    const auto first = last.pixels.end() - static_cast<std::ptrdiff_t>(pixels);
+    auto first = last.pixels.end() - static_cast<std::ptrdiff_t>(pixels);
+    while (first != last.pixels.begin() && is_same_pixel(*(first - 1), *first)) --first;
+    const double taken = static_cast<double>(last.pixels.end() - first) * last.count;
     out.push_back({last.count, {first, last.pixels.end()}});
     last.pixels.erase(first, last.pixels.end());
-    const double taken = static_cast<double>(pixels) * last.count;
     paths -= taken;
     paths_left -= taken;
     paths_wanted -= taken;
@@ -185,29 +184,78 @@ std::vector<PixelSamples> SamplePlan::take(double paths_wanted) {
   return out;
 }
 
+SampledPixels::SampledPixels(const FilmLayout& layout)
+    : window_(layout.window), samples_(layout.window.pixels()) {
+  if (layout.layers.has(Layer::variance)) own_.resize(samples_.size());
+}
+
+void SampledPixels::look_at(const Film& rows) {
+  const Window& window = rows.layout().window;
+  CHECK_EQ_(window.x, window_.x);
+  CHECK_EQ_(window.width, window_.width);
+  CHECK_EQ_(window_.holds(window), true);
+  const std::size_t first =
+      static_cast<std::size_t>(window.y - window_.y) * static_cast<std::size_t>(window_.width);
+  tbb::parallel_for(std::size_t{0}, window.pixels(), [&](std::size_t pixel) {
+    samples_[first + pixel] = rows.samples(pixel);
+    if (!own_.empty()) own_[first + pixel] = own_of(rows, pixel);
+  });
+}
+
+double SampledPixels::mean_samples() const {
+  double sum = 0;
+  for (const std::uint32_t samples : samples_) sum += samples;
+  return samples_.empty() ? 0 : sum / static_cast<double>(samples_.size());
+}
+
 SamplePlan plan_samples(const Film& film, std::uint32_t begin, const NoiseTarget& target) {
+  SampledPixels pixels(film.layout());
+  pixels.look_at(film);
+  return plan_samples(pixels, begin, target);
+}
+
+SamplePlan plan_samples(const SampledPixels& pixels, std::uint32_t begin,
+                        const NoiseTarget& target) {
   CHECK_LE_(target.least, target.most);
-  const Window& window = film.layout().window;
+  const Window& window = pixels.window();
   std::optional<Wanted> wanted;
-  if (target.noise > 0) wanted.emplace(film, target);
+  if (target.noise > 0) wanted.emplace(pixels, target);
+  // Bands of tiles are looked at side by side, and joined in their order.
+  struct Band {
+    std::map<std::uint32_t, std::vector<PixelRecord>> by_count;
+    double paths = 0, paths_left = 0;
+  };
+  std::vector<Band> bands(static_cast<std::size_t>((window.height + tile - 1) / tile));
+  tbb::parallel_for(std::size_t{0}, bands.size(), [&](std::size_t number) {
+    Band& band = bands[number];
+    for_tiles(window, static_cast<int>(number) * tile, [&](std::size_t pixel, uint x, uint y) {
+      const std::uint32_t has = pixels.samples(pixel);
+      const double more = (wanted ? wanted->samples(pixel) : target.most) - has;
+      if (more <= 0) return;
+      std::uint32_t count = target.most - has;
+      if (has < target.least)
+        count = target.least - has;
+      else if (wanted)
+        count = std::min({count, step_of(more), step_of(has)});
+      const std::uint32_t each = record_of(count);
+      for (std::uint32_t done = 0; done < count; done += each)
+        band.by_count[each].push_back({x, y, begin + has + done, 0});
+      band.paths += count;
+      band.paths_left += std::max<double>(more, count);
+    });
+  });
   SamplePlan plan;
   plan.noise = wanted ? wanted->noise() : 0;
   std::map<std::uint32_t, std::vector<PixelRecord>> by_count;
-  const auto look_at = [&](std::size_t pixel, uint x, uint y) {
-    const std::uint32_t has = film.samples(pixel);
-    const double more = (wanted ? wanted->samples(pixel) : target.most) - has;
-    if (more <= 0) return;
-    std::uint32_t count = target.most - has;
-    if (has < target.least)
-      count = target.least - has;
-    else if (wanted)
-      count = std::min({count, step_of(more), step_of(has)});
-    by_count[count].push_back({x, y, begin + has, 0});
-    plan.paths += count;
-    plan.paths_left += std::max<double>(more, count);
-  };
-  for_tiles(window, look_at);
-  for (auto& [count, pixels] : by_count) plan.samples.push_back({count, std::move(pixels)});
+  for (const Band& band : bands) {
+    plan.paths += band.paths;
+    plan.paths_left += band.paths_left;
+    for (const auto& [count, some] : band.by_count) {
+      std::vector<PixelRecord>& all = by_count[count];
+      all.insert(all.end(), some.begin(), some.end());
+    }
+  }
+  for (auto& [count, some] : by_count) plan.samples.push_back({count, std::move(some)});
   return plan;
 }
 

@@ -435,6 +435,8 @@ void Scene::set_camera(const std::string& type, const Parameters& parameters,
   data.model.view.camera = one.view.camera;
   data.model.view.film.exposure_time = one.view.film.exposure_time;
   data.model.view.film.shutter_open = one.view.film.shutter_open;
+  data.model.view.film.readout = one.view.film.readout;
+  data.model.view.film.readout_order = one.view.film.readout_order;
   data.model.automatic_camera = one.automatic_camera;
   data.model.has_no_up = one.has_no_up;
   data.model.framing = one.framing;

@@ -8,6 +8,7 @@
 #include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 #include <limits>
+#include <vector>
 
 #include "base/check.h"
 #include "lower/detail/floats.h"
@@ -31,7 +32,7 @@ void lower_camera(const Scene& scene, FlatView& out) {
 
   CameraRecord& record = out.camera;
   record = CameraRecord{};
-  out.camera_motion.clear();
+  out.camera_table.clear();
   const std::optional<MotionPath> motion =
       MotionPath::of(camera.motion, film, glm::dvec3(0), glm::dmat4(1), {scene.source});
   glm::dmat4 stands = camera.world_from_camera;
@@ -39,7 +40,7 @@ void lower_camera(const Scene& scene, FlatView& out) {
   write_matrix(record.world_from_camera, stands);
   if (motion) {
     record.motion_segments = motion->segments();
-    motion->append(false, out.camera_motion);
+    motion->append(false, out.camera_table);
   }
   const std::array<double, 4> plane = image_plane_of(camera, film);
   record.kind = narrow<uint>(camera.projection.index());  // cameras.def lists both
@@ -57,8 +58,22 @@ void lower_camera(const Scene& scene, FlatView& out) {
         if constexpr (requires { of.distortion(); })
           std::ranges::transform(of.distortion(), record.distortion,
                                  [](double value) { return static_cast<float>(value); });
+        if constexpr (requires { of.table(0.0); }) {
+          // Kernels load four floats at once.
+          out.camera_table.resize((out.camera_table.size() + 3) / 4 * 4);
+          record.lens_begin = narrow<uint>(out.camera_table.size());
+          const std::vector<float> table = of.table(film.diagonal);
+          out.camera_table.insert(out.camera_table.end(), table.begin(), table.end());
+        }
       },
       camera.projection);
+  const double late = film.readout / film.open_time();  // the last row, as a share of all
+  const bool is_across = film.readout_order >= 2, is_back = film.readout_order % 2 == 1;
+  const float by_pixel =
+      static_cast<float>((is_back ? -late : late) / (is_across ? film.width : film.height));
+  record.exposure = static_cast<float>(1 - late);
+  record.exposure_begin = is_back ? static_cast<float>(late) : 0;
+  (is_across ? record.exposure_by_x : record.exposure_by_y) = by_pixel;
   record.medium = camera.medium.value_or(CAPLET_NONE);
   const bool is_parallel =
       std::visit([](const auto& of) { return of.is_parallel; }, camera.projection);

@@ -210,7 +210,7 @@ struct LiveScene::State {
 
   bool follow(const View& edit, const View& before) {
     const bool same_shutter = edit.film.shutter_open == before.film.shutter_open &&
-                              edit.film.exposure_time == before.film.exposure_time;
+                              edit.film.open_time() == before.film.open_time();
     return (same_shutter || !instances_move()) && edit.film.space == before.film.space &&
            edit.film.backdrop.has_value() == before.film.backdrop.has_value();
   }

@@ -65,7 +65,7 @@ std::optional<MotionPath> MotionPath::of(const TransformKeys& keys, const FilmSe
                                          const SourceLocation& where) {
   if (keys.empty()) return std::nullopt;
   const AnimatedTransform animated(keys, pivot);
-  const double open = film.shutter_open, close = open + film.exposure_time;
+  const double open = film.shutter_open, close = open + film.open_time();
   const auto at = [&](double time) { return animated.at(open + time * (close - open)) * right; };
   MotionPath out;
   out.start_ = at(0);

@@ -70,7 +70,7 @@ class Course {
       const double seconds = seconds_since(begin);
       if (seconds < shortest_ / 4) samples *= 2;
       if (seconds > shortest_ / 2) samples = std::max<std::uint32_t>(1, samples / 2);
-      if (done < total) look({});
+      if (done < total) look();
     }
     return done;
   }
@@ -79,17 +79,19 @@ class Course {
   Film to_noise(const NoiseTarget& target, NoiseReached& reached) {
     const bool begun =
         session_.samples() >= target.least || to_samples(target.least) == target.least;
+    SampledPixels sampled(session_.layout());
+    const auto pixels = static_cast<double>(sampled.size());
     while (true) {
-      Film film = session_.film();
-      if (film.parts().size() > 1)
+      const std::vector<FilmPart> parts = session_.parts();
+      if (parts.size() > 1)
         throw InputError("the film has gaps between its samples: it has no next ones");
+      session_.look_at_film([&](const Film& rows) { sampled.look_at(rows); });
       SamplePlan plan =
-          plan_samples(film, film.parts().empty() ? 0 : film.parts().front().sample_begin, target);
-      const auto pixels = static_cast<double>(film.layout().window.pixels());
-      reached = {plan.noise, film.mean_samples()};
+          plan_samples(sampled, parts.empty() ? 0 : parts.front().sample_begin, target);
+      reached = {plan.noise, sampled.mean_samples()};
       const double done = pixels * reached.mean_samples, all = done + plan.paths_left;
-      if (plan.empty() || !begun || stopped()) return film;
-      look(film);
+      if (plan.empty() || !begun || stopped()) return session_.film();
+      look();
       double here = 0;  // of the plan's paths
       while (!plan.empty()) {
         const Clock::time_point begin = Clock::now();
@@ -111,7 +113,7 @@ class Course {
         here += paths;
         speed_ = paths / std::max(1e-3, seconds_since(begin));
         if (!complete || stopped()) return session_.film();
-        if (!plan.empty()) look({});
+        if (!plan.empty()) look();
       }
     }
   }
@@ -134,13 +136,13 @@ class Course {
     speed_ = now.samples_per_second;
     if (cancelled()) session_.cancel();
   }
-  /// Calls the looks whose time has come, with the film if it is at hand.
-  void look(const std::optional<Film>& at_hand) {
+  /// Calls the looks whose time has come, with the film.
+  void look() {
     std::optional<Film> film;
     for (std::size_t i = 0; i < looked_.size(); ++i) {
       if (seconds_since(looked_[i]) < options_.looks[i].seconds) continue;
-      if (!at_hand && !film) film = session_.film();
-      options_.looks[i].show(at_hand ? *at_hand : *film);
+      if (!film) film = session_.film();
+      options_.looks[i].show(*film);
       looked_[i] = Clock::now();
     }
   }

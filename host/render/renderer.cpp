@@ -54,10 +54,12 @@ double extent_of(const WorldRecord& world, const FlatView& view) {
   for (const int k : {3, 7, 11}) at += std::abs(double{view.camera.world_from_camera[k]});
   // The coefficients of a cubic are together at least its values.
   const std::size_t cubics = 2 * std::size_t{view.camera.motion_segments};
-  for (std::size_t i = cubics; i < view.camera_motion.size(); i += CAPLET_MOTION_FLOATS) {
+  for (std::size_t i = cubics;
+       i < cubics + CAPLET_MOTION_FLOATS * std::size_t{view.camera.motion_segments};
+       i += CAPLET_MOTION_FLOATS) {
     double there = 0;
     for (std::size_t k = 3; k < CAPLET_MOTION_FLOATS; k += 4)
-      there += std::abs(double{view.camera_motion[i + k]});
+      there += std::abs(double{view.camera_table[i + k]});
     at = std::max(at, there);
   }
   return at + std::abs(double{world.center_x}) + std::abs(double{world.center_y}) +

@@ -61,8 +61,8 @@ class Renderer {
   void pass(const Window& window, std::uint32_t sample_begin, std::uint32_t sample_count,
             const std::function<void(std::size_t)>& batch_done = {});
 
-  /// Adds the next `sample_count` samples of each of these pixels, which lie within the film's
-  /// window, each at most once. The film's parts do not tell of them. Throws RunError.
+  /// Adds the next `sample_count` samples of each of these records (PixelSamples), which lie within
+  /// the film's window. The film's parts do not tell of them. Throws RunError.
   void pass(std::span<const PixelRecord> pixels, std::uint32_t sample_count,
             const std::function<void(std::size_t)>& batch_done = {});
 

@@ -103,6 +103,8 @@ namespace {
 struct PassGivenUp {};
 }  // namespace
 
+constexpr std::size_t look_bytes = 8 << 20;
+
 /// Run is one task of all workers; workers that hang keep it alive.
 struct Session::Run {
   Run(Workers of, WorkQueue of_picture)
@@ -134,7 +136,6 @@ struct Session::Run {
   std::exception_ptr fatal;  // of the caller's function
   std::exception_ptr last_failure;
   Workers gone;
-  std::vector<std::optional<Film>> films;
 };
 
 Session::Session(const FlatScene& scene, const FlatView& view, const std::vector<Device>& devices,
@@ -401,10 +402,8 @@ std::shared_ptr<Session::Run> Session::run(
   return run;
 }
 
-/// Returns the sum of the workers' films; nothing when one of them could not be read.
-std::optional<Film> Session::gather() {
+bool Session::read_films(const std::function<void(std::size_t, const DeviceFilm&)>& read) {
   const auto run = std::make_shared<Run>(workers_, WorkQueue(layout().window, next_, 0, {}, {}));
-  run->films.resize(workers_.size());
   const auto lost = [run, patience = options_.patience](std::size_t i,
                                                         const std::exception_ptr& failure) {
     run->gone.push_back(run->workers[i]);
@@ -415,18 +414,24 @@ std::optional<Film> Session::gather() {
   const auto pool = std::make_shared<WorkerPool>(
       workers_.size(), WorkerPool::Calls{[](std::size_t) { return 0; }, lost});
   const std::weak_ptr<WorkerPool> weak = pool;
-  pool->run(options_.patience, [run, weak](std::size_t i, WorkerPool::Lock& lock) {
-    Film film;
-    if (weak.lock()->attempt(i, lock, [&] { film = run->workers[i]->renderer.film().read(); }))
-      run->films[i] = std::move(film);
+  pool->run(options_.patience, [run, weak, read](std::size_t i, WorkerPool::Lock& lock) {
+    weak.lock()->attempt(i, lock, [&] { read(i, run->workers[i]->renderer.film()); });
   });
   const WorkerPool::Lock lock(pool->mutex());
   for (const auto& worker : run->gone)
     again_.insert(again_.end(), worker->had.begin(), worker->had.end());
   part_with(run->gone, run->last_failure);
-  if (!run->gone.empty()) return {};
-  Film out = std::move(*run->films.front());
-  for (std::size_t i = 1; i < run->films.size(); ++i) out.add(*run->films[i]);
+  return run->gone.empty();
+}
+
+/// Returns the sum of the workers' films; nothing when one of them could not be read.
+std::optional<Film> Session::gather() {
+  // A device that hangs and answers later still writes here.
+  const auto films = std::make_shared<std::vector<std::optional<Film>>>(workers_.size());
+  if (!read_films([films](std::size_t i, const DeviceFilm& film) { (*films)[i] = film.read(); }))
+    return {};
+  Film out = std::move(*films->front());
+  for (std::size_t i = 1; i < films->size(); ++i) out.add(*(*films)[i]);
   // Whatever worker rendered what, it is all samples of the window, though its parts may not be
   // such that join.
   if (out.parts().size() < 2 && !has_lists_) return out;
@@ -443,6 +448,26 @@ Film Session::film() {
   }
   if (before_) film->add(*before_);
   return std::move(*film);
+}
+
+void Session::look_at_film(const std::function<void(const Film& rows)>& look) {
+  if (workers_.size() > 1 || before_) return look(film());
+  const FilmLayout of = layout();
+  const std::size_t row_bytes =
+      of.words_per_pixel() * sizeof(std::uint64_t) * static_cast<std::size_t>(of.window.width);
+  const int rows = static_cast<int>(
+      std::clamp<std::size_t>(look_bytes / std::max<std::size_t>(1, row_bytes), 1, 1 << 20));
+  const auto read = [&](std::size_t, const DeviceFilm& film) {
+    for (int row = 0; row < of.window.height; row += rows)
+      look(film.read(row, std::min(rows, of.window.height - row)));
+  };
+  while (!read_films(read)) run({}, {}, {});
+}
+
+std::vector<FilmPart> Session::parts() const {
+  std::vector<FilmPart> out = before_ ? before_->parts() : std::vector<FilmPart>();
+  if (next_ > first_) add_part(out, {layout().window, first_, next_ - first_});
+  return out;
 }
 
 std::optional<DeviceFilm> Session::film_on_device() const {

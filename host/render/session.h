@@ -101,6 +101,12 @@ class Session {
   /// Returns the sum of all films. A device that fails now is left out as well, and its work is
   /// rendered again. Throws RunError.
   Film film();
+  /// Calls `look` with all of its rows, some at a time where it lies on one device: that takes less
+  /// time and memory. Where a device fails, it is called again. Throws RunError.
+  void look_at_film(const std::function<void(const Film& rows)>& look);
+  /// Returns the samples that are in it; where pixels have different numbers, up to the last of
+  /// any.
+  std::vector<FilmPart> parts() const;
   /// Returns the same if it lies on one device as a whole: nothing when there are others, or
   /// samples that it was resumed with.
   std::optional<DeviceFilm> film_on_device() const;
@@ -141,6 +147,8 @@ class Session {
   };
   std::shared_ptr<Run> run(Asked asked, const std::function<void(const SessionProgress&)>& progress,
                            std::optional<double> time_limit);
+  /// Calls `read` with each worker's number and film. Returns false when one of them failed.
+  bool read_films(const std::function<void(std::size_t, const DeviceFilm&)>& read);
   std::optional<Film> gather();
 
   SessionOptions options_;

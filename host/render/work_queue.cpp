@@ -69,6 +69,9 @@ Work cut_work(const Work& from, double paths, std::uint32_t most_samples, std::v
     const double pixels = std::max(1.0, paths / from.samples->count);
     if (pixels >= static_cast<double>(from.count)) return out;
     out.count = static_cast<std::size_t>(pixels);
+    const auto of = std::span(from.samples->pixels).subspan(from.first, from.count);
+    while (out.count < from.count && is_same_pixel(of[out.count - 1], of[out.count])) ++out.count;
+    if (out.count == from.count) return out;
     Work other = from;
     other.first += out.count;
     other.count -= out.count;

@@ -26,8 +26,8 @@ std::array<double, 4> screen_window_of(const Camera& camera, const FilmSettings&
 std::array<double, 4> image_plane_of(const Camera& camera, const FilmSettings& film) {
   return std::visit(
       [&](const auto& of) -> std::array<double, 4> {
-        if constexpr (requires { of.plane(glm::dvec2()); })
-          return of.plane({film.width, film.height});
+        if constexpr (requires { of.plane(glm::dvec2(), 0.0); })
+          return of.plane({film.width, film.height}, film.diagonal);
         if (!of.has_window) return {0, 1, 1, 0};
         std::array<double, 4> window = screen_window_of(camera, film);
         for (double& side : window) side *= of.plane_scale();

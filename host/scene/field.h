@@ -99,6 +99,10 @@ struct IgnoresFields {
   template <class Value>
   void board(const Value&) const {}
   void field_of_view(const double&) const {}
+  template <class Value>
+  void lens(const Field&, const Value&) const {}
+  template <class Value>
+  void aperture(const Field&, const Value&) const {}
   template <class... Values>
   void place(const Values&...) const {}
   void only(bool) const {}

@@ -51,6 +51,14 @@ struct PixelFilter {
   }
 };
 
+/// Lists where rolling shutters go: the rows or columns that begin later lie there.
+inline constexpr std::array readout_orders = {"down", "up", "right", "left"};
+inline constexpr Field readout_field = {
+    "readout", "from the first row's exposure to the last one's: a rolling shutter", 0, no_limit,
+    "seconds"};
+inline constexpr Field readout_order_field = {"readoutorder",
+                                              "where the rows, or columns, lie that come later"};
+
 struct FilmSettings {
   int width = 1280, height = 720;
   std::optional<std::array<int, 4>> crop;  // x0, x1, y0, y1 in pixels, half open
@@ -59,6 +67,9 @@ struct FilmSettings {
          exposure_time =
              1;  // film scale = exposure_time * iso / 100 (sensor-free rgb: 1 by default)
   double shutter_open = 0;         // seconds; it closes exposure_time later
+  double readout = 0;              // seconds between the first row's exposure and the last one's
+  int readout_order = 0;           // of readout_orders
+  double diagonal = 35;            // mm; realistic cameras alone know it
   double max_component_value = 0;  // largest exposed XYZ value of a sample; 0: unlimited
   double white_balance =
       0;  // kelvin: this daylight maps to the colour space's white; 0: no balancing
@@ -69,11 +80,17 @@ struct FilmSettings {
   double least_width = 0;  // pixels: capsules and spheres are drawn at least this thick
                            // (present/least_width.h); 0: no minimum
 
+  /// Returns for how long, in seconds, the shutter is open for some row.
+  double open_time() const { return exposure_time + readout; }
+
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {
     visit.integer({"xresolution", "width", 1, most_image_pixels, "pixels"}, self.width);
     visit.integer({"yresolution", "height", 1, most_image_pixels, "pixels"}, self.height);
     visit.number({"iso", "sensitivity; 100 changes nothing", 0, no_limit, "", true}, self.iso);
+    visit.number(
+        {"diagonal", "of the film, of which realistic cameras alone know", 0, no_limit, "mm", true},
+        self.diagonal);
     visit.number({"maxcomponentvalue", "the most that a sample adds; 0: any", 0},
                  self.max_component_value);
     visit.number({"whitebalance", "this daylight becomes white: 1000 to 25000, or 0 for none", 0,

@@ -611,6 +611,13 @@ class Validator {
     motion(c.motion, file);
     if (said_.empty() && !moderate(c.world_from_camera)) error(file, too_large);
     std::visit([&](const auto& of) { of.fields(of, CameraFields(*this, file)); }, c.projection);
+    std::visit(
+        [&](const auto& of) {
+          if constexpr (requires { of.problem(); })
+            if (const std::string problem = of.problem(); !problem.empty())
+              error(file, "the camera: " + problem);
+        },
+        c.projection);
     if (!(c.lens_radius >= 0 && std::isfinite(c.lens_radius)))
       error(file, "the camera's lens radius must be from 0 up");
     if (!(c.focal_distance > 0 && std::isfinite(c.focal_distance)))
@@ -624,6 +631,8 @@ class Validator {
 
   void film(const SourceLocation& file) {
     const FilmSettings& f = scene_.view.film;
+    if (!(f.readout >= 0 && std::isfinite(f.readout)))
+      error(file, "the readout of the shutter must be finite and from 0 up");
     if (f.width <= 0 || f.height <= 0)
       error(file, "the image size must be positive");
     else if (std::int64_t{f.width} * f.height > most_image_pixels)

@@ -24,6 +24,7 @@ constexpr std::array window_rows = {Row{frame_aspect_ratio_field, "float"},
                                          "x min, x max, y min, y max of what is seen; else the "
                                          "shorter side is -1 to 1"},
                                         "float"}};
+constexpr Row readout_row = {readout_field, "float", "0"};
 constexpr std::array camera_rows = {
     Row{{"shutteropen", "start of the exposure", -no_limit, no_limit, "seconds"}, "float", "0"},
     Row{{"shutterclose", "end of the exposure, whose length is a factor of the picture", -no_limit,
@@ -47,9 +48,7 @@ constexpr std::array film_rows = {
     Row{{"background", "\"transparent\", \"color\" or \"image\""}, "string"},
     Row{{"backgroundcolor", "linear sRGB, as displayed", 0, 1}, "float"},
     Row{{"backgroundfile", "an image"}, "string"}};
-constexpr std::array film_ignored = {
-    Row{{"diagonal", "of the sensor", 0, no_limit, "mm", true}, "float", "35"},
-    Row{{"savefp16", "16-bit floats"}, "bool", "true"}};
+constexpr std::array film_ignored = {Row{{"savefp16", "16-bit floats"}, "bool", "true"}};
 constexpr std::array gbuffer_ignored = {
     Row{{"coordinatesystem", "of the layers"}, "string", "camera"}};
 constexpr std::array spectral_ignored = {Row{{"nbuckets", "of the spectrum"}, "integer"},
@@ -81,6 +80,8 @@ void add_camera(const std::string& type, std::vector<Parameter>& out) {
     out[i].has_effect = i < windows ? has_screen_window(camera) : has_image_plane(camera);
   if (type == "orthographic") all.flag(Camera::parallel_lens_field, false);
   add_rows(camera_rows, out);
+  add_rows(std::array{readout_row}, out);
+  all.choice(readout_order_field, 0, readout_orders);
 }
 
 void add_film(const std::string& type, std::vector<Parameter>& out) {

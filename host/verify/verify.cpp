@@ -120,7 +120,7 @@ struct Work {
 
 Scene seen_at(const Scene& scene, float time) {
   const FilmSettings& film = scene.view.film;
-  return frozen_at(scene, film.shutter_open + double{time} * film.exposure_time);
+  return frozen_at(scene, film.shutter_open + double{time} * film.open_time());
 }
 
 SceneCheck::SceneCheck(const Scene& scene, const std::vector<Device>& devices, const Scene* moving,

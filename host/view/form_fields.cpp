@@ -274,6 +274,12 @@ class OptionFields {
     value = kind(field.name, value, names);
   }
   void field_of_view(double& radians) { angle(to_, fov_field, radians); }
+  void lens(const Field& field, const std::shared_ptr<const Lens>& of) {
+    to_.file(field.name, of ? of->file : "");
+  }
+  void aperture(const Field& field, const std::shared_ptr<const ApertureMask>& of) {
+    to_.file(field.name, of ? of->name : "");
+  }
   template <class Kind, class Names>
   Kind kind(const char* name, Kind now, const Names& names) {
     int number = static_cast<int>(now);
@@ -545,6 +551,8 @@ void visit_form(FormFields& fields, View& view, FormSubject::Kind of) {
       film.crop.reset();  // the crop was part of the old picture
     fields.number("shutter opens", film.shutter_open, -infinity, infinity);
     fields.number("exposure time", film.exposure_time, 0, infinity);
+    fields.number("readout", film.readout, 0, infinity);
+    film.readout_order = options.kind("readout order", film.readout_order, readout_orders);
     film.space = options.kind("colorspace", film.space, color_space_names);
   } else if (of == FormSubject::Kind::filter) {
     const auto kind = options.kind(kind_field, view.filter.kind, filter_names);

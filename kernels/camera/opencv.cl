@@ -66,14 +66,18 @@ static inline float2 opencv_seen(__global const CameraRecord* camera, float2 ras
   return opencv_undistorted(camera, (float2)(place.x, -place.y));
 }
 
-static inline void opencv_ray(__global const CameraRecord* camera, float2 raster, float2 u_lens,
-                              float3* origin, float3* direction) {
-  (void)u_lens, (void)origin;
+static inline float opencv_ray(__global const CameraRecord* camera,
+                               __global const float* camera_table, float2 raster, float2 u_lens,
+                               float3* origin, float3* direction) {
+  (void)camera_table, (void)u_lens, (void)origin;
   const float2 seen = opencv_seen(camera, raster);
   *direction = (float3)(seen.x, -seen.y, 1.0f);
+  return 1.0f;
 }
 
-static inline float2 opencv_spread(__global const CameraRecord* camera, float2 raster) {
+static inline float2 opencv_spread(__global const CameraRecord* camera,
+                                   __global const float* camera_table, float2 raster) {
+  (void)camera_table;
   const float2 seen = opencv_seen(camera, raster);
   const OpencvDistorted of = opencv_distorted(camera, seen);
   return (float2)(0.0f, plane_spread(camera) /

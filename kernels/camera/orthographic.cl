@@ -7,13 +7,18 @@
 
 #include "camera/camera_types.cl"
 
-static inline void orthographic_ray(__global const CameraRecord* camera, float2 raster,
-                                    float2 u_lens, float3* origin, float3* direction) {
+static inline float orthographic_ray(__global const CameraRecord* camera,
+                                     __global const float* camera_table, float2 raster,
+                                     float2 u_lens, float3* origin, float3* direction) {
+  (void)camera_table;
   *origin = (float3)(plane_place(camera, raster), 0.0f);
   through_lens(camera, u_lens, origin, direction);
+  return 1.0f;
 }
 
-static inline float2 orthographic_spread(__global const CameraRecord* camera, float2 raster) {
+static inline float2 orthographic_spread(__global const CameraRecord* camera,
+                                         __global const float* camera_table, float2 raster) {
+  (void)camera_table;
   return (float2)(plane_spread(camera), 0.0f);
 }
 

@@ -7,13 +7,18 @@
 
 #include "camera/camera_types.cl"
 
-static inline void perspective_ray(__global const CameraRecord* camera, float2 raster,
-                                   float2 u_lens, float3* origin, float3* direction) {
+static inline float perspective_ray(__global const CameraRecord* camera,
+                                    __global const float* camera_table, float2 raster,
+                                    float2 u_lens, float3* origin, float3* direction) {
+  (void)camera_table;
   *direction = (float3)(plane_place(camera, raster), 1.0f);
   through_lens(camera, u_lens, origin, direction);
+  return 1.0f;
 }
 
-static inline float2 perspective_spread(__global const CameraRecord* camera, float2 raster) {
+static inline float2 perspective_spread(__global const CameraRecord* camera,
+                                        __global const float* camera_table, float2 raster) {
+  (void)camera_table;
   return (float2)(0.0f, plane_spread(camera) / length((float3)(plane_place(camera, raster), 1.0f)));
 }
 

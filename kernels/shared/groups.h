@@ -97,7 +97,8 @@
   BUFFER(camera, CameraRecord, ONE)                                                                               \
   /* an axis after the other: positions (n + 1), cdf of |f| (n + 1), values (n + 1), integral of |f| over that of f */ \
   BUFFER(filter_table, float, IN)                                                                                \
-  BUFFER(camera_motion, float, IN) /* world_from_camera (math/motion.cl) */                                       \
+  /* the motion of world_from_camera (math/motion.cl), then the lens (camera/realistic.cl) */                     \
+  BUFFER(camera_table, float, IN)                                                                                \
   GROUP_END(Camera)
 
 // --- Paths under way ---

@@ -26,8 +26,27 @@ static inline float3 sample_xyz(const Stage* g, uint path, int counted) {
   return (float3)(0.0f);
 }
 
-// Adds the samples of the batch's pixel `number` to `count` sums of `words` words at `film`.
-// sample: a float4 as a function of the number `path` of a path.
+// Returns how many samples of a pixel the batch has: those of record `number` and of all that
+// follow it, if they are of the same pixel. 0: a record before this one counts them.
+static inline uint samples_of_pixel(__global const BatchRecord* batch, uint number,
+                                    PixelRecord pixel) {
+  if (!batch->listed) return batch->sample_count;
+  __global const PixelRecord* records = (__global const PixelRecord*)(batch + 1);
+  if (number > 0u && records[number - 1u].x == pixel.x && records[number - 1u].y == pixel.y)
+    return 0u;
+  uint end = number + 1u;
+  while (end < batch->pixel_count && records[end].x == pixel.x && records[end].y == pixel.y) end++;
+  return (end - number) * batch->sample_count;
+}
+
+// Returns the path of a pixel's sample number `i`, whose first record is `number`.
+static inline uint path_of_pixel(__global const BatchRecord* batch, uint number, uint i) {
+  if (!batch->listed) return path_number(batch, number, i);
+  return path_number(batch, number + i / batch->sample_count, i % batch->sample_count);
+}
+
+// Adds the `samples` samples of the batch's pixel `number` to `count` sums of `words` words at
+// `film`. sample: a float4 as a function of the number `path` of a path.
 #define ADD_SAMPLES(count, words, unit, sample)                            \
   {                                                                        \
     ulong4 sums[words];                                                    \
@@ -35,8 +54,8 @@ static inline float3 sample_xyz(const Stage* g, uint path, int counted) {
       sums[w] = first ? (ulong4)(0)                                        \
                       : (ulong4)(film[w], film[count > 1 ? words + w : 0], \
                                  film[count > 2 ? 2 * words + w : 0], 0);  \
-    for (uint i = 0; i < batch->sample_count; ++i) {                       \
-      const uint path = path_number(batch, number, i);                     \
+    for (uint i = 0; i < samples; ++i) {                                   \
+      const uint path = path_of_pixel(batch, number, i);                   \
       exact_add(sums, words, sample, unit);                                \
     }                                                                      \
     for (int w = 0; w < words; ++w) {                                      \
@@ -80,11 +99,12 @@ static void stage_item(const Stage* g, uint item) {
   uint left = apart ? item / batch->pixel_count : 0u;  // layers before the one that is this item's
 #define TAKES_LAYER (!apart || left-- == 0u)
   const PixelRecord pixel = batch_pixel(batch, number);
+  const uint samples = samples_of_pixel(batch, number, pixel);
+  if (samples == 0u) return;
   const uint place = (pixel.y - view->crop_y) * view->crop_width + (pixel.x - view->crop_x);
   __global ulong* film = g->film.film + (size_t)place * batch->film_words;
   const int first = batch->first != 0u;
-  if (left == 0u)
-    *film = (first ? 0ul : *film) + sample_counts(pixel.sample_begin, batch->sample_count);
+  if (left == 0u) *film = (first ? 0ul : *film) + sample_counts(pixel.sample_begin, samples);
   ++film;
   const uint layers = batch->layers;
   const int color = batch->color_exponent, length = batch->length_exponent;
@@ -109,8 +129,8 @@ static void stage_item(const Stage* g, uint item) {
   if (layers & (1u << layer_##name)) {                                                     \
     const int takes = TAKES_LAYER;                                                         \
     if (takes && first) *film = 0;                                                         \
-    for (uint i = 0; takes && i < batch->sample_count; ++i) {                              \
-      const uint path = path_number(batch, number, i);                                     \
+    for (uint i = 0; takes && i < samples; ++i) {                                          \
+      const uint path = path_of_pixel(batch, number, i);                                   \
       const uint id = as_uint(layers_of_path(batch, path, g->layers.path_layers)[offset]); \
       *film = max(*film, ~(((ulong)(pixel.sample_begin + i) << 32) | id));                 \
     }                                                                                      \
@@ -121,8 +141,8 @@ static void stage_item(const Stage* g, uint item) {
   if (layers & (1u << layer_##name)) {                                                           \
     const int takes = TAKES_LAYER;                                                               \
     if (takes && first) slots_clear(film, words);                                                \
-    for (uint i = 0; takes && i < batch->sample_count; ++i) {                                    \
-      const uint path = path_number(batch, number, i);                                           \
+    for (uint i = 0; takes && i < samples; ++i) {                                                \
+      const uint path = path_of_pixel(batch, number, i);                                         \
       const float v = layers_of_path(batch, path, g->layers.path_layers)[offset];                \
       if (as_uint(v) != CAPLET_NONE)                                                             \
         slots_add(film, words, slot_key_##how(v), words == 2 ? slot_whole_units(v, unit) : 0ul); \

@@ -510,7 +510,7 @@ class Maker {
   void camera() {
     scene_.view.camera.world_from_camera = glm::dmat4(random_.turn());
     scene_.view.camera.world_from_camera[3] = glm::dvec4(20.0 * random_.direction(), 1);
-    const std::size_t projection = random_.below(5);
+    const std::size_t projection = random_.below(6);
     if (projection < 2)
       scene_.view.camera.projection = PerspectiveProjection{random_.uniform(0.3, 1.5)};
     if (projection == 2) scene_.view.camera.projection = OrthographicProjection{};
@@ -519,6 +519,10 @@ class Maker {
     if (projection == 4)
       scene_.view.camera.projection =
           FisheyeProjection{static_cast<int>(random_.below(2)), random_.uniform(20, 360)};
+    if (projection == 5)
+      scene_.view.camera.projection = RealisticProjection{
+          nullptr, aperture_mask(aperture_names[random_.below(aperture_names.size())]),
+          random_.uniform(1, 20), random_.uniform(2, 30)};
     scene_.view.camera.frame_aspect_ratio = random_.uniform(0.5, 2);
     scene_.view.camera.screen_window = {-random_.uniform(0.5, 1), 0.9, -0.8,
                                         random_.uniform(0.5, 1)};
@@ -530,9 +534,19 @@ class Maker {
     if (scene_.view.filter.kind == PixelFilter::Kind::mitchell)
       scene_.view.filter.b = 0.2, scene_.view.filter.c = 0.4;
     if (scene_.view.filter.kind == PixelFilter::Kind::sinc) scene_.view.filter.tau = 2.5;
-    scene_.view.film = {
-        64,   48,   std::array<int, 4>{3, 50, 2, 40},         "a name.exr", 200, 0.7, 0.25,
-        12.5, 5200, static_cast<ColorSpace>(random_.below(4))};
+    scene_.view.film = {64,
+                        48,
+                        std::array<int, 4>{3, 50, 2, 40},
+                        "a name.exr",
+                        200,
+                        0.7,
+                        0.25,
+                        0.125,
+                        static_cast<int>(random_.below(4)),
+                        22.5,
+                        12.5,
+                        5200,
+                        static_cast<ColorSpace>(random_.below(4))};
     SamplerSettings& sampler = scene_.view.sampler;
     sampler.kind = static_cast<SamplerSettings::Kind>(random_.below(4));
     sampler.samples_per_pixel = 1 + static_cast<int>(random_.below(1000));

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -18,9 +19,7 @@
 namespace caplet::test::sample_plan_test {
 namespace {
 
-using testing::Each;
-using testing::Gt;
-using testing::Le;
+using testing::ElementsAre;
 
 constexpr std::uint32_t usual = 32;  // samples
 
@@ -76,8 +75,16 @@ std::map<std::pair<uint, uint>, std::uint32_t> more_of(const SamplePlan& plan) {
   std::map<std::pair<uint, uint>, std::uint32_t> out;
   double paths = 0;
   for (const PixelSamples& each : plan.samples)
-    for (const PixelRecord& pixel : each.pixels) {
-      EXPECT_TRUE(out.insert({{pixel.x - 2, pixel.y - 3}, each.count}).second) << "twice";
+    for (std::size_t i = 0; i < each.pixels.size(); ++i) {
+      const PixelRecord& pixel = each.pixels[i];
+      const auto [found, fresh] = out.insert({{pixel.x - 2, pixel.y - 3}, each.count});
+      if (!fresh) {
+        // Records of a pixel lie together, and their samples follow each other.
+        const PixelRecord& before = each.pixels[i - 1];
+        EXPECT_TRUE(i > 0 && is_same_pixel(before, pixel)) << "twice";
+        EXPECT_EQ(pixel.sample_begin, before.sample_begin + each.count);
+        found->second += each.count;
+      }
       paths += each.count;
     }
   EXPECT_EQ(plan.paths, paths);
@@ -96,9 +103,11 @@ TEST(SamplePlan, HasTheNoiseOfAnEvenPicture) {
   EXPECT_NEAR(plan.noise, noise, 1e-9);
   const auto more = more_of(plan);
   EXPECT_EQ(more.size(), 200u);
-  EXPECT_EQ(plan.samples.size(), 1u);
-  EXPECT_EQ(plan.samples[0].count, 32u);
-  for (const PixelRecord& pixel : plan.samples[0].pixels) EXPECT_EQ(pixel.sample_begin, 132u);
+  ASSERT_EQ(plan.samples.size(), 1u);
+  EXPECT_EQ(plan.samples[0].count, 8u);
+  for (const auto& [pixel, samples] : more) EXPECT_EQ(samples, 32u);
+  for (std::size_t i = 0; i < plan.samples[0].pixels.size(); ++i)
+    EXPECT_EQ(plan.samples[0].pixels[i].sample_begin, 132u + 8 * (i % 4));
   const double left = 200 * (128 / (0.99 * 0.99) - 32);
   EXPECT_NEAR(plan.paths_left, left, left * 2e-3);
   EXPECT_TRUE(plan_samples(film, 100, {1.001 * noise, 16, 4096}).empty());
@@ -209,7 +218,8 @@ TEST(SamplePlan, PixelsWithOtherNumbersOfSamplesSayTheSame) {
   EXPECT_NEAR(plan.paths_left, 98 * 41.0, 98 * 2.0);
 }
 
-// Fewer steps make larger batches: counts are 8, 12, 16, 24, ...
+// Fewer lists make larger batches: records are of 8, 32, 128 ... samples, at most 6 a pixel, and
+// pixels have 8, 16, 24, 32, 48, ...
 TEST(SamplePlan, CountsAreFew) {
   std::vector<Pixel> pixels;
   for (int i = 0; i < 40 * 40; ++i) {
@@ -218,30 +228,49 @@ TEST(SamplePlan, CountsAreFew) {
     pixels.back().d *= std::sqrt(32.0 / 1024);
   }
   const SamplePlan plan = plan_samples(film_of(40, 40, pixels), 0, {0.018, 16, 1u << 20});
-  std::vector<std::uint32_t> counts;
-  std::size_t between = 0;  // powers of two
-  for (const PixelSamples& each : plan.samples) {
-    const std::uint32_t odd = each.count / (each.count & -each.count);
-    EXPECT_TRUE(each.count >= 8 && (odd == 1 || odd == 3)) << each.count;
-    between += odd == 3 ? 1 : 0;
-    counts.push_back(each.count);
+  std::vector<std::uint32_t> records;
+  for (const PixelSamples& each : plan.samples) records.push_back(each.count);
+  EXPECT_THAT(records, ElementsAre(8, 32, 128, 512));
+  std::set<std::uint32_t> counts;
+  for (const auto& [pixel, count] : more_of(plan)) {
+    counts.insert(count);
+    const std::uint32_t odd = count / (count & -count);
+    EXPECT_TRUE(count >= 8 && count <= 1024 && (odd == 1 || odd == 3)) << count;
+    EXPECT_EQ(count % 8, 0u);
   }
-  EXPECT_GT(counts.size(), 4u);
-  EXPECT_GT(between, 1u);
-  EXPECT_THAT(counts, Each(Le(1024u)));
-  EXPECT_TRUE(std::ranges::is_sorted(counts));
+  EXPECT_GT(counts.size(), 9u);
+  for (const PixelSamples& each : plan.samples)
+    for (std::size_t i = 6; i < each.pixels.size(); ++i)
+      EXPECT_FALSE(is_same_pixel(each.pixels[i - 6], each.pixels[i]));
 }
 
 TEST(SamplePlan, TilesFollowEachOther) {
   const SamplePlan plan = plan_samples(even_film(20, 10, noisy(1)), 0, {0.01, 16, 4096});
   const std::vector<PixelRecord>& pixels = plan.samples.at(0).pixels;
-  ASSERT_EQ(pixels.size(), 200u);
-  for (std::size_t i = 0; i < 64; ++i) {
-    EXPECT_EQ(pixels[i].x, 2 + i % 8);
-    EXPECT_EQ(pixels[i].y, 3 + i / 8);
+  ASSERT_EQ(pixels.size(), 800u);  // 4 times 8 samples each
+  for (std::size_t i = 0; i < 256; ++i) {
+    EXPECT_EQ(pixels[i].x, 2 + i / 4 % 8);
+    EXPECT_EQ(pixels[i].y, 3 + i / 32);
   }
-  EXPECT_EQ(pixels[64].x, 10u);
-  EXPECT_EQ(pixels[160].y, 3u + 8);
+  EXPECT_EQ(pixels[256].x, 10u);
+  EXPECT_EQ(pixels[640].y, 3u + 8);
+}
+
+TEST(SamplePlan, IsThatOfRowsSeenOneByOne) {
+  std::vector<Pixel> pixels;
+  for (int i = 0; i < 40 * 10; ++i) pixels.push_back(noisy(0.1 * (i * 7 % 13)));
+  pixels[123].samples = 96;
+  const Film film = film_of(40, 10, pixels);
+  SampledPixels sampled(film.layout());
+  EXPECT_EQ(sampled.mean_samples(), 0);
+  for (const auto& [first, count] : {std::pair{7, 3}, {0, 4}, {4, 3}})
+    sampled.look_at(film.rows(first, count));
+  EXPECT_EQ(sampled.mean_samples(), film.mean_samples());
+  const SamplePlan by_rows = plan_samples(sampled, 5, {0.03, 16, 4096}),
+                   whole = plan_samples(film, 5, {0.03, 16, 4096});
+  EXPECT_EQ(by_rows.noise, whole.noise);
+  EXPECT_EQ(more_of(by_rows), more_of(whole));
+  EXPECT_GT(more_of(whole).size(), 100u);
 }
 
 TEST(SamplePlan, IsTakenInPieces) {
@@ -254,9 +283,12 @@ TEST(SamplePlan, IsTakenInPieces) {
   std::size_t pieces = 0;
   for (; !plan.empty(); ++pieces) {
     double now = 0;
+    std::set<std::pair<uint, uint>> of_piece;
     for (const PixelSamples& each : plan.take(1000))
       for (const PixelRecord& pixel : each.pixels) {
-        EXPECT_TRUE(taken.insert({{pixel.x - 2, pixel.y - 3}, each.count}).second);
+        const std::pair<uint, uint> place{pixel.x - 2, pixel.y - 3};
+        EXPECT_EQ(of_piece.insert(place).second, !taken.contains(place)) << "in two pieces";
+        taken[place] += each.count;
         now += each.count;
       }
     EXPECT_GT(now, 0);
@@ -268,7 +300,7 @@ TEST(SamplePlan, IsTakenInPieces) {
   EXPECT_NEAR(static_cast<double>(pieces), paths / 1000, 2);
   // One pixel at least, so that something is done.
   SamplePlan other = plan_samples(even_film(8, 8, noisy(1)), 0, {0.01, 16, 4096});
-  EXPECT_EQ(other.take(0).at(0).pixels.size(), 1u);
+  EXPECT_EQ(other.take(0).at(0).pixels.size(), 4u);
 }
 
 TEST(FilmCounts, AreEvenOrHaveAMean) {

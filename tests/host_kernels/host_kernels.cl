@@ -154,8 +154,10 @@ void HOST(camera)(const HostGroups* g, uint x, uint y, const float* u, RayRecord
   const float2 offset =
       filter_sample(g->camera.filter_table, g->view.view->filter_width, g->view.view->filter_height,
                     (float2)(u[0], u[1]), &out->filter_weight);
-  *ray = camera_ray(g->camera.camera, (float2)((float)x + 0.5f, (float)y + 0.5f) + offset,
-                    (float2)(u[2], u[3]));
+  float weight;
+  *ray = camera_ray(g->camera.camera, g->camera.camera_table,
+                    (float2)((float)x + 0.5f, (float)y + 0.5f) + offset, (float2)(u[2], u[3]),
+                    &weight);
   float4 pdf;
   vstore4(wavelengths_sample(g->observer.wavelength_table, u[4], &pdf), 0, out->lambda);
   vstore4(pdf, 0, out->lambda_pdf);

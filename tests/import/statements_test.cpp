@@ -8,11 +8,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <fstream>
 #include <glm/geometric.hpp>
 
 #include "import/statement.h"
 #include "import_text.h"
 #include "scene/media/homogeneous.h"
+#include "support/data.h"
 #include "support/log_of.h"
 
 namespace caplet::test::statements_test {
@@ -635,11 +637,62 @@ TEST(Statements, OfTheCollection) {
   for (const char* text : texts) EXPECT_THAT(complaints(text), IsEmpty()) << text;
 }
 
+TEST(Cameras, Realistic) {
+  const std::string file = (temporary_folder() / "lens.dat").string();
+  const auto with = [&](const std::string& lens, const std::string& more) {
+    std::ofstream(file) << lens;
+    return "Camera \"realistic\" \"string lensfile\" \"" + file + "\"" + more + "\n" + ball;
+  };
+  const std::string glass = "# two surfaces\n30 4 1.5 20\n0 2 0 10 -30 40 1 22\n";
+  const auto camera = std::get<RealisticProjection>(
+      scene_of(with(glass,
+                    " \"float aperturediameter\" 6 \"float focusdistance\" 3 \"string "
+                    "aperture\" \"star\""))
+          .view.camera.projection);
+  ASSERT_TRUE(camera.lens);
+  EXPECT_EQ(camera.lens->file, file);
+  ASSERT_EQ(camera.lens->elements.size(), 3u);
+  EXPECT_EQ(camera.lens->elements[0].radius, 30);
+  EXPECT_EQ(camera.lens->elements[0].thickness, 4);
+  EXPECT_EQ(camera.lens->elements[0].eta, 1.5);
+  EXPECT_EQ(camera.lens->elements[0].diameter, 20);
+  EXPECT_EQ(camera.lens->elements[2].radius, -30);
+  EXPECT_EQ(camera.aperture_diameter, 6);
+  EXPECT_EQ(camera.focus_distance, 3);
+  EXPECT_EQ(camera.aperture->name, "star");
+  const auto plain = std::get<RealisticProjection>(
+      scene_of("Camera \"realistic\"\n" + std::string(ball)).view.camera.projection);
+  EXPECT_FALSE(plain.lens || plain.aperture);
+  EXPECT_EQ(plain.aperture_diameter, 1);
+  EXPECT_EQ(plain.focus_distance, 10);
+  EXPECT_EQ(scene_of("Film \"rgb\" \"float diagonal\" 24\n" + std::string(ball)).view.film.diagonal,
+            24);
+
+  EXPECT_THAT(said_of(with("30 4 1.5 20\n-30 40 1", "")),
+              HasSubstr("lens.dat:2:8: the last surface"));
+  EXPECT_THAT(said_of(with("30 4 0.5 20", "")), HasSubstr("lens.dat:1:10: the index"));
+  EXPECT_THAT(said_of(with("30 -4 1.5 20", "")), HasSubstr("lens.dat:1:11: the thickness"));
+  EXPECT_THAT(said_of(with("30 4 1.5 0", "")), HasSubstr("lens.dat:1:10: the diameter"));
+  EXPECT_THAT(said_of(with("30 4 glass 20", "")), HasSubstr("lens.dat:1:6"));
+  EXPECT_THAT(said_of(with("", "")), HasSubstr("the lens file is empty"));
+  EXPECT_THAT(said_of(with(glass, " \"float focusdistance\" 0.05")),
+              HasSubstr("scene.pbrt:1:1: Camera \"realistic\": the lens cannot focus so near"));
+  // The reader of these tests makes an image of any name.
+  const auto masked = std::get<RealisticProjection>(
+      scene_of(with(glass, " \"string aperture\" \"mask.png\"")).view.camera.projection);
+  ASSERT_TRUE(masked.aperture);
+  EXPECT_THAT(masked.aperture->name, HasSubstr("mask.png"));
+  double sum = 0;
+  for (const float value : masked.aperture->values) sum += static_cast<double>(value);
+  EXPECT_NEAR(sum / static_cast<double>(masked.aperture->values.size()), 3.14159265 / 4, 1e-6);
+  EXPECT_THAT(
+      said_of("Camera \"realistic\" \"string lensfile\" \"nowhere.dat\"\n" + std::string(ball)),
+      HasSubstr("nowhere.dat"));
+}
+
 // What is left has its place.
 TEST(Statements, ThatAreRefused) {
   const auto said = [](const std::string& text) { return complaints(text); };
-  EXPECT_THAT(said("Camera \"realistic\" \"string lensfile\" \"a.dat\"\n" + std::string(ball)),
-              ElementsAre(HasSubstr("scene.pbrt:1:1: Camera \"realistic\" is not rendered yet")));
   EXPECT_THAT(
       said("WorldBegin\nMaterial \"measured\" \"string filename\" \"a.bsdf\"\nShape \"sphere\""),
       ElementsAre(HasSubstr("scene.pbrt:2:1: Material \"measured\" is not rendered yet")));

@@ -342,7 +342,8 @@ TEST(RayOfPixel, IsTheDevicesCameraRay) {
 __kernel void rays(__global const CameraRecord* camera, uint width, uint count, __global RayRecord* out) {
   const uint i = (uint)get_global_id(0);
   if (i >= count) return;
-  out[i] = camera_ray(camera, (float2)((float)(i % width) + 0.5f, (float)(i / width) + 0.5f), (float2)(0.5f, 0.5f));
+  float weight;
+  out[i] = camera_ray(camera, 0, (float2)((float)(i % width) + 0.5f, (float)(i / width) + 0.5f), (float2)(0.5f, 0.5f), &weight);
 }
 )");
     const Device& device = test::test_device();

@@ -88,7 +88,8 @@ INSTANTIATE_TEST_SUITE_P(
                     ReferenceScene{"spherical-equirectangular", false, 0.005, 0.01, 1, 1},
                     ReferenceScene{"alpha-normal", false, 0.005, 0.01, 1, 1},
                     ReferenceScene{"motion", false, 0.005, 0.01, 1, 1},
-                    ReferenceScene{"motion-turn", false, 0.005, 0.01, 1, 1}),
+                    ReferenceScene{"motion-turn", false, 0.005, 0.01, 1, 1},
+                    ReferenceScene{"realistic", false, 0.005, 0.01, 1, 1}),
     name_of);
 
 // Where the rows of a latitude-longitude image stand, and what that makes of the studio of the

@@ -61,12 +61,17 @@ __kernel void filters(__global const ViewRecord* view, __global const float* tab
   vstore2(filter_sample(table, view->filter_width, view->filter_height, vload2(i, u), &weight), 0, out + 3 * i);
   out[3 * i + 2] = weight;
 }
-__kernel void rays(__global const CameraRecord* camera, __global const float* in, __global RayRecord* out, uint count) {
+__kernel void rays(__global const CameraRecord* camera, __global const float* table, __global const float* in,
+                   __global RayRecord* out, __global float* weights, uint count) {
   const uint i = (uint)get_global_id(0);
-  if (i < count) out[i] = camera_ray(camera, vload2(2 * i, in), vload2(2 * i + 1, in));
+  float weight;
+  if (i >= count) return;
+  out[i] = camera_ray(camera, table, vload2(2 * i, in), vload2(2 * i + 1, in), &weight);
+  weights[i] = weight;
 }
-__kernel void spread(__global const CameraRecord* camera, float x, float y, __global float* out) {
-  vstore2(camera_spread(camera, (float2)(x, y)), 0, out);
+__kernel void spread(__global const CameraRecord* camera, __global const float* table, float x, float y,
+                     __global float* out) {
+  vstore2(camera_spread(camera, table, (float2)(x, y)), 0, out);
 }
 )";
 
@@ -157,34 +162,60 @@ FilterSamples filter_samples(const PixelFilter& filter, std::size_t count) {
 
 }  // namespace
 
-RayRecord camera_ray(const Scene& scene, glm::vec2 raster, glm::vec2 lens) {
+namespace {
+
+/// The table, or a number in its place: buffers have at least one.
+std::vector<float> table_of(const FlatView& flat) {
+  return flat.camera_table.empty() ? std::vector<float>{0} : flat.camera_table;
+}
+
+}  // namespace
+
+std::vector<WeighedRay> camera_rays(const Scene& scene, const std::vector<glm::vec4>& samples) {
   FlatView flat;
   lower_camera(scene, flat);
   const std::vector<CameraRecord> record = {flat.camera};
-  const std::vector<float> in = {raster.x, raster.y, lens.x, lens.y};
+  const std::vector<float> table_values = table_of(flat);
+  std::vector<float> in;
+  for (const glm::vec4& of : samples) in.insert(in.end(), {of.x, of.y, of.z, of.w});
   const Buffer<CameraRecord> camera(bench().device, std::span<const CameraRecord>(record));
-  const Buffer<float> input(bench().device, std::span<const float>(in));
-  Buffer<RayRecord> out(bench().device, 1);
+  const Buffer<float> table(bench().device, std::span<const float>(table_values)),
+      input(bench().device, std::span<const float>(in));
+  Buffer<RayRecord> out(bench().device, samples.size());
+  Buffer<float> weights(bench().device, samples.size());
   cl::Kernel kernel = bench().program.kernel("rays");
   kernel.setArg(0, camera.handle());
-  kernel.setArg(1, input.handle());
-  kernel.setArg(2, out.handle());
-  kernel.setArg(3, cl_uint{1});
-  launch(bench().device, kernel, 1, 1);
-  return out.read()[0];
+  kernel.setArg(1, table.handle());
+  kernel.setArg(2, input.handle());
+  kernel.setArg(3, out.handle());
+  kernel.setArg(4, weights.handle());
+  kernel.setArg(5, static_cast<cl_uint>(samples.size()));
+  launch(bench().device, kernel, samples.size(), 1);
+  const std::vector<RayRecord> rays = out.read();
+  const std::vector<float> weighs = weights.read();
+  std::vector<WeighedRay> both;
+  for (std::size_t i = 0; i < rays.size(); ++i) both.push_back({rays[i], weighs[i]});
+  return both;
+}
+
+RayRecord camera_ray(const Scene& scene, glm::vec2 raster, glm::vec2 lens) {
+  return camera_rays(scene, {glm::vec4(raster, lens)})[0].ray;
 }
 
 std::vector<float> camera_spread(const Scene& scene, glm::vec2 raster) {
   FlatView flat;
   lower_camera(scene, flat);
   const std::vector<CameraRecord> record = {flat.camera};
+  const std::vector<float> table_values = table_of(flat);
   const Buffer<CameraRecord> camera(bench().device, std::span<const CameraRecord>(record));
+  const Buffer<float> table(bench().device, std::span<const float>(table_values));
   Buffer<float> out(bench().device, 2);
   cl::Kernel kernel = bench().program.kernel("spread");
   kernel.setArg(0, camera.handle());
-  kernel.setArg(1, raster.x);
-  kernel.setArg(2, raster.y);
-  kernel.setArg(3, out.handle());
+  kernel.setArg(1, table.handle());
+  kernel.setArg(2, raster.x);
+  kernel.setArg(3, raster.y);
+  kernel.setArg(4, out.handle());
   launch(bench().device, kernel, 1, 1);
   return out.read();
 }

@@ -177,6 +177,57 @@ TEST_F(LostDevices, ListsAreThoseOfOneDevice) {
   }
 }
 
+// A pixel with several records has the samples of all of them, in one batch or in many.
+TEST_F(LostDevices, RecordsOfAPixelAreItsSamples) {
+  Session straight(model().flat, model().view, {test_device()}, {.layers = Layers::all()});
+  EXPECT_EQ(straight.render(36), 36u);
+  const Window window = straight.layout().window;
+  const auto records = [&](bool are_first) {
+    PixelSamples out{4, {}};
+    for (int y = 0; y < window.height; ++y)
+      for (int x = 0; x < window.width; ++x)
+        for (int record = 0; record < 4; ++record)
+          if ((record <= (x + y) % 4) == are_first)
+            out.pixels.push_back({static_cast<uint>(window.x + x), static_cast<uint>(window.y + y),
+                                  static_cast<uint>(20 + 4 * record), 0});
+    return out;
+  };
+  for (const std::size_t batch : {0, 200, 3}) {
+    SessionOptions small = options;
+    small.batch_paths = batch;
+    session.emplace(model().flat, model().view, devices, small);
+    EXPECT_EQ(session->render(20), 20u);
+    EXPECT_TRUE(session->render({records(true)}));
+    EXPECT_EQ(session->film().samples(3), 20u + 16);
+    EXPECT_EQ(session->film().samples(0), 20u + 4);
+    EXPECT_TRUE(session->render({records(false)}));
+    EXPECT_TRUE(same(session->film(), straight.film())) << batch;
+  }
+}
+
+TEST_F(LostDevices, RowsAreThoseOfTheFilm) {
+  Session one(model().flat, model().view, {test_device()}, options);
+  EXPECT_EQ(one.render(5), 5u);
+  EXPECT_EQ(session->render(5), 5u);
+  for (Session* const by : {&one, &*session}) {
+    const Film film = by->film();
+    std::vector<std::uint64_t> words(film.words().size());
+    const std::size_t row_words =
+        film.layout().words_per_pixel() * static_cast<std::size_t>(film.layout().window.width);
+    by->look_at_film([&](const Film& rows) {
+      const auto first = static_cast<std::size_t>(rows.layout().window.y - film.layout().window.y);
+      std::ranges::copy(rows.words(),
+                        words.begin() + static_cast<std::ptrdiff_t>(first * row_words));
+    });
+    EXPECT_TRUE(std::ranges::equal(words, film.words()));
+    EXPECT_EQ(by->parts(), film.parts());
+  }
+  const BrokenDriver broken(devices[0], Fault::read_fails, 0);
+  EXPECT_EQ(session->device_count(), 2u);
+  session->look_at_film([](const Film&) {});
+  EXPECT_EQ(session->device_count(), 1u);
+}
+
 // A film of lists is gone on with where it was, and what it had stays.
 TEST_F(LostDevices, ListsGoOnWithAFilm) {
   Session one(model().flat, model().view, {test_device()}, {.layers = Layers::all()});

@@ -334,6 +334,27 @@ TEST(WorkQueue, ClosedListsEndWithWhatIsBegun) {
   EXPECT_EQ(shares.paths_done(), 1600);
 }
 
+// Records of a pixel stay together, so that a pixel that is begun has all of its samples.
+TEST(WorkQueue, RecordsOfAPixelAreInOnePart) {
+  PixelSamples list{8, {}};
+  for (std::uint32_t x = 0; x < 400; ++x)
+    for (std::uint32_t record = 0; record < 1 + x % 6; ++record)
+      list.pixels.push_back({x, 1, 8 * record, 0});
+  WorkQueue shares({list}, {}, {worker(700), worker(100)});
+  std::size_t next = 0, parts = 0;
+  for (std::size_t i = 0; const std::optional<Work> work = shares.take(i % 2); ++i) {
+    EXPECT_EQ(work->first, next);
+    next += work->count;
+    ++parts;
+    if (next < list.pixels.size()) {
+      EXPECT_FALSE(is_same_pixel(list.pixels[next - 1], list.pixels[next])) << next;
+    }
+    shares.done(i % 2, 0.01);
+  }
+  EXPECT_EQ(next, list.pixels.size());
+  EXPECT_GT(parts, 5u);
+}
+
 // Lists of earlier renders, which a lost worker's film had, do not count as this render's.
 TEST(WorkQueue, EarlierListsComeFirstAndDoNotCount) {
   const auto earlier = std::make_shared<const PixelSamples>(list_of(10, 8));

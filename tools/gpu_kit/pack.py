@@ -11,7 +11,7 @@ from driver_kit import checks, homes
 
 # Programs of tests by their folders, those first that say most.
 TESTS = {"known_answers_tests": "render", "trace_tests": "bvh", "render_tests": "render", "launch_policy_tests": "launch", "query_tests": "query",
-         "shapes_tests": "shapes", "csg_tests": "shapes", "device_tests": "device", "layout_tests": "layout", "agreement_tests": "shapes",
+         "shapes_tests": "shapes", "motion_tests": "motion", "csg_tests": "shapes", "device_tests": "device", "layout_tests": "layout", "agreement_tests": "shapes",
          "list_tests": "bvh", "edits_tests": "edits", "layers_tests": "layers", "bsdf_tests": "bsdf", "lights_tests": "lights",
          "media_tests": "media", "texture_tests": "textures", "sampling_tests": "sampling", "closed_form_tests": "closed_forms"}
 PROGRAMS = {"caplet": "bin/caplet", "caplet_bench": "bin/caplet_bench", "caplet_noise_trial": "bin/caplet_noise_trial", **{name: f"tests/{folder}/{name}" for name, folder in TESTS.items()}}
@@ -59,8 +59,8 @@ def libraries(program):
     return {name: path for name, path in found if not SYSTEMS.match(name)}
 
 
-def make(root, folder, more, workers):
-    """Fills the folder from the release build. Returns an exit code."""
+def make(root, folder, more, workers, pictures):
+    """Fills the folder from the release build, with pictures by PoCL if they are asked for. Returns an exit code."""
     shutil.rmtree(folder, ignore_errors=True)
     for name in ("bin", "lib", "pictures"):
         (folder / name).mkdir(parents=True)
@@ -88,6 +88,8 @@ def make(root, folder, more, workers):
         if not name.endswith((".cpp", ".h", ".txt", ".py", ".toml")):
             (folder / name).parent.mkdir(parents=True, exist_ok=True)
             shutil.copy(root / name, folder / name)
+    if not pictures:
+        return 0
     home = homes.Home({}, [])
 
     def picture(scene_file):

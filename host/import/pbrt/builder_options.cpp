@@ -20,7 +20,8 @@ void OptionBuilder::camera(const Statement& at, const std::string& type, Paramet
   const glm::dmat4 world_from_camera = to_.state.transform.start.inverse(),
                    at_end = to_.state.transform.end.inverse();
   to_.coordinate_systems["camera"] = {world_from_camera, at_end};
-  if (to_.check_type(at, type)) set_camera(type, given, world_from_camera, to_.draft.scene);
+  if (to_.check_type(at, type))
+    set_camera(type, given, world_from_camera, to_.draft.scene, &to_.draft.images);
   if (to_.state.transform.moves())
     to_.draft.scene.view.camera.motion = {{to_.transform_times[0], world_from_camera},
                                           {to_.transform_times[1], at_end}};

@@ -64,7 +64,7 @@ const std::vector<NameTable>& name_tables() {
       {"Accelerator", {"bvh", "kdtree"}, {}},
       {"ActiveTransform", {"All", "EndTime", "StartTime"}, {}},
       {"AreaLightSource", {"diffuse"}, {}},
-      table_of("Camera", with(projection_names, {}), {"realistic"}),
+      table_of("Camera", with(projection_names, {}), {}),
       table_of("ColorSpace", {color_space_names.begin(), color_space_names.end()}, {}),
       {"Film", {"gbuffer", "rgb", "spectral"}, {}},
       table_of(

@@ -14,6 +14,7 @@
 #include "base/log.h"
 #include "base/spelling.h"
 #include "import/detail/pbrt/fields.h"
+#include "import/detail/pbrt/lens_file.h"
 #include "scene/transform.h"
 #include "schema/kind_of.h"
 
@@ -119,6 +120,41 @@ std::optional<Backdrop> backdrop_of(Parameters& parameters, const ImageReader* i
 
 /// Reads the parameters that cameras of one projection have.
 struct ProjectionReader : FieldReader {
+  const ImageReader* images;
+
+  void lens(const Field& field, std::shared_ptr<const Lens>& value) const {
+    const std::string name = parameters.text(field.name, "");
+    if (name.empty()) return;
+    const SourceLocation where = parameters.where(field.name);
+    try {
+      value = std::make_shared<const Lens>(
+          read_lens_file(resolve_file(name, where, parameters.main_file()), where));
+    } catch (const InputError& error) {
+      add_errors(error, where, parameters.diagnostics());
+    }
+  }
+  void aperture(const Field& field, std::shared_ptr<const ApertureMask>& value) const {
+    const std::string name = parameters.text(field.name, "");
+    if (name.empty()) return;
+    value = aperture_mask(name);
+    if (value) return;
+    try {
+      if (!images) throw InputError("pictures cannot be read here");
+      const std::string file =
+          resolve_file(name, parameters.where(field.name), parameters.main_file());
+      const EnvironmentImage image = images->read_rgb(file);
+      ApertureMask mask{file, image.width, image.height, {}};
+      for (std::size_t i = 0; i + 2 < image.rgb.size(); i += 3)
+        mask.values.push_back((image.rgb[i] + image.rgb[i + 1] + image.rgb[i + 2]) / 3);
+      if (!normalize(mask)) throw InputError("lets no light pass");
+      value = std::make_shared<const ApertureMask>(std::move(mask));
+    } catch (const InputError& error) {
+      parameters.error(field.name, std::string(error.what()) +
+                                       " (\"gaussian\", \"pentagon\", "
+                                       "\"square\" and \"star\" need no image)");
+    }
+  }
+
   /// "fov", or "halffov" where it is above 0.
   void field_of_view(double& radians) const {
     const double given = parameters.number(fov_field.name, 90),
@@ -133,20 +169,27 @@ struct ProjectionReader : FieldReader {
   }
 };
 
-Projection projection_of(const std::string& type, Parameters& parameters) {
+Projection projection_of(const std::string& type, Parameters& parameters,
+                         const ImageReader* images) {
   const auto kind = schema::kind_of<std::size_t>(type, projection_names);
   Projection out = model_of<Projection>(kind.value_or(0));
-  std::visit([&](auto& of) { of.fields(of, ProjectionReader{parameters}); }, out);
+  std::visit([&](auto& of) { of.fields(of, ProjectionReader{{parameters}, images}); }, out);
+  std::visit(
+      [&](const auto& of) {
+        if constexpr (requires { of.problem(); })
+          if (const std::string problem = of.problem(); !problem.empty()) parameters.error(problem);
+      },
+      out);
   return out;
 }
 
 }  // namespace
 
 void set_camera(const std::string& type, Parameters& parameters,
-                const glm::dmat4& world_from_camera, Scene& scene) {
+                const glm::dmat4& world_from_camera, Scene& scene, const ImageReader* images) {
   Camera camera;
   camera.world_from_camera = world_from_camera;
-  camera.projection = projection_of(type, parameters);
+  camera.projection = projection_of(type, parameters, images);
   if (parameters.has(frame_aspect_ratio_field.name))
     camera.frame_aspect_ratio = positive(parameters, frame_aspect_ratio_field.name, 1);
   if (const Parameter* window = parameters.values("screenwindow", {"float"})) {
@@ -173,6 +216,11 @@ void set_camera(const std::string& type, Parameters& parameters,
   if (close > open) {
     scene.view.film.exposure_time = close - open;
     scene.view.film.shutter_open = open;
+    FieldReader reader{parameters};
+    scene.view.film.readout = 0;
+    scene.view.film.readout_order = 0;
+    reader.number(readout_field, scene.view.film.readout);
+    reader.choice(readout_order_field, scene.view.film.readout_order, readout_orders);
   } else {
     parameters.error("shutterclose", "must be after shutteropen");
   }
@@ -189,6 +237,8 @@ void set_film(const std::string& type, Parameters& parameters, ColorSpace space,
   FilmSettings film;
   film.exposure_time = scene.view.film.exposure_time;
   film.shutter_open = scene.view.film.shutter_open;
+  film.readout = scene.view.film.readout;
+  film.readout_order = scene.view.film.readout_order;
   film.space = space;
   FilmSettings::fields(film, FieldReader{parameters});
   film.filename = parameters.text("filename", "pbrt.exr");
@@ -223,7 +273,6 @@ void set_film(const std::string& type, Parameters& parameters, ColorSpace space,
       parameters.error(parameters.has("pixelbounds") ? "pixelbounds" : "cropwindow",
                        "must be x0, x1, y0, y1 of a part of the image that is not empty");
   }
-  positive(parameters, "diagonal", 35);
   parameters.boolean("savefp16", true);
   set_sensor(parameters, film);
   if (type == "gbuffer") {

@@ -59,7 +59,7 @@ struct OpencvProjection {
   std::array<double, 8> distortion() const { return {k1, k2, k3, k4, k5, k6, p1, p2}; }
   /// Returns what the picture shows, as places: coordinates of the distorted image plane z = 1.
   /// `film`: its size in pixels.
-  std::array<double, 4> plane(const glm::dvec2& film) const {
+  std::array<double, 4> plane(const glm::dvec2& film, double) const {
     const double w = width > 0 ? width : film.x, h = height > 0 ? height : film.y;
     const double across = fx > 0 ? fx : w, down = fy > 0 ? fy : across;
     const double x = cx >= 0 ? cx : (w - 1) / 2, y = cy >= 0 ? cy : (h - 1) / 2;

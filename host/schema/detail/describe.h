@@ -73,6 +73,10 @@ class Describe {
     add(fov_field, {"float"}, "90");
     add(half_fov_field, {"float"}, "-1");
   }
+  void lens(const Field& field, const std::shared_ptr<const Lens>& of) { image(field, of); }
+  void aperture(const Field& field, const std::shared_ptr<const ApertureMask>& of) {
+    image(field, of);
+  }
   void position(const Field& field, const glm::dvec3& value) {
     add(field, {"point3"}, text_of(value));
   }

@@ -13,10 +13,10 @@
 
 namespace caplet::pbrt {
 
-/// `camera_from_world` is the current transform.
+/// `images` reads what the camera and the film name; without it such a name is an error.
 void set_camera(const std::string& type, Parameters& parameters,
-                const glm::dmat4& world_from_camera, Scene& scene);
-/// `images` reads what the film names; without it such a name is an error.
+                const glm::dmat4& world_from_camera, Scene& scene,
+                const ImageReader* images = nullptr);
 void set_film(const std::string& type, Parameters& parameters, ColorSpace space, Scene& scene,
               const ImageReader* images = nullptr);
 void set_filter(const std::string& type, Parameters& parameters, Scene& scene);
