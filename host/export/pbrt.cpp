@@ -233,7 +233,7 @@ class SceneWriter {
 
   void write_camera(const Camera& camera) {
     const auto& [world_from_camera, projection, frame_aspect_ratio, screen_window, lens_radius,
-                 focal_distance, medium, motion] = camera;
+                 focal_distance, medium, motion, blades, blade_rotation] = camera;
     const SourceLocation where{here()};
     if (motion.empty())
       stream_.text << inverse_text(world_from_camera);

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <glm/trigonometric.hpp>
 #include <glm/vec3.hpp>
 #include <limits>
 #include <vector>
@@ -48,6 +49,8 @@ void lower_camera(const Scene& scene, FlatView& out) {
   if (has_image_plane(camera)) {
     record.lens_radius = static_cast<float>(camera.lens_radius);
     record.focal_distance = static_cast<float>(camera.focal_distance);
+    record.blades = camera.blades < 3 ? 0 : narrow<uint>(camera.blades);
+    record.blade_rotation = static_cast<float>(glm::radians(camera.blade_rotation));
   }
   record.plane_x = static_cast<float>(plane[0]);
   record.plane_y = static_cast<float>(plane[3]);

@@ -12,6 +12,10 @@ Camera camera_of_eye(const Scene& scene, const Stereo& stereo, Eye eye) {
   Camera camera = scene.view.camera;
   const glm::dvec3 right(camera.world_from_camera[0]), forward(camera.world_from_camera[2]);
   const double side = eye == Eye::left ? -0.5 : 0.5;
+  if (auto* const head = std::get_if<OmnistereoProjection>(&camera.projection)) {
+    head->eye = side * stereo.separation / glm::length(right);
+    return camera;
+  }
   const auto set_aside = [&](glm::dmat4& matrix) {
     const glm::dvec3 aside = glm::normalize(glm::dvec3(matrix[0]));
     matrix[3] += glm::dvec4(side * stereo.separation * aside, 0);

@@ -20,7 +20,8 @@ struct Stereo {
 
 /// Returns the camera of one eye: half the separation to the left or right of the scene's own, in
 /// the same direction. The screen window is shifted for convergence and the axis stays (off-axis
-/// cameras), which avoids keystones and vertical parallax.
+/// cameras), which avoids keystones and vertical parallax. An omnistereo camera stays, and has that
+/// eye.
 Camera camera_of_eye(const Scene& scene, const Stereo& stereo, Eye eye);
 
 }  // namespace caplet

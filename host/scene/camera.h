@@ -61,6 +61,8 @@ struct Camera {
   std::optional<std::uint32_t> medium =
       {};                     // the medium at a camera outside all solids: index into Scene::media
   TransformKeys motion = {};  // world_from_camera
+  int blades = 0;             // corners of the lens; below 3 it is round
+  double blade_rotation = 0;  // degrees, of the first corner from +x towards +y
 
   static constexpr Field parallel_lens_field = {
       "parallellens", "rays of a lens stay parallel; else it makes a perspective"};
@@ -72,6 +74,10 @@ struct Camera {
     visit.number(
         {"focaldistance", "distance of what is sharp, along z", 0, no_limit, "camera units", true},
         self.focal_distance);
+    visit.integer({"blades", "corners of the lens; below 3 it is round", 0, 64}, self.blades);
+    visit.number({"bladerotation", "of the first corner, from the right upwards", -no_limit,
+                  no_limit, "degrees"},
+                 self.blade_rotation);
   }
 };
 

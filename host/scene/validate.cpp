@@ -620,6 +620,10 @@ class Validator {
         c.projection);
     if (!(c.lens_radius >= 0 && std::isfinite(c.lens_radius)))
       error(file, "the camera's lens radius must be from 0 up");
+    if (c.blades < 0 || c.blades > 64)
+      error(file, "the blades of the camera's lens must be 0 to 64");
+    if (!std::isfinite(c.blade_rotation))
+      error(file, "the rotation of the camera's blades must be finite");
     if (!(c.focal_distance > 0 && std::isfinite(c.focal_distance)))
       error(file, "the camera's focal distance must be positive");
     else if (!(c.lens_radius <= largest_length &&

@@ -79,6 +79,22 @@ TEST(Stereo, ViewsAreThoseOfCamerasMovedByHand) {
   expect_view(both, views, 1, by_hand("0.25", " \"float screenwindow\" [-1.625 1.375 -1 1]"));
 }
 
+// The head stays where it is, and has one eye or the other.
+TEST(Stereo, OfAHeadThatLooksAround) {
+  const auto around = [](const std::string& eye) {
+    return scene_from(
+        "LookAt 0 0 -5 0 0 0 0 1 0\nScale 2 2 2\nCamera \"omnistereo\" \"float eye\" " + eye +
+        "\n");
+  };
+  const auto folder = test::folder_with_scene(around("0"));
+  const std::vector<std::string> views = {"left", "right"};
+  EXPECT_EQ(test::render(folder, {"-o", "both.exr", "--layers", "all", "--stereo", "0.5"}).code, 0);
+  const LayeredImage both = read_exr(folder / "both.exr");
+  // A unit of the camera is half a unit of the world.
+  expect_view(both, views, 0, rendered(folder, around("-0.5")));
+  expect_view(both, views, 1, rendered(folder, around("0.5")));
+}
+
 // Both eyes go where the camera goes.
 TEST(Stereo, OfACameraThatMoves) {
   const auto moving = [](const std::string& x) {

@@ -510,7 +510,7 @@ class Maker {
   void camera() {
     scene_.view.camera.world_from_camera = glm::dmat4(random_.turn());
     scene_.view.camera.world_from_camera[3] = glm::dvec4(20.0 * random_.direction(), 1);
-    const std::size_t projection = random_.below(6);
+    const std::size_t projection = random_.below(7);
     if (projection < 2)
       scene_.view.camera.projection = PerspectiveProjection{random_.uniform(0.3, 1.5)};
     if (projection == 2) scene_.view.camera.projection = OrthographicProjection{};
@@ -523,6 +523,10 @@ class Maker {
       scene_.view.camera.projection = RealisticProjection{
           nullptr, aperture_mask(aperture_names[random_.below(aperture_names.size())]),
           random_.uniform(1, 20), random_.uniform(2, 30)};
+    if (projection == 6)
+      scene_.view.camera.projection = OmnistereoProjection{random_.uniform(-1, 1)};
+    scene_.view.camera.blades = random_.one_in(2) ? 0 : 3 + static_cast<int>(random_.below(9));
+    scene_.view.camera.blade_rotation = random_.uniform(-90, 90);
     scene_.view.camera.frame_aspect_ratio = random_.uniform(0.5, 2);
     scene_.view.camera.screen_window = {-random_.uniform(0.5, 1), 0.9, -0.8,
                                         random_.uniform(0.5, 1)};

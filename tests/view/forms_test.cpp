@@ -387,14 +387,14 @@ TEST(Forms, SetTheCameraOfTheDocument) {
   editor.make(Set{camera, "fov", 60.0});
   EXPECT_NEAR(fov_of(editor.document().view.camera), 3.14159265358979 / 3, 1e-12);
   editor.make(Set{{Kind::film}, "iso", 200.0});
-  for (const char* kind : {"realistic", "orthographic", "spherical"}) {
+  for (const char* kind : {"realistic", "omnistereo", "orthographic", "spherical"}) {
     editor.make(Set{camera, "kind", std::string(kind)});
     EXPECT_THAT(text_of(editor.document()), HasSubstr(fmt::format("Camera \"{}\"", kind)));
     Editor again(live);
     try_form(live, again, camera);
   }
   EXPECT_TRUE(field_of(live, editor.view(), camera, "fov").is_null());
-  EXPECT_EQ(editor.camera_changes(), 4u);
+  EXPECT_EQ(editor.camera_changes(), 5u);
   EXPECT_THROW(editor.make(Set{camera, "kind", std::string("nonesuch")}), InputError);
   // A camera that is saved stays when other settings are undone.
   Camera saved = editor.document().view.camera;
