@@ -31,6 +31,14 @@ std::optional<NoiseTarget> noise_target(const RenderFlags& options) {
   return out;
 }
 
+RenderFlags with_noise_of(const SamplerSettings& sampler, RenderFlags options) {
+  const bool has_own = options.noise || options.samples_per_pixel || !options.film.samples.empty();
+  if (has_own || !(sampler.noise > 0)) return options;
+  options.noise = sampler.noise;
+  options.samples_per_pixel = sampler.samples_per_pixel;
+  return options;
+}
+
 void take_open_sampler(SamplerSettings& sampler) {
   if (is_open_ended(sampler.kind)) return;
   log::warn(

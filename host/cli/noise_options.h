@@ -16,6 +16,10 @@ namespace caplet::cli {
 /// Returns what pixels are rendered to, if it is a noise. Throws InputError.
 std::optional<NoiseTarget> noise_target(const RenderFlags& options);
 
+/// Returns the options with the noise that the scene's file asks for, where they have neither one
+/// nor a number of samples.
+RenderFlags with_noise_of(const SamplerSettings& sampler, RenderFlags options);
+
 /// Replaces a sampler whose points are even at one number of samples alone, and warns.
 void take_open_sampler(SamplerSettings& sampler);
 

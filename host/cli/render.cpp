@@ -616,27 +616,29 @@ SavedFilm saved_like(const Scene& scene, const FlatScene& flat, const FlatView& 
   return out;
 }
 
-void run_render(const RenderFlags& options, const Invocation& invocation) {
+void run_render(const RenderFlags& given, const Invocation& invocation) {
   Stopwatch total, phase;
   report::RunSeconds seconds;
-  log::set_quiet(options.quiet);
+  log::set_quiet(given.quiet);
   Files files;
-  const Overrides overrides = check_options(options, files);
-  if (!options.display.empty()) parse_tev_address(options.display, "--display");
+  const Overrides overrides = check_options(given, files);
+  if (!given.display.empty()) parse_tev_address(given.display, "--display");
+  parse_layers(given.layers, given.variance);
+  install_interrupt_handlers();
+  std::vector<Device> devices = choose_devices(given.device, given.encoding);
+
+  phase.lap();
+  std::optional<FrameSource> frames;
+  if (given.has_frames()) frames = source_of(given);
+  if (!files.movie.empty())
+    Movie(files.movie, given.frames_a_second, "-o");  // checks that it can be made
+  Scene scene = frames ? scene_of_frame(given, *frames, frames->range.first)
+                       : import_files(given.scenes, given.import_options);
+  const RenderFlags options = with_noise_of(scene.view.sampler, given);
   const Layers layers = with_mattes(
       parse_layers(options.layers, options.variance || (options.noise && !options.layers)),
       options.mattes);
   const Layers film_layers = Layers::of_bits(layers.bits() | options.overlays.layers().bits());
-  install_interrupt_handlers();
-  std::vector<Device> devices = choose_devices(options.device, options.encoding);
-
-  phase.lap();
-  std::optional<FrameSource> frames;
-  if (options.has_frames()) frames = source_of(options);
-  if (!files.movie.empty())
-    Movie(files.movie, options.frames_a_second, "-o");  // checks that it can be made
-  Scene scene = frames ? scene_of_frame(options, *frames, frames->range.first)
-                       : import_files(options.scenes, options.import_options);
   apply(overrides, scene);
   if (options.noise) take_open_sampler(scene.view.sampler);
   if (frames && frames->kind != FrameSource::Kind::turntable)

@@ -125,6 +125,8 @@ void Scene::set_samples_per_pixel(int samples) {
   changed().model.view.sampler.samples_per_pixel = samples;
 }
 
+double Scene::noise() const { return data_->model.view.sampler.noise; }
+
 int Scene::max_depth() const { return data_->model.view.integrator.max_depth; }
 void Scene::set_max_depth(int events) {
   check_range("scattering events", events, 0, most_events);

@@ -54,7 +54,7 @@ std::uint32_t SessionRuns::render(caplet::Session& session, std::uint32_t sample
 }
 
 void check_noise(const NoiseTarget& target, const SamplerSettings& sampler) {
-  if (!(target.noise >= 1e-5 && target.noise <= 1))
+  if (!(target.noise >= least_noise && target.noise <= 1))
     throw InputError(fmt::format("noise: {} is not from 1e-5 to 1", target.noise));
   check_range("the least samples", target.least_samples, 2, 1 << 24);
   check_range("the most samples", target.most_samples, target.least_samples, 1 << 24);

@@ -328,7 +328,7 @@ std::shared_ptr<Session::Run> Session::run(
   for (const PixelSamples& each : asked.lists)
     asked_paths += static_cast<double>(each.pixels.size()) * each.count;
   std::vector<Work> again = std::exchange(again_, {});
-  const auto run = std::make_shared<Run>(
+  auto run = std::make_shared<Run>(
       workers_, asked.lists.empty()
                     ? WorkQueue(window, next_, asked.samples, std::move(again), members)
                     : WorkQueue(std::move(asked.lists), std::move(again), members));

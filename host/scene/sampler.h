@@ -9,6 +9,9 @@
 
 namespace caplet {
 
+/// The least noise that a picture can be rendered to.
+inline constexpr double least_noise = 1e-5;
+
 struct SamplerSettings {
   enum class Kind {
 #define SAMPLER(name) name,
@@ -21,6 +24,8 @@ struct SamplerSettings {
       y_strata =
           4;  // stratified, where their product is samples_per_pixel; else strata_of divides it
   bool jitter = true;  // stratified
+  double noise = 0;    // of the picture, to which it is rendered with at most samples_per_pixel; 0:
+                       // samples_per_pixel of every pixel. Not of stratified ones
 
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {
@@ -32,6 +37,9 @@ struct SamplerSettings {
     } else {
       visit.integer({"pixelsamples", "samples of each pixel", 1, most_integer},
                     self.samples_per_pixel);
+      visit.number(
+          {"noise", "to which the picture is rendered, with at most pixelsamples; 0: any", 0, 1},
+          self.noise);
     }
     visit.seed({"seed", "another one gives other noise"}, self.seed);
   }

@@ -637,6 +637,9 @@ class Validator {
     const FilmSettings& f = scene_.view.film;
     if (!(f.readout >= 0 && std::isfinite(f.readout)))
       error(file, "the readout of the shutter must be finite and from 0 up");
+    if (const double noise = scene_.view.sampler.noise;
+        noise != 0 && !(noise >= least_noise && noise <= 1))
+      error(file, "the noise of the sampler must be 0, or from 1e-5 to 1");
     if (f.width <= 0 || f.height <= 0)
       error(file, "the image size must be positive");
     else if (std::int64_t{f.width} * f.height > most_image_pixels)

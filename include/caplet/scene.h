@@ -57,6 +57,8 @@ class CAPLET_API Scene {
   void set_crop(int x0, int y0, int x1, int y1);
   int samples_per_pixel() const;
   void set_samples_per_pixel(int samples);  // 1 to 2^24
+  /// The noise that its file asks for (Session::render_to); 0: none.
+  double noise() const;
   /// The most scattering events of a path.
   int max_depth() const;
   void set_max_depth(int events);  // 0 to 2^16

@@ -187,7 +187,7 @@ def render(scene, spp=None, size=None, device=None, seed=None, time_limit=None, 
            cryptomatte=False, deep=False):
     """Renders a scene. Returns an Image.
 
-    spp: samples a pixel; None: the scene's. noise: what the picture is rendered to (Session.render_to), where min_spp is the fewest and
+    spp: samples a pixel; None: the scene's, or its noise where its file asks for one. noise: what the picture is rendered to (Session.render_to), where min_spp is the fewest and
     spp the most samples a pixel (None: 16384). samples: (A, B), only samples A to B - 1 of every pixel, in place of spp: images of
     different samples add to that of all. size: (width, height) in pixels. Others as of Session. After Ctrl-C there is no image:
     a Session keeps what was done.
@@ -209,6 +209,8 @@ def render(scene, spp=None, size=None, device=None, seed=None, time_limit=None, 
     session._cancelled, session._size = False, None
     if first:
         session._native.begin_at(first)
+    if noise is None and spp is None and samples is None and native.noise > 0:
+        noise, spp = native.noise, native.spp
     if noise is not None:
         if samples is not None:
             raise InputError("noise: does not go with samples")

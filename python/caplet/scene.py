@@ -243,6 +243,11 @@ class Scene:
         self._native.spp = int(to)
 
     @property
+    def noise(self):
+        """The noise that its file asks for, with at most spp samples a pixel; 0: none."""
+        return self._native.noise
+
+    @property
     def max_depth(self):
         """Most scattering events of a path."""
         return self._native.max_depth

@@ -308,6 +308,7 @@ void bind_settings(nb::class_<HeldScene>& held) {
       .def("widen_to_least", in_turn(&Scene::widen_to_least))
       .def_prop_rw("spp", in_turn(&Scene::samples_per_pixel),
                    in_turn(&Scene::set_samples_per_pixel))
+      .def_prop_ro("noise", in_turn(&Scene::noise))
       .def_prop_rw("max_depth", in_turn(&Scene::max_depth), in_turn(&Scene::set_max_depth))
       .def_prop_rw("seed", in_turn(&Scene::seed), in_turn(&Scene::set_seed))
       .def_prop_ro("lights", in_turn(&Scene::lights))

@@ -68,6 +68,16 @@ def test_mattes_tell_things_apart(ball, tmp_path):
     assert session.image().matte_names("asset") == ["scene"]
 
 
+def test_files_may_ask_for_a_noise(tmp_path):
+    file = tmp_path / "noisy.pbrt"
+    file.write_text('Sampler "sobol" "float noise" 0.2 "integer pixelsamples" 100\nFilm "rgb" "integer xresolution" 12 "integer yresolution" 8\n'
+                    'WorldBegin\nLightSource "infinite"\nShape "sphere"\nShape "disk" "float radius" 5\n')
+    scene = caplet.load(file)
+    assert scene.noise == 0.2 and scene.spp == 100
+    by_file, by_call, even = caplet.render(scene), caplet.render(scene, noise=0.2, spp=100), caplet.render(scene, spp=3)
+    assert np.array_equal(by_file.rgb, by_call.rgb) and 16 <= by_file.spp <= 100 and even.spp == 3
+
+
 def test_layers_are_arrays(ball):
     image = caplet.render(ball, spp=64)
     assert image.size == (32, 24) and image.shape == (24, 32) and image.spp == 64 and image.samples == [(0, 64)]

@@ -56,6 +56,32 @@ double mean_of(const std::vector<std::uint32_t>& samples) {
   return sum / static_cast<double>(samples.size());
 }
 
+// A file may ask for a noise; a number of samples, or another noise, is taken in its place.
+TEST(Noise, MayStandInTheFile) {
+  const fs::path folder = folder_with_scene(
+      "Sampler \"sobol\" \"float noise\" 0.04 \"integer pixelsamples\" 200\n" + lit);
+  const auto told = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), {"render", "scene.pbrt"});
+    return test::run_program(more, folder);
+  };
+  const Result result = told({"-o", "file.exr"});
+  expect_done(result);
+  EXPECT_THAT(result.err, HasSubstr("noise 4 % on "));
+  expect_done(render(folder, {"-o", "flag.exr", "--noise", "4%", "--spp", "200"}));
+  const LayeredImage by_file = read_exr(folder / "file.exr"),
+                     by_flag = read_exr(folder / "flag.exr");
+  EXPECT_EQ(samples_of(by_file), samples_of(by_flag));
+  EXPECT_EQ(by_file.find("G")->floats, by_flag.find("G")->floats);
+  EXPECT_GT(mean_of(samples_of(by_file)), 16.5);
+  const Result other = told({"-o", "other.exr", "--noise", "30%"});
+  expect_done(other);
+  EXPECT_THAT(other.err, HasSubstr("noise 30 % on "));
+  const Result even = told({"-o", "even.exr", "--spp", "3"});
+  expect_done(even);
+  EXPECT_THAT(even.err, HasSubstr("3 samples per pixel on "));
+  EXPECT_FALSE(read_exr(folder / "even.exr").find("samples"));
+}
+
 TEST(Noise, IsThatOfThePicture) {
   const fs::path folder = folder_with_scene(lit);
   const Result result = test::run_program(

@@ -178,6 +178,17 @@ TEST(Samplers, AreThoseThatAreNamed) {
     EXPECT_EQ(sampler.samples_per_pixel, 12) << name;
     EXPECT_EQ(sampler.seed, 5u) << name;
   }
+  EXPECT_EQ(of("Sampler \"sobol\"").noise, 0);
+  const SamplerSettings quiet = of("Sampler \"sobol\" \"float noise\" 0.02"),
+                        few = of(
+                            "Sampler \"sobol\" \"float noise\" 0.02 \"integer pixelsamples\" 99");
+  EXPECT_EQ(quiet.noise, 0.02);
+  EXPECT_EQ(quiet.samples_per_pixel, 16384);
+  EXPECT_EQ(few.samples_per_pixel, 99);
+  EXPECT_THAT(said_of("Sampler \"sobol\" \"float noise\" 2\n" + std::string(ball)),
+              HasSubstr("scene.pbrt:1:17: Sampler \"sobol\": \"noise\" must lie between 0 and 1"));
+  EXPECT_THAT(said_of("Sampler \"sobol\" \"float noise\" 1e-9\n" + std::string(ball)),
+              HasSubstr("\"noise\" must be 0, or from 1e-5 to 1"));
   const SamplerSettings usual = of("Sampler \"stratified\"");
   EXPECT_EQ(usual.kind, Kind::stratified);
   EXPECT_EQ(usual.samples_per_pixel, 16);

@@ -61,6 +61,7 @@ TEST_F(Library, ASceneTellsWhatItHolds) {
   EXPECT_EQ(scene.width(), 12);
   EXPECT_EQ(scene.height(), 8);
   EXPECT_EQ(scene.samples_per_pixel(), 4);
+  EXPECT_EQ(scene.noise(), 0);
   EXPECT_EQ(scene.primitives(), (std::map<std::string, std::uint64_t>{{"sphere", 1}}));
   EXPECT_THAT(scene.materials(), testing::Contains("white"));
   EXPECT_EQ(scene.bounds().min, (std::array<double, 3>{-1, -1, -1}));

@@ -192,7 +192,7 @@ TEST_F(LostDevices, RecordsOfAPixelAreItsSamples) {
                                   static_cast<uint>(20 + 4 * record), 0});
     return out;
   };
-  for (const std::size_t batch : {0, 200, 3}) {
+  for (const std::size_t batch : {0U, 200U, 3U}) {
     SessionOptions small = options;
     small.batch_paths = batch;
     session.emplace(model().flat, model().view, devices, small);

@@ -22,6 +22,9 @@ namespace caplet::pbrt {
 
 namespace {
 
+/// The most samples of a pixel of a picture with a noise, unless the file says else.
+constexpr int most_noise_samples = 1 << 14;
+
 double positive(Parameters& parameters, std::string_view name, double fallback) {
   const double value = parameters.number(name, fallback);
   if (value > 0) return value;
@@ -304,6 +307,10 @@ std::optional<std::uint32_t> set_sampler(const std::string& type, Parameters& pa
   const auto kind = schema::kind_of<SamplerSettings::Kind>(type, sampler_names);
   sampler.kind = kind.value_or(SamplerSettings::Kind::sobol);
   SamplerSettings::fields(sampler, FieldReader{parameters});
+  if (sampler.noise > 0 && sampler.noise < least_noise)
+    parameters.error("noise", "must be 0, or from 1e-5 to 1");
+  if (sampler.noise > 0 && !parameters.has("pixelsamples"))
+    sampler.samples_per_pixel = most_noise_samples;
   if (!kind) warn(parameters, {}, "rendered by the sampler \"sobol\", whose noise is another");
   if (sampler.kind == SamplerSettings::Kind::stratified) {
     const std::int64_t samples = std::int64_t{sampler.x_strata} * sampler.y_strata;
