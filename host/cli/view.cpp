@@ -104,7 +104,6 @@ void run_view(const ViewFlags& options) {
     forget_input(name);  // it may be overwritten, but not the files that it names
   }
   apply(overrides, scene);
-  const SamplerSettings sampler = scene.view.sampler;
   LiveScene live(std::move(scene));
   try_device_apart(device, {.shapes = live.flat().shapes, .render = true, .nearest = true});
   SecondTry::guard(device);
@@ -118,8 +117,6 @@ void run_view(const ViewFlags& options) {
   if (options.noise) {
     viewer_options.noise = *options.noise;
     if (options.samples == 0) viewer_options.samples = NoiseTarget{}.most;
-  } else if (options.samples == 0) {
-    viewer_options.noise = sampler.noise;
   }
   const bool saves = keeper != nullptr;
   view::Viewer viewer(std::move(live), device, viewer_options, std::move(keeper));

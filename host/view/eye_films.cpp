@@ -46,11 +46,16 @@ std::uint32_t EyeFilms::target() const {
       options_.samples > 0 ? options_.samples : live_.scene().view.sampler.samples_per_pixel);
 }
 
+double EyeFilms::noise_target() const {
+  return options_.noise > 0 || options_.samples > 0 ? options_.noise
+                                                    : live_.scene().view.sampler.noise;
+}
+
 /// Returns whether the pictures of all eyes, with equal samples, have the noise that is asked for.
 bool EyeFilms::has_little_noise() const {
   const std::size_t last = eyes() - 1;
-  return options_.noise > 0 && samples_[last] >= NoiseTarget{}.least &&
-         samples_[last] == samples_[0] && std::max(noise_[0], noise_[last]) <= options_.noise;
+  return noise_target() > 0 && samples_[last] >= NoiseTarget{}.least &&
+         samples_[last] == samples_[0] && std::max(noise_[0], noise_[last]) <= noise_target();
 }
 
 void EyeFilms::look_with(const ShowView& look, int scale, std::size_t eye) {

@@ -79,7 +79,7 @@ class LibraryBuild : public testing::Test {
 
 TEST_F(LibraryBuild, WhatStatementsSayIsWhatTextSays) {
   std::ofstream(folder_ / "scene.pbrt") << R"(LookAt 3 2 6  0 0.5 0  0 1 0
-Camera "perspective" "float fov" 30
+Camera "perspective" "float fov" 30 "float readout" 0.25 "string readoutorder" "up" "integer blades" 5
 PixelFilter "triangle" "float xradius" 1
 Integrator "path" "integer maxdepth" 7
 WorldBegin
@@ -108,7 +108,9 @@ ObjectInstance "leaf"
   caplet::Scene scene;
   scene.set_option(Statement::filter, "triangle", {{"xradius", 1.0}});
   scene.set_option(Statement::integrator, "path", {{"maxdepth", 7.0}});
-  scene.set_camera("perspective", {{"fov", 30.0}}, caplet::identity);
+  scene.set_camera("perspective",
+                   {{"fov", 30.0}, {"readout", 0.25}, {"readoutorder", "up"}, {"blades", 5.0}},
+                   caplet::identity);
   scene.look_at({3, 2, 6}, {0, 0.5, 0}, {0, 1, 0});
   using Point = std::array<double, 3>;
   scene.add_light("spot",

@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include <utility>
 #include <vector>
 
 #include "guests.h"
@@ -21,8 +22,8 @@ struct Ended {
   std::vector<Picture> before = std::vector<Picture>(2), last = std::vector<Picture>(2);
 };
 
-Ended ended(const ViewerOptions& options, double separation = 0) {
-  LiveScene live(test::some_scene());
+Ended ended(const ViewerOptions& options, double separation = 0, Scene scene = test::some_scene()) {
+  LiveScene live(std::move(scene));
   const Editor editor(live);
   EyeFilms films(live, editor, test::test_device(), options);
   ShowView look = look_of_scene(live.scene());
@@ -59,6 +60,18 @@ TEST(EyeFilms, EndWithTheNoiseThatIsAskedFor) {
   for (const Picture& last : two.last) EXPECT_LE(last.noise, 0.04);
   EXPECT_EQ(two.last[0].samples, two.last[1].samples);
   EXPECT_LT(two.last[1].samples, 4096u);
+}
+
+// A number of samples is taken in the place of the noise that the scene asks for.
+TEST(EyeFilms, EndWithTheNoiseOfTheScene) {
+  Scene scene = test::some_scene();
+  scene.view.sampler.noise = 0.04;
+  scene.view.sampler.samples_per_pixel = 4096;
+  const Ended quiet = ended(options_to(0, 0), 0, scene);
+  EXPECT_LE(quiet.last[0].noise, 0.04);
+  EXPECT_GT(quiet.before[0].noise, 0.04);
+  EXPECT_LT(quiet.last[0].samples, 4096u);
+  EXPECT_EQ(ended(options_to(0, 20), 0, scene).last[0].samples, 20u);
 }
 
 TEST(EyeFilms, EndWithTheMostSamplesWhateverTheNoise) {

@@ -33,8 +33,8 @@ class EyeFilms {
   std::size_t eyes() const { return look_.separation > 0 ? 2 : 1; }
   /// Returns the samples per pixel of a finished picture, and of one with a noise the most.
   std::uint32_t target() const;
-  /// Returns ViewerOptions.noise.
-  double noise_target() const { return options_.noise; }
+  /// Returns ViewerOptions.noise, or else, without a number of samples either, the scene's; 0: any.
+  double noise_target() const;
   bool has_more() const {
     return scale_ != 1 || (samples_[eyes() - 1] < target() && !has_little_noise());
   }
