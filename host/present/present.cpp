@@ -72,7 +72,6 @@ std::vector<Ball> balls_of(const Scene& scene) {
     if (const auto* sphere = std::get_if<SphereShape>(&shape.geometry)) {
       balls.push_back({place({0, 0, 0}), scale * sphere->radius});
     } else if (const auto* capsules = std::get_if<CapsulesShape>(&shape.geometry)) {
-      balls.reserve(balls.size() + 2 * capsules->p0.size());
       for (std::size_t i = 0; i < capsules->p0.size(); ++i) {
         const float radius1 =
             capsules->radius1.empty() ? capsules->radius0[i] : capsules->radius1[i];
