@@ -4,6 +4,7 @@
 // Cameras with lenses of several surfaces, against the formulas of thick lenses and of radiometry.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
@@ -300,6 +301,21 @@ TEST(RealisticCamera, MasksFormTheStop) {
     }
   }
   EXPECT_FALSE(aperture_mask("hexagon"));
+  // What passes is pi over the area, which is that of 5 triangles around a pentagon's middle, or of
+  // 10 around a star's, whose inner corners lie at cos(72) / cos(36).
+  const auto most = [](const char* name) {
+    return double{std::ranges::max(aperture_mask(name)->values)};
+  };
+  const double degree = std::numbers::pi / 180;
+  const double pentagon = 2.5 * 0.8 * 0.8 * std::sin(72 * degree),
+               star = 5 * std::cos(72 * degree) / std::cos(36 * degree) * std::sin(36 * degree);
+  EXPECT_NEAR(most("pentagon"), std::numbers::pi / pentagon, 0.01);
+  EXPECT_NEAR(most("star"), std::numbers::pi / star, 0.03);
+  // A bell less its value at the rim.
+  const auto bell = aperture_mask("gaussian");
+  EXPECT_NEAR(double{bell->values[128 * 256 + 128]} / double{bell->values[128 * 256 + 192]},
+              (1 - std::exp(-1)) / (std::exp(-0.25) - std::exp(-1)), 0.02);
+  EXPECT_EQ(bell->values[0], 0);
 }
 
 TEST(RealisticCamera, SaysWhyItCannotBe) {
