@@ -70,7 +70,8 @@ void lower_camera(const Scene& scene, FlatView& out) {
         }
       },
       camera.projection);
-  const double late = film.readout / film.open_time();  // the last row, as a share of all
+  // When the last row begins, as a share of all.
+  const double late = film.readout > 0 ? film.readout / film.open_time() : 0;
   const bool is_across = film.readout_order >= 2, is_back = film.readout_order % 2 == 1;
   const float by_pixel =
       static_cast<float>((is_back ? -late : late) / (is_across ? film.width : film.height));

@@ -103,8 +103,6 @@ namespace {
 struct PassGivenUp {};
 }  // namespace
 
-constexpr std::size_t look_bytes = 8 << 20;
-
 /// Run is one task of all workers; workers that hang keep it alive.
 struct Session::Run {
   Run(Workers of, WorkQueue of_picture)
@@ -455,8 +453,8 @@ void Session::look_at_film(const std::function<void(const Film& rows)>& look) {
   const FilmLayout of = layout();
   const std::size_t row_bytes =
       of.words_per_pixel() * sizeof(std::uint64_t) * static_cast<std::size_t>(of.window.width);
-  const int rows = static_cast<int>(
-      std::clamp<std::size_t>(look_bytes / std::max<std::size_t>(1, row_bytes), 1, 1 << 20));
+  const int rows = static_cast<int>(std::clamp<std::size_t>(
+      options_.look_bytes / std::max<std::size_t>(1, row_bytes), 1, 1 << 20));
   const auto read = [&](std::size_t, const DeviceFilm& film) {
     for (int row = 0; row < of.window.height; row += rows)
       look(film.read(row, std::min(rows, of.window.height - row)));

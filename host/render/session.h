@@ -35,6 +35,7 @@ struct SessionOptions {
       0;  // of every pixel that will be rendered, for small batches of small renders; 0: unknown
   bool time_stages = false;  // wait for each stage and add up its seconds
   double patience = 60;      // seconds that a device may take for an answer, where there are others
+  std::size_t look_bytes = 8 << 20;  // of a film, that look_at_film reads at a time
 };
 
 struct SessionProgress {

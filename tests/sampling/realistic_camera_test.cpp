@@ -311,6 +311,12 @@ TEST(RealisticCamera, MasksFormTheStop) {
                star = 5 * std::cos(72 * degree) / std::cos(36 * degree) * std::sin(36 * degree);
   EXPECT_NEAR(most("pentagon"), std::numbers::pi / pentagon, 0.01);
   EXPECT_NEAR(most("star"), std::numbers::pi / star, 0.03);
+  ApertureMask dark{"", 2, 1, {0, -1}}, endless{"", 2, 1, {1, HUGE_VALF}}, half{"", 2, 1, {-1, 3}};
+  EXPECT_FALSE(normalize(dark));
+  EXPECT_FALSE(normalize(endless));
+  EXPECT_TRUE(normalize(half));
+  EXPECT_EQ(half.values[0], 0);
+  EXPECT_NEAR(half.values[1], std::numbers::pi / 2, 1e-6);
   // A bell less its value at the rim.
   const auto bell = aperture_mask("gaussian");
   EXPECT_NEAR(double{bell->values[128 * 256 + 128]} / double{bell->values[128 * 256 + 192]},

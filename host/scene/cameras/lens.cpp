@@ -96,8 +96,11 @@ std::shared_ptr<const ApertureMask> aperture_mask(const std::string& name) {
 
 bool normalize(ApertureMask& mask) {
   double sum = 0;
-  for (const float value : mask.values) sum += static_cast<double>(value);
-  if (!(sum > 0)) return false;
+  for (float& value : mask.values) {
+    value = std::max(value, 0.0f);
+    sum += static_cast<double>(value);
+  }
+  if (!(sum > 0 && std::isfinite(sum))) return false;
   const double scale = std::numbers::pi / 4 * static_cast<double>(mask.values.size()) / sum;
   for (float& value : mask.values) value = static_cast<float>(value * scale);
   return true;

@@ -40,7 +40,8 @@ struct ApertureMask {
 inline constexpr std::array aperture_names = {"gaussian", "pentagon", "square", "star"};
 /// Returns a mask of `aperture_names`, as pbrt-v4 makes them; null for another name.
 std::shared_ptr<const ApertureMask> aperture_mask(const std::string& name);
-/// Scales a mask to the mean of a round stop. Returns false where nothing passes.
+/// Scales a mask to the mean of a round stop; less than nothing passes nowhere. Returns false where
+/// nothing passes, or more than a number says.
 bool normalize(ApertureMask& mask);
 
 /// A lens in focus. Lengths are camera units, which are metres. The film is at z = 0.
