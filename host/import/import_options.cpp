@@ -13,12 +13,14 @@ namespace caplet {
 const std::vector<ImportOptionRow>& import_option_rows() {
   using Of = ImportOptionRow::Of;
   static const std::vector<ImportOptionRow> rows = {
-      {"style", "ball-and-stick|spheres|sticks|trace",
-       "How molecules are drawn: ball-and-stick, spheres, sticks or trace", Of::format},
+      {"style", "ball-and-stick|spheres|sticks|trace|cartoon",
+       "How molecules are drawn: ball-and-stick, spheres, sticks, trace or cartoon", Of::format},
       {"color",
-       "element|chain|residue|bfactor|direction|fibre|file|scalar|scalar:NAME|type|order|depth|"
+       "element|chain|residue|bfactor|secondary|direction|fibre|file|scalar|scalar:NAME|type|order|"
+       "depth|"
        "FILE",
-       "What colours tell: element, chain, residue or bfactor of molecules; direction, fibre, "
+       "What colours tell: element, chain, residue, bfactor or secondary of molecules; direction, "
+       "fibre, "
        "file, scalar or scalar:NAME of "
        "fibres; type, file, order, depth or a FILE of values of neurons",
        Of::format},
@@ -28,6 +30,9 @@ const std::vector<ImportOptionRow>& import_option_rows() {
        "docs/formats/molecules.md",
        Of::format},
       {"model", "N", "Which model, frame or record of a file of several, from 1", Of::format},
+      {"secondary", "file|dssp",
+       "Helices and strands of a molecule: the file's, or by hydrogen bonds as DSSP finds them",
+       Of::format},
       {"positions", "FILE.npy",
        "Places of a molecule's atoms, an array (T, N, 3): T frames, of which --model chooses one",
        Of::format},

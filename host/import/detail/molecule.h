@@ -36,13 +36,18 @@ struct Atom {
 
 enum class ResidueKind : std::uint8_t { other, amino_acid, nucleotide, water };
 
+/// What a residue is part of; a strand of a sheet.
+enum class Secondary : std::uint8_t { coil, helix, strand };
+
 struct Residue {
   std::string name;         // "TRP"; empty for formats without residues
+  std::string number;       // "33", "33A" with an insertion code; empty for such formats
   std::uint32_t chain = 0;  // index into Molecule::chains
   std::string part;         // mmCIF's label_asym_id, which assemblies use; otherwise empty
   std::uint32_t first_atom = 0, atom_count = 0;
   std::int32_t trace_atom = -1;  // the alpha carbon or the phosphorus: index into atoms
   ResidueKind kind = ResidueKind::other;
+  Secondary stated = Secondary::coil;  // by the file's records, where it has any
 };
 
 using Bond = std::pair<std::uint32_t, std::uint32_t>;  // atoms, the smaller index first
@@ -68,7 +73,8 @@ struct Molecule {
   ComponentBonds components;        // those in the file
   std::map<std::string, std::vector<AssemblyPart>> assemblies;
   bool has_b_factors = false;
-  std::uint32_t frames = 1;  // models or frames of the file
+  bool states_secondary = false;  // the file has records of helices or strands
+  std::uint32_t frames = 1;       // models or frames of the file
 };
 
 /// Readers, each of one family of files. `path` is for messages; `text` is the file's text,

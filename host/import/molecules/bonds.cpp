@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <unordered_map>
 
 #include "base/error.h"
 #include "base/log.h"
+#include "import/detail/cell_grid.h"
 #include "import/detail/molecule.h"
 
 namespace caplet {
@@ -18,88 +18,6 @@ namespace {
 
 constexpr float kTolerance = 0.45F, kTooClose = 0.4F;
 constexpr std::size_t kMostInACell = 256;
-constexpr std::int64_t kMostCells = 1 << 20;  // along an axis: atoms that lie further out share a
-                                              // cell, and are compared like all other atoms
-
-struct Cell {
-  std::uint64_t key = 0;
-  std::uint32_t begin = 0, end = 0;  // a range of `order`
-};
-
-/// Cells of one size, sorted by their keys: by x, then y, then z.
-class Grid {
- public:
-  Grid(const std::vector<Atom>& atoms, float size) {
-    glm::vec3 low(std::numeric_limits<float>::infinity());
-    for (const Atom& atom : atoms) low = glm::min(low, atom.position);
-    std::vector<std::pair<std::uint64_t, std::uint32_t>> keys(atoms.size());
-    for (std::uint32_t i = 0; i < atoms.size(); ++i) {
-      std::array<std::int64_t, 3> at{};
-      for (int axis = 0; axis < 3; ++axis)
-        at.at(static_cast<std::size_t>(axis)) =
-            std::min(static_cast<std::int64_t>((atoms[i].position[axis] - low[axis]) / size),
-                     kMostCells) +
-            1;
-      keys[i] = {key_of(at[0], at[1], at[2]), i};
-    }
-    std::ranges::sort(keys);
-    order.reserve(keys.size());
-    for (const auto& [key, atom] : keys) {
-      if (cells.empty() || cells.back().key != key)
-        cells.push_back({key, static_cast<std::uint32_t>(order.size()),
-                         static_cast<std::uint32_t>(order.size())});
-      order.push_back(atom);
-      ++cells.back().end;
-    }
-  }
-
-  static std::uint64_t key_of(std::int64_t x, std::int64_t y, std::int64_t z) {
-    constexpr int bits = 21;
-    return static_cast<std::uint64_t>(x) << 2 * bits | static_cast<std::uint64_t>(y) << bits |
-           static_cast<std::uint64_t>(z);
-  }
-
-  std::size_t fullest() const {
-    std::size_t most = 0;
-    for (const Cell& cell : cells) most = std::max<std::size_t>(most, cell.end - cell.begin);
-    return most;
-  }
-
-  /// Calls work(i, j) once for each pair of atoms in one cell or in two neighbouring cells.
-  template <class Work>
-  void pairs(const Work& work) const {
-    // Offsets of the keys of the neighbouring columns that come "after" this one; each has three
-    // neighbours along z.
-    constexpr std::uint64_t y = std::uint64_t{1} << 21, x = y << 21;
-    constexpr std::array<std::uint64_t, 4> columns = {y, x - y, x, x + y};
-    std::array<std::size_t, 4>
-        from{};  // cells before these indices precede the column's first; the indices only increase
-    for (std::size_t c = 0; c < cells.size(); ++c) {
-      const Cell& cell = cells[c];
-      for (std::uint32_t i = cell.begin; i < cell.end; ++i)
-        for (std::uint32_t j = i + 1; j < cell.end; ++j) work(order[i], order[j]);
-      if (c + 1 < cells.size() && cells[c + 1].key == cell.key + 1)
-        across(cell, cells[c + 1], work);
-      for (std::size_t k = 0; k < columns.size(); ++k) {
-        const std::uint64_t first = cell.key + columns.at(k) - 1;
-        std::size_t& at = from.at(k);
-        while (at < cells.size() && cells[at].key < first) ++at;
-        for (std::size_t d = at; d < cells.size() && cells[d].key <= first + 2; ++d)
-          across(cell, cells[d], work);
-      }
-    }
-  }
-
-  std::vector<std::uint32_t> order;
-  std::vector<Cell> cells;
-
- private:
-  template <class Work>
-  void across(const Cell& a, const Cell& b, const Work& work) const {
-    for (std::uint32_t i = a.begin; i < a.end; ++i)
-      for (std::uint32_t j = b.begin; j < b.end; ++j) work(order[i], order[j]);
-  }
-};
 
 /// Adds the bonds of residues whose component is known, and marks those residues.
 void add_component_bonds(const Molecule& molecule, std::vector<bool>& known,
@@ -139,7 +57,10 @@ std::vector<Bond> all_bonds(const Molecule& molecule, const std::string& path) {
     std::array<float, 256> radius{};
     for (const Atom& atom : atoms)
       widest = std::max(widest, radius.at(atom.element) = covalent_radius(atom.element));
-    const Grid grid(atoms, 2 * widest + kTolerance);
+    std::vector<glm::vec3> places;
+    places.reserve(atoms.size());
+    for (const Atom& atom : atoms) places.push_back(atom.position);
+    const CellGrid grid(places, 2 * widest + kTolerance);
     if (grid.fullest() > kMostInACell) {
       log::warn(
           "{}: {} atoms within {:.1f} angstroms of each other: no bonds are found by distance (is "

@@ -3,6 +3,7 @@
 //
 // Draws molecules: spheres are capsules of length 0, bonds are capsules split in two where the
 // colours of their atoms differ, and traces are tapered capsules along a Catmull-Rom curve.
+// Cartoons are drawn by cartoon.cpp.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -16,10 +17,13 @@
 #include "base/error.h"
 #include "base/reading.h"
 #include "import/color_map.h"
+#include "import/detail/cartoon.h"
 #include "import/detail/gzip_file.h"
 #include "import/detail/importers.h"
+#include "import/detail/mesh_file.h"
 #include "import/detail/molecule.h"
 #include "import/detail/option_files.h"
+#include "import/detail/secondary.h"
 #include "import/detail/text_file.h"
 #include "import/detail/value_colors.h"
 #include "present/present.h"
@@ -29,8 +33,8 @@ namespace caplet {
 
 namespace {
 
-enum class Style { ball_and_stick, spheres, sticks, trace };
-enum class MoleculeColor { element, chain, residue, bfactor };
+enum class Style { ball_and_stick, spheres, sticks, trace, cartoon };
+enum class MoleculeColor { element, chain, residue, bfactor, secondary };
 
 constexpr std::size_t kMostInDetail =
     2000;                       // atoms; larger molecules are drawn as spheres by default
@@ -43,8 +47,10 @@ constexpr float kCalphaGap = 4.6F,
 
 class Painter {
  public:
-  Painter(Scene& scene, const Molecule& molecule, MoleculeColor by)
-      : scene_(scene), molecule_(molecule), by_(by) {
+  /// `secondary`: a value for each residue where colours or the style need it, else none.
+  Painter(Scene& scene, const Molecule& molecule, const std::vector<Secondary>& secondary,
+          MoleculeColor by)
+      : scene_(scene), molecule_(molecule), secondary_(secondary), by_(by) {
     if (by == MoleculeColor::bfactor) {
       low_ = high_ = molecule.atoms.front().b_factor;
       for (const Atom& atom : molecule.atoms) {
@@ -74,6 +80,8 @@ class Painter {
                      [&] { return palette_color(index_.size()); });
       case MoleculeColor::bfactor:
         return b_factors_.of(static_cast<double>(atom.b_factor));
+      case MoleculeColor::secondary:
+        return of_secondary(atom);
     }
     return 0;
   }
@@ -90,6 +98,30 @@ class Painter {
   MoleculeColor by() const { return by_; }
 
  private:
+  /// The colours of RasMol's and Jmol's scheme "structure".
+  std::uint32_t of_secondary(const Atom& atom) {
+    const auto encoded = [this](const char* name, const glm::vec3& bytes) {
+      return named(name, [&] { return glm::dvec3(decoded_color(bytes, 255)); });
+    };
+    switch (molecule_.residues[atom.residue].kind) {
+      case ResidueKind::amino_acid:
+        break;
+      case ResidueKind::nucleotide:
+        return encoded("nucleic acid", {174, 0, 254});
+      default:
+        return of_element(atom);
+    }
+    switch (secondary_[atom.residue]) {
+      case Secondary::helix:
+        return encoded("helix", {255, 0, 128});
+      case Secondary::strand:
+        return encoded("strand", {255, 200, 0});
+      case Secondary::coil:
+        break;
+    }
+    return encoded("coil", {255, 255, 255});
+  }
+
   std::uint32_t named(const std::string& name, const std::function<glm::dvec3()>& color) {
     const auto [entry, fresh] =
         index_.try_emplace(name, narrow<std::uint32_t>(scene_.materials.size()));
@@ -101,6 +133,7 @@ class Painter {
 
   Scene& scene_;
   const Molecule& molecule_;
+  const std::vector<Secondary>& secondary_;
   MoleculeColor by_;
   float low_ = 0, high_ = 0;
   ValueColors b_factors_;
@@ -129,9 +162,13 @@ struct DrawnPart {
 
 class MoleculeDrawing {
  public:
-  MoleculeDrawing(const Molecule& molecule, const std::vector<Bond>& bonds, Style style,
-                  Painter& painter)
-      : molecule_(molecule), bonds_(bonds), style_(style), painter_(painter) {}
+  MoleculeDrawing(const Molecule& molecule, const std::vector<Bond>& bonds,
+                  const std::vector<Secondary>& secondary, Style style, Painter& painter)
+      : molecule_(molecule),
+        bonds_(bonds),
+        secondary_(secondary),
+        style_(style),
+        painter_(painter) {}
 
   /// Makes the shapes of the residues that `kept` marks.
   std::vector<Shape> shapes(const Scene& scene, const std::vector<bool>& kept) {
@@ -157,13 +194,19 @@ class MoleculeDrawing {
       shape.geometry = std::move(part.capsules);
       out.push_back(std::move(shape));
     }
+    if (style_ == Style::cartoon)
+      for (Shape& shape : cartoon_shapes(
+               molecule_, secondary_, kept,
+               [this](const Atom& atom) { return painter_.material(atom); }, scene.source))
+        out.push_back(std::move(shape));
     return out;
   }
 
  private:
-  /// The style trace draws residues without a trace as sticks.
+  bool follows_chains() const { return style_ == Style::trace || style_ == Style::cartoon; }
+  /// The styles trace and cartoon draw residues of no chain as sticks.
   bool in_detail(const Atom& atom) const {
-    if (style_ != Style::trace) return true;
+    if (!follows_chains()) return true;
     const Residue& residue = molecule_.residues[atom.residue];
     return residue.trace_atom < 0 && residue.kind == ResidueKind::other;
   }
@@ -179,7 +222,7 @@ class MoleculeDrawing {
   }
   float bond_radius() const { return style_ == Style::ball_and_stick ? kBondRadius : kStickRadius; }
   std::uint32_t color_of(const Atom& atom) const {
-    return style_ == Style::trace ? painter_.of_element(atom) : painter_.material(atom);
+    return follows_chains() ? painter_.of_element(atom) : painter_.material(atom);
   }
   DrawnPart& part(const Atom& atom, const char* what) {
     const std::string& chain = molecule_.chains[molecule_.residues[atom.residue].chain];
@@ -270,6 +313,7 @@ class MoleculeDrawing {
 
   const Molecule& molecule_;
   const std::vector<Bond>& bonds_;
+  const std::vector<Secondary>& secondary_;
   Style style_;
   Painter& painter_;
   std::map<std::string, DrawnPart> parts_;
@@ -331,6 +375,34 @@ void move_atoms(Molecule& molecule, const std::string& path, std::uint32_t numbe
   molecule.frames = narrow<std::uint32_t>(frames);
 }
 
+/// Throws InputError where the file lacks what the style or the colours need.
+void check_asked(const Molecule& molecule, Style style, MoleculeColor by) {
+  if (by == MoleculeColor::bfactor && !molecule.has_b_factors)
+    throw InputError({"--color"}, "the file has no b factors");
+  if (style == Style::trace &&
+      std::ranges::none_of(molecule.residues, [](const Residue& r) { return r.trace_atom >= 0; }))
+    throw InputError({"--style"},
+                     "trace: the file has neither alpha carbons nor phosphorus of a polymer");
+  if (style == Style::cartoon && std::ranges::none_of(molecule.residues, [&](const Residue& r) {
+        return guide_atom(molecule, r) >= 0;
+      }))
+    throw InputError({"--style"}, "cartoon: the file has no backbone of a polymer");
+  if (by == MoleculeColor::secondary &&
+      std::ranges::none_of(molecule.residues, [](const Residue& r) {
+        return r.kind == ResidueKind::amino_acid || r.kind == ResidueKind::nucleotide;
+      }))
+    throw InputError({"--color"}, "secondary: the file has no polymer");
+}
+
+/// Returns whether --secondary asks for the file's records, which are the default where it has any.
+bool stated_secondary(const Molecule& molecule, const ImportOptions& options) {
+  const bool by_file =
+      options.choice("secondary", {"file", "dssp"}, molecule.states_secondary ? 0 : 1) == 0;
+  if (by_file && !molecule.states_secondary)
+    throw InputError({"--secondary"}, "the file has no records of helices and strands");
+  return by_file;
+}
+
 using MoleculeReader = Molecule (*)(std::string_view, const std::string&, const ImportOptions&);
 
 Imported import_molecule(const std::filesystem::path& path, const ImportOptions& options,
@@ -347,23 +419,22 @@ Imported import_molecule(const std::filesystem::path& path, const ImportOptions&
       molecule.components.insert_or_assign(name, std::move(bonds));
   const std::size_t automatic = static_cast<std::size_t>(
       molecule.atoms.size() > kMostInDetail ? Style::spheres : Style::ball_and_stick);
-  const auto style = static_cast<Style>(
-      options.choice("style", {"ball-and-stick", "spheres", "sticks", "trace"}, automatic));
+  const auto style = static_cast<Style>(options.choice(
+      "style", {"ball-and-stick", "spheres", "sticks", "trace", "cartoon"}, automatic));
   const std::size_t usual = static_cast<std::size_t>(
-      style == Style::trace ? MoleculeColor::chain : MoleculeColor::element);
+      style == Style::trace || style == Style::cartoon ? MoleculeColor::chain
+                                                       : MoleculeColor::element);
   const auto by = static_cast<MoleculeColor>(
-      options.choice("color", {"element", "chain", "residue", "bfactor"}, usual));
-  if (by == MoleculeColor::bfactor && !molecule.has_b_factors)
-    throw InputError({"--color"}, "the file has no b factors");
-  if (style == Style::trace &&
-      std::ranges::none_of(molecule.residues, [](const Residue& r) { return r.trace_atom >= 0; }))
-    throw InputError({"--style"},
-                     "trace: the file has neither alpha carbons nor phosphorus of a polymer");
+      options.choice("color", {"element", "chain", "residue", "bfactor", "secondary"}, usual));
+  check_asked(molecule, style, by);
   const std::vector<Bond> bonds =
       style == Style::spheres ? std::vector<Bond>() : all_bonds(molecule, scene.source);
   if (positions) move_atoms(molecule, *positions, options.number("model", 1));
-  Painter painter(scene, molecule, by);
-  MoleculeDrawing drawing(molecule, bonds, style, painter);
+  std::vector<Secondary> secondary;
+  if (style == Style::cartoon || by == MoleculeColor::secondary)
+    secondary = secondary_of(molecule, stated_secondary(molecule, options), scene.source);
+  Painter painter(scene, molecule, secondary, by);
+  MoleculeDrawing drawing(molecule, bonds, secondary, style, painter);
   const std::optional<std::string> assembly = options.text("assembly");
   if (assembly && *assembly != "none")
     add_assembly(scene, molecule, *assembly, drawing);

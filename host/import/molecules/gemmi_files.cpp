@@ -20,6 +20,7 @@
 #include "base/error.h"
 #include "base/spelling.h"
 #include "import/detail/molecule.h"
+#include "import/detail/secondary.h"
 #include "import/detail/text_file.h"
 
 namespace caplet {
@@ -83,8 +84,9 @@ std::string address_key(const std::string& chain, const std::string& residue,
 
 class Builder {
  public:
-  Builder(gemmi::Structure& structure, const std::string& path, const ImportOptions& options)
-      : structure_(structure), path_(path), options_(options) {}
+  Builder(gemmi::Structure& structure, const std::string& path, const ImportOptions& options,
+          std::vector<SecondaryRange> secondary)
+      : structure_(structure), path_(path), options_(options), secondary_(std::move(secondary)) {}
 
   Molecule build() {
     gemmi::Model& model = chosen_model();
@@ -96,6 +98,7 @@ class Builder {
     const bool hydrogens = options_.yes("hydrogens", true), water = options_.yes("water", true);
     for (const gemmi::Chain& chain : model.chains) add_chain(chain, altloc, hydrogens, water);
     if (out_.atoms.empty()) throw InputError({path_, 0, 0}, "holds no atoms that are asked for");
+    state_secondary(out_, numbers_, codes_, secondary_);
     add_connections();
     add_assemblies();
     out_.name = structure_.name;
@@ -135,6 +138,7 @@ class Builder {
       residue.kind = residue_kind(source.name);
       if (residue.kind == ResidueKind::water && !water) continue;
       residue.name = source.name;
+      residue.number = source.seqid.str();
       residue.part = source.subchain;
       residue.first_atom = static_cast<std::uint32_t>(out_.atoms.size());
       const char kept = kept_altloc(source, altloc);
@@ -147,6 +151,8 @@ class Builder {
       if (residue.atom_count == 0) continue;
       residue.chain = chain_index(chain.name);
       out_.residues.push_back(std::move(residue));
+      numbers_.push_back(*source.seqid.num);
+      codes_.push_back(source.seqid.icode);
     }
   }
 
@@ -218,6 +224,9 @@ class Builder {
   gemmi::Structure& structure_;
   const std::string& path_;
   const ImportOptions& options_;
+  std::vector<SecondaryRange> secondary_;
+  std::vector<std::int32_t> numbers_;  // of residues, and their insertion codes
+  std::string codes_;
   Molecule out_;
   std::unordered_map<std::string, std::uint32_t> chains_, by_address_;
 };
@@ -379,13 +388,68 @@ void add_component_bonds(const gemmi::cif::Block& block, ComponentBonds& out) {
     out[row.str(0)].emplace_back(row.str(1), row.str(2));
 }
 
+SecondaryRange range_of(Secondary kind, const gemmi::AtomAddress& start,
+                        const gemmi::AtomAddress& end) {
+  return {kind,
+          start.chain_name,
+          {*start.res_id.seqid.num, *end.res_id.seqid.num},
+          {start.res_id.seqid.icode, end.res_id.seqid.icode}};
+}
+
+/// Returns the ranges of HELIX, without helices of polyproline, and of SHEET.
+std::vector<SecondaryRange> secondary_records(const gemmi::Structure& structure) {
+  std::vector<SecondaryRange> out;
+  for (const gemmi::Helix& helix : structure.helices)
+    if (helix.pdb_helix_class != gemmi::Helix::HelixPolyProlineNone)
+      out.push_back(range_of(Secondary::helix, helix.start, helix.end));
+  for (const gemmi::Sheet& sheet : structure.sheets)
+    for (const gemmi::Sheet::Strand& strand : sheet.strands)
+      out.push_back(range_of(Secondary::strand, strand.start, strand.end));
+  return out;
+}
+
+/// Returns the ranges of _struct_conf, which may hold strands too (STRN), and of
+/// _struct_sheet_range. gemmi's list of helices has those of polyproline (HELX_LH_PP_P) without
+/// their type.
+std::vector<SecondaryRange> secondary_categories(gemmi::cif::Block& block) {
+  std::vector<SecondaryRange> out;
+  const auto add = [&](const char* category, const char* type) {
+    for (auto row :
+         block.find(category, {"beg_auth_asym_id", "beg_auth_seq_id", "end_auth_seq_id",
+                               "?pdbx_beg_PDB_ins_code", "?pdbx_end_PDB_ins_code", type})) {
+      SecondaryRange range;
+      range.kind = Secondary::strand;
+      if (row.has(5) && *type == 'c') {
+        const std::string kind = row.str(5);
+        if (begins_with(kind, "HELX_LH_PP")) continue;
+        if (begins_with(kind, "HELX"))
+          range.kind = Secondary::helix;
+        else if (!begins_with(kind, "STRN"))
+          continue;
+      }
+      range.chain = row.str(0);
+      bool is_number = true;
+      for (std::size_t end = 0; end < 2; ++end) {
+        is_number &= parse_number(std::string_view(row.str(1 + static_cast<int>(end))),
+                                  range.number.at(end));
+        const std::string code = row.has(3 + end) ? row.str(3 + static_cast<int>(end)) : "";
+        if (!code.empty()) range.code.at(end) = code[0];
+      }
+      if (is_number) out.push_back(range);
+    }
+  };
+  add("_struct_conf.", "conf_type_id");
+  add("_struct_sheet_range.", "sheet_id");
+  return out;
+}
+
 }  // namespace
 
 Molecule read_pdb(std::string_view text, const std::string& path, const ImportOptions& options) {
   return read_by_gemmi(path, [&] {
     const std::string whole = with_whole_distances(text);
     gemmi::Structure structure = gemmi::read_pdb_from_memory(whole.data(), whole.size(), path);
-    Molecule out = Builder(structure, path, options).build();
+    Molecule out = Builder(structure, path, options, secondary_records(structure)).build();
     add_conect(text, out);
     out.assemblies = assemblies_of_remarks(text, path);
     return out;
@@ -403,9 +467,13 @@ Molecule read_mmcif(std::string_view text, const std::string& path, const Import
     }
     ComponentBonds components;
     for (const gemmi::cif::Block& block : document.blocks) add_component_bonds(block, components);
+    std::vector<SecondaryRange> secondary;
+    for (gemmi::cif::Block& block : document.blocks)
+      for (SecondaryRange& range : secondary_categories(block))
+        secondary.push_back(std::move(range));
     gemmi::Structure structure = gemmi::make_structure_from_doc(
         std::move(document), true);  // const& before gemmi 0.6, then &&
-    Molecule out = Builder(structure, path, options).build();
+    Molecule out = Builder(structure, path, options, std::move(secondary)).build();
     out.components = std::move(components);
     return out;
   });
