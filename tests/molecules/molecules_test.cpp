@@ -15,6 +15,7 @@
 #include "import/detail/importers.h"
 #include "import/detail/molecule.h"
 #include "import/import.h"
+#include "npy_text.h"
 #include "support/data.h"
 #include "support/import_files.h"
 
@@ -505,19 +506,11 @@ TEST(Xyz, FramesAndColumns) {
   EXPECT_EQ(read_xyz(text + "and more\n", "f.xyz", {}).frames, 2U);
 }
 
-/// A file of NumPy's format, version 1.0, of doubles.
-std::string npy(const std::string& shape, const std::vector<double>& values) {
-  std::string header = "{'descr': '<f8', 'fortran_order': False, 'shape': (" + shape + "), }";
-  header.resize(117, ' ');
-  return std::string("\x93NUMPY\x01\x00\x76\x00", 10) + header + "\n" +
-         std::string(reinterpret_cast<const char*>(values.data()), 8 * values.size());
-}
-
 TEST(Molecules, AtomsAreWhereAnArrayHasThem) {
   const std::filesystem::path path = test::write_file("m.xyz", "2\n\nC 0 0 0\nO 1.2 0 0\n");
   const auto centres = [&](const std::vector<double>& places, const std::string& model,
                            const std::string& shape = "2, 2, 3") {
-    const std::filesystem::path array = test::write_file("m.npy", npy(shape, places));
+    const std::filesystem::path array = test::write_file("m.npy", test::npy(shape, places));
     ImportOptions options{{{"positions", array.string()}, {"style", "spheres"}}};
     if (!model.empty()) options.set("model", model);
     std::vector<glm::vec3> out;

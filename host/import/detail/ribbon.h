@@ -17,12 +17,14 @@ namespace caplet {
 
 /// A cross section: a rectangle with rounded corners. `half_width` lies along the guide's side.
 struct RibbonSection {
-  double half_width = 0.3, half_height = 0.3, corner = 0.3;
+  double half_width = 0.28, half_height = 0.28, corner = 0.28;
 };
-inline constexpr RibbonSection coil_section{0.3, 0.3, 0.3};
-inline constexpr RibbonSection helix_section{1.25, 0.22, 0.22};
-inline constexpr RibbonSection strand_section{1.15, 0.22, 0.08};
-inline constexpr double arrow_half_width = 1.9;  // where the head of a strand begins
+inline constexpr RibbonSection coil_section{0.28, 0.28, 0.28};
+inline constexpr RibbonSection helix_section{1.25, 0.25, 0.25};
+inline constexpr RibbonSection strand_section{1.15, 0.25, 0.08};
+/// Where the head of a strand begins: it is the widest and highest, so that its back is all around
+/// what comes before it.
+inline constexpr RibbonSection arrow_section{1.9, 0.29, 0.08};
 
 /// A residue of a ribbon: a place that the curve goes through and the direction of its width.
 struct RibbonGuide {

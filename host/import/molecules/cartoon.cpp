@@ -21,18 +21,17 @@ namespace {
 using glm::dvec3;
 
 constexpr double kLongestCalpha = 4.6, kLongestPhosphorus = 9.0;  // as in the style trace
-constexpr float kTube = 0.7F, kRod = 0.3F;                        // radii of nucleic acids
+constexpr float kTube = 0.6F, kRod = 0.25F;                       // radii of nucleic acids
 constexpr double kSlabHeight = 0.5, kSlabMargin = 0.4;            // beyond the atoms of the ring
 constexpr int kStrandPasses = 2;  // of smoothing the sides of strands
 
-// Of files with more residues the curves are cut more coarsely, which bounds their memory: 320, 144
-// or 64 triangles an amino acid.
-constexpr std::size_t kMostFine = 5'000, kMostMedium = 40'000;
+// Of files with more residues the curves are cut more coarsely, which bounds their memory: an amino
+// acid of 3.8 angstroms has at most 576, 256 or 96 triangles.
+constexpr std::size_t kMostFine = 3'000, kMostMedium = 20'000;
 
-/// Where a capsule of a nucleotide's tube begins, and how the curve goes on.
 RibbonDetail detail_for(std::size_t residues) {
-  if (residues <= kMostFine) return {8, 5};
-  return residues <= kMostMedium ? RibbonDetail{6, 3} : RibbonDetail{4, 2};
+  if (residues <= kMostFine) return {12, 6};
+  return residues <= kMostMedium ? RibbonDetail{8, 4} : RibbonDetail{4, 3};
 }
 
 /// Returns whether the atom has the name, which old files write with * in place of '.
@@ -208,9 +207,11 @@ class CartoonDrawing {
     if (tail >= 0) places.push_back(place(tail));
     const double last = static_cast<double>(places.size() - 1);
     const NaturalSpline curve(std::move(places));
+    // A sugar lies between two phosphorus atoms: its residue has the curve between them.
+    const double shift = tail >= 0 ? 0 : 0.5;
     for (std::size_t i = 0; i < run.size(); ++i) {
-      const double at = static_cast<double>(i), begin = i == 0 ? 0 : at - 0.5,
-                   end = i + 1 == run.size() ? last : at + 0.5;
+      const double at = static_cast<double>(i) - shift, begin = std::max(at, 0.0),
+                   end = std::min(at + 1, last);
       const auto steps = static_cast<std::uint32_t>(
           std::max(1.0, std::round((end - begin) * static_cast<double>(detail_.pieces))));
       CapsulesShape tube;

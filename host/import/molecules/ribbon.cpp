@@ -110,12 +110,8 @@ class RibbonMesher {
     const Secondary kind = guides_[i].kind;
     if (kind == Secondary::coil) return coil_section;
     const RibbonSection& full = kind == Secondary::helix ? helix_section : strand_section;
-    if (is_head(i)) {
-      const double part = (t - begin_of(i)) / (end_of(i) - begin_of(i));
-      RibbonSection wide = strand_section;
-      wide.half_width = arrow_half_width;
-      return mixed(wide, coil_section, part);
-    }
+    if (is_head(i))
+      return mixed(arrow_section, coil_section, (t - begin_of(i)) / (end_of(i) - begin_of(i)));
     double part = 1;
     if (i > 0 && !is_kind(i, -1, kind)) part = smooth_step((t - begin_of(i)) / kTransition);
     if (i + 1 < guides_.size() && !is_kind(i, 1, kind))
