@@ -246,9 +246,9 @@ TEST(Texts, BashCompletesCommandsAndValues) {
   EXPECT_THAT(bash.offers({"de"}), ElementsAre("devices"));  // what is hidden is not offered
   EXPECT_THAT(bash.offers({"--ver"}), ElementsAre("--version"));
   EXPECT_THAT(bash.offers({"render", "a.pbrt", "--style", ""}),
-              UnorderedElementsAre("ball-and-stick", "spheres", "sticks", "trace"));
+              UnorderedElementsAre("ball-and-stick", "spheres", "sticks", "trace", "cartoon"));
   EXPECT_THAT(bash.offers({"render", "--style", "=", "st"}), ElementsAre("sticks"));  // --style=st
-  EXPECT_THAT(bash.offers({"render", "--style", "="}), testing::SizeIs(4));
+  EXPECT_THAT(bash.offers({"render", "--style", "="}), testing::SizeIs(5));
   EXPECT_THAT(bash.offers({"render", "--layers", "al"}), UnorderedElementsAre("all", "albedo"));
   EXPECT_THAT(bash.offers({"render", "--layers", "Z,al"}), ElementsAre("Z,albedo"));
   EXPECT_THAT(bash.offers({"render", "--device", ""}),
@@ -280,6 +280,9 @@ TEST(Texts, BashCompletesFiles) {
 TEST(Texts, ValuesAreThoseOfTheImporters) {
   const Bash bash;
   test::write_file(bash.folder() / "molecule.xyz", "1\n\nH 0 0 0\n");
+  test::write_file(bash.folder() / "molecule.pdb",
+                   "ATOM      1  CA  ALA A   1       0.000   0.000   0.000  1.00  5.00           "
+                   "C\n");
   test::write_file(bash.folder() / "neuron.swc", "1 1 0 0 0 1 -1\n");
   test::write_file(
       bash.folder() / "robot.urdf",
@@ -288,7 +291,7 @@ TEST(Texts, ValuesAreThoseOfTheImporters) {
   const std::multimap<std::string, std::string> files = {
       {"style", "molecule.xyz"}, {"hydrogens", "molecule.xyz"}, {"view", "neuron.swc"},
       {"up", "neuron.swc"},      {"projection", "neuron.swc"},  {"light", "neuron.swc"},
-      {"groups", "robot.urdf"}};
+      {"groups", "robot.urdf"},  {"secondary", "molecule.pdb"}};
   for (const auto& [option, file] : files) {
     const test::Result refused =
         test::run_program({"info", file, "--" + option + "=nonsense"}, bash.folder());
@@ -302,7 +305,7 @@ TEST(Texts, ValuesAreThoseOfTheImporters) {
       EXPECT_THAT(taken.err, testing::Not(HasSubstr("'" + value + "' is no"))) << option;
     }
   }
-  for (const char* color : {"element", "chain", "residue", "bfactor"})
+  for (const char* color : {"element", "chain", "residue", "bfactor", "secondary"})
     EXPECT_THAT(test::run_program({"info", "molecule.xyz", "--color", color}, bash.folder()).err,
                 testing::Not(HasSubstr("is none of")))
         << color;

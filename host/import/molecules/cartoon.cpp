@@ -77,15 +77,14 @@ class CartoonDrawing {
   std::vector<Shape> shapes(const std::vector<bool>& kept) {
     std::vector<std::int64_t> guides(molecule_.residues.size(), -1);
     std::size_t count = 0;
-    for (std::size_t r = 0; r < guides.size(); ++r)
-      if (kept[r]) {
-        guides[r] = guide_atom(molecule_, molecule_.residues[r]);
-        count += guides[r] >= 0 ? 1 : 0;
-      }
+    for (std::size_t r = 0; r < guides.size(); ++r) {
+      guides[r] = guide_atom(molecule_, molecule_.residues[r]);
+      count += guides[r] >= 0 ? 1 : 0;
+    }
     detail_ = detail_for(count);
     std::vector<std::uint32_t> run;  // residues without a gap
     for (std::uint32_t r = 0; r < guides.size(); ++r) {
-      if (guides[r] < 0) continue;
+      if (guides[r] < 0 || !kept[r]) continue;
       if (!run.empty() && !goes_on(run.back(), r, guides)) finish(run, guides);
       run.push_back(r);
     }

@@ -394,13 +394,16 @@ void check_asked(const Molecule& molecule, Style style, MoleculeColor by) {
     throw InputError({"--color"}, "secondary: the file has no polymer");
 }
 
-/// Returns whether --secondary asks for the file's records, which are the default where it has any.
-bool stated_secondary(const Molecule& molecule, const ImportOptions& options) {
+/// Returns each residue's part in the secondary structure where it is needed, else nothing. By
+/// default it is the file's where it states any.
+std::vector<Secondary> asked_secondary(const Molecule& molecule, const ImportOptions& options,
+                                       bool is_needed, const std::string& path) {
   const bool by_file =
       options.choice("secondary", {"file", "dssp"}, molecule.states_secondary ? 0 : 1) == 0;
+  if (!is_needed) return {};
   if (by_file && !molecule.states_secondary)
     throw InputError({"--secondary"}, "the file has no records of helices and strands");
-  return by_file;
+  return secondary_of(molecule, by_file, path);
 }
 
 using MoleculeReader = Molecule (*)(std::string_view, const std::string&, const ImportOptions&);
@@ -430,9 +433,8 @@ Imported import_molecule(const std::filesystem::path& path, const ImportOptions&
   const std::vector<Bond> bonds =
       style == Style::spheres ? std::vector<Bond>() : all_bonds(molecule, scene.source);
   if (positions) move_atoms(molecule, *positions, options.number("model", 1));
-  std::vector<Secondary> secondary;
-  if (style == Style::cartoon || by == MoleculeColor::secondary)
-    secondary = secondary_of(molecule, stated_secondary(molecule, options), scene.source);
+  const std::vector<Secondary> secondary = asked_secondary(
+      molecule, options, style == Style::cartoon || by == MoleculeColor::secondary, scene.source);
   Painter painter(scene, molecule, secondary, by);
   MoleculeDrawing drawing(molecule, bonds, secondary, style, painter);
   const std::optional<std::string> assembly = options.text("assembly");
