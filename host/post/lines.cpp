@@ -19,12 +19,13 @@ constexpr double kSteeper = 2;  // times the slope beside it, to tell a step fro
 
 class Field {
  public:
-  explicit Field(const LayeredImage& layers)
+  explicit Field(const LayeredImage& layers, std::span<const std::uint32_t> joined = {})
       : width_(layers.data_width),
         height_(layers.data_height),
         coverage_(layers.find("A")->floats),
         depth_(layers.find("Z")->floats),
-        objects_(layers.find("object.id") ? &layers.find("object.id")->uints : nullptr) {
+        objects_(layers.find("object.id") ? &layers.find("object.id")->uints : nullptr),
+        joined_(joined) {
     for (std::size_t i = 0; i < coverage_.size(); ++i)
       if (coverage_[i] >= kSeen) {
         near_ = std::min(near_, depth_[i]);
@@ -51,11 +52,16 @@ class Field {
     if (seen_a != seen_b)
       return (double{kSeen} - double{coverage_[a]}) / (double{coverage_[b]} - double{coverage_[a]});
     if (!seen_a) return -1;
-    if ((*objects_)[a] != (*objects_)[b]) return 0.5;
+    if (object(a) != object(b)) return 0.5;
     return is_step(x0, y0, x1 - x0, y1 - y0) ? 0.5 : -1;
   }
 
  private:
+  std::uint32_t object(std::size_t i) const {
+    const std::uint32_t number = (*objects_)[i];
+    return number < joined_.size() ? joined_[number] : number;
+  }
+
   /// Returns the depth `steps` pixels from (x, y), or the last one before the background or the
   /// picture's edge.
   double depth_along(int x, int y, int dx, int dy, int steps) const {
@@ -84,6 +90,7 @@ class Field {
   int width_, height_;
   const std::vector<float>&coverage_, &depth_;
   const std::vector<std::uint32_t>* objects_;
+  std::span<const std::uint32_t> joined_;
   float near_ = std::numeric_limits<float>::max(), far_ = 0;
 };
 
@@ -115,8 +122,9 @@ void draw_depth_cue(Shown& picture, const LayeredImage& layers, double strength)
   }
 }
 
-void draw_outline(Shown& picture, const LayeredImage& layers, double width) {
-  const Field field(layers);
+void draw_outline(Shown& picture, const LayeredImage& layers, double width,
+                  std::span<const std::uint32_t> joined) {
+  const Field field(layers, joined);
   Mask mask(picture.width, picture.height);
   // Lines connect the crossings on the sides of each square of four pixel centres (marching
   // squares; Lorensen and Cline 1987).

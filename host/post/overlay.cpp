@@ -30,7 +30,7 @@ void draw(Shown& picture, const LayeredImage& layers, const Sight& sight,
           const Overlays& overlays) {
   const std::array<float, 3> ink = ink_for(picture, layers);
   if (overlays.depth_cue) draw_depth_cue(picture, layers, *overlays.depth_cue);
-  if (overlays.outline) draw_outline(picture, layers, *overlays.outline);
+  if (overlays.outline) draw_outline(picture, layers, *overlays.outline, sight.joined);
   if (overlays.scale_bar)
     draw_scale_bar(picture, bar_of(*overlays.scale_bar, sight, "scale-bar"), ink);
   if (overlays.axes) draw_axes(picture, sight.scene, ink);

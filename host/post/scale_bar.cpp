@@ -13,6 +13,7 @@
 #include <system_error>
 
 #include "base/error.h"
+#include "post/detail/joined.h"
 #include "present/least_width.h"
 
 namespace caplet::post {
@@ -54,7 +55,7 @@ double round_length(double most) {
 
 }  // namespace
 
-Sight::Sight(const Scene& of) : bounds(bounds_of(of)) {
+Sight::Sight(const Scene& of) : bounds(bounds_of(of)), joined(joined_objects(of.shapes)) {
   scene.view.camera = of.view.camera;
   scene.view.film = of.view.film;
   scene.world_from_file = of.world_from_file;
@@ -77,7 +78,8 @@ ScaleBar parse_scale_bar(const std::string& text, const std::string& flag) {
 }
 
 BarOnPicture bar_of(const ScaleBar& asked, const Sight& sight, const std::string& flag) {
-  const auto& [scene, bounds] = sight;
+  const Scene& scene = sight.scene;
+  const Bounds& bounds = sight.bounds;
   if (bounds.empty())
     throw InputError(SourceLocation{flag}, "the scene has no shapes that a bar could measure");
   if (!has_image_plane(scene.view.camera))

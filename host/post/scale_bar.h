@@ -4,19 +4,22 @@
 // Computes the length of a scale bar.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "scene/scene.h"
 
 namespace caplet::post {
 
-/// The scene properties that overlays need: a scene without its content, and the bounds of its
-/// shapes.
+/// The scene properties that overlays need: a scene without its content, the bounds of its shapes,
+/// and which of them go on in each other (joined_objects).
 struct Sight {
   Sight(const Scene& of);
   Scene scene;  // only its camera, film, unit, axes and legend
   Bounds bounds;
+  std::vector<std::uint32_t> joined;
 };
 
 struct ScaleBar {

@@ -13,8 +13,10 @@
 #include <glm/geometric.hpp>
 #include <map>
 #include <set>
+#include <span>
 
 #include "post/detail/canvas.h"
+#include "post/detail/joined.h"
 #include "post/detail/parts.h"
 #include "post/overlay_options.h"
 #include "support/import_files.h"
@@ -253,6 +255,63 @@ TEST(Outline, StepsOfDepthHaveOneAndSlopesNone) {
   draw_outline(slope.picture, slope.layers, 2);
   EXPECT_LT(red(slope.picture, 9, 10), 0.01);
   EXPECT_EQ(red(slope.picture, 6, 10), 1);
+}
+
+TEST(Outline, DoNotPartWhatGoesOn) {
+  for (const bool is_joined : {true, false}) {
+    Canvas on = canvas(
+        20, 20, {1, 1, 1}, [](int, int) { return 1.0f; }, [](int, int) { return 10.0f; });
+    for (int i = 0; i < 400; ++i)
+      if (i % 20 >= 10) on.layers.channels[2].uints[static_cast<std::size_t>(i)] = 1;
+    const std::vector<std::uint32_t> joined = {0, 0};
+    draw_outline(on.picture, on.layers, 2, std::span(joined).first(is_joined ? 2 : 1));
+    if (is_joined) {
+      EXPECT_EQ(red(on.picture, 9, 10), 1);
+    } else {
+      EXPECT_LT(red(on.picture, 9, 10), 0.01);
+    }
+  }
+}
+
+TEST(Outline, GroupsAreWhatGoesOn) {
+  const auto mesh = [](float x, const glm::vec3& normal) {
+    Shape out;
+    out.geometry = TriangleMeshShape{
+        {{x, 0, 0}, {x, 1, 0}, {x + 1, 0, 0}}, {{0, 1, 2}}, {normal, normal, normal}, {}};
+    return out;
+  };
+  const auto tube = [](float x, float radius, float length = 1) {
+    Shape out;
+    out.geometry =
+        CapsulesShape{{{x, 5, 0}, {x, 0, 0}}, {{x, 9, 0}, {x + length, 0, 0}}, {1, radius}, {}, {}};
+    return out;
+  };
+  const glm::vec3 z(0, 0, 1), y(0, 1, 0);
+  using testing::ElementsAre;
+  // A third goes on in the second; a crease, a gap and another transform part.
+  EXPECT_THAT(joined_objects({mesh(0, z), mesh(1, z), mesh(2, z), mesh(3, y), mesh(5, y)}),
+              ElementsAre(0, 0, 0, 3, 4));
+  Shape moved = mesh(1, z);
+  moved.world_from_object[3][0] = 1;
+  EXPECT_THAT(joined_objects({mesh(0, z), moved}), ElementsAre(0, 1));
+  EXPECT_THAT(joined_objects({tube(0, 1), tube(1, 1), tube(2, 2), tube(4, 2)}),
+              ElementsAre(0, 0, 2, 3));
+  EXPECT_THAT(joined_objects({tube(0, 1), tube(1, 1, 0)}), ElementsAre(0, 1));  // a ball
+  EXPECT_THAT(joined_objects({mesh(0, z), tube(1, 1)}), ElementsAre(0, 1));
+  EXPECT_THAT(joined_objects({}), testing::IsEmpty());
+}
+
+// Residues of a cartoon are shapes of their own, without lines between them.
+TEST(Outline, DoesNotPartResidues) {
+  for (const std::string atom : {"CA  GLY", "P    DA"}) {
+    std::string text;
+    for (int i = 0; i < 4; ++i)
+      text += fmt::format("ATOM  {:5}  {} A{:4}    {:8.3f}{:8.3f}{:8.3f}  1.00  1.00\n", i + 1,
+                          atom, i + 1, 3.8 * i, i % 2 == 0 ? 0.0 : 1.0, 0.0);
+    const Scene scene =
+        import_scene(test::write_file("c.pdb", text), test::NoImages(), {{{"style", "cartoon"}}});
+    EXPECT_THAT(joined_objects(scene.shapes), testing::ElementsAre(0, 0, 0, 0)) << atom;
+  }
 }
 
 // A step is what three pixels differ by: more than 3 of a depth of 100 and twice what the pixels

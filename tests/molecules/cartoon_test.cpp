@@ -178,6 +178,17 @@ TEST(Cartoons, OfAHelixStandAlongItsAxis) {
   }
 }
 
+// Along a straight chain, which has no bend, the oxygens alone say where the width lies.
+TEST(Cartoons, TurnToTheCarbonyls) {
+  std::string text;
+  for (int i = 0; i < 6; ++i) {
+    text += test::pdb_line(2 * i + 1, "CA", "ALA", 'A', i + 1, {3.8 * i, 0, 0}, 0, ' ', "C");
+    text += test::pdb_line(2 * i + 2, "O", "ALA", 'A', i + 1, {3.8 * i + 1.9, 1, 1});
+  }
+  for (const TriangleMeshShape& mesh : meshes_of(drawn_text(text)))
+    EXPECT_GT(std::abs(glm::dot(width_of(mesh), dvec3(0, std::sqrt(0.5), std::sqrt(0.5)))), 0.9999);
+}
+
 // In a strand carbonyls alternate; the ribbon does not, and lies in their plane.
 TEST(Cartoons, OfAStrandLieInThePlaneOfItsCarbonyls) {
   const std::vector<test::BackboneAtoms> atoms = test::backbone(10, -120, 120);
@@ -366,29 +377,29 @@ std::string nucleotides(int count) {
 
 TEST(Cartoons, OfNucleicAcidsAreTubesRodsAndSlabs) {
   const Scene scene = drawn_text(nucleotides(3), {{{"color", "secondary"}}});
-  EXPECT_THAT(names_of(scene.shapes), ElementsAre("chain A DA 1", "chain A DA 1", "chain A DA 2",
-                                                  "chain A DA 2", "chain A DA 3", "chain A DA 3"));
+  EXPECT_THAT(names_of(scene.shapes), ElementsAre("chain A DA 1", "chain A DA 2", "chain A DA 3",
+                                                  "chain A DA 1", "chain A DA 2", "chain A DA 3"));
   EXPECT_EQ(materials_of(scene).at(0), "nucleic acid");
   std::vector<glm::vec3> ends;
-  for (const std::size_t i : {1U, 3U, 5U}) {
+  for (std::size_t i = 0; i < 3; ++i) {
     const auto& tube = std::get<CapsulesShape>(scene.shapes[i].geometry);
-    ASSERT_EQ(tube.p0.size(), 14U);  // twelve of the tube and two rods
-    ends.push_back(tube.p0[0]);
-    for (std::size_t k = 0; k < 12; ++k) {
+    ASSERT_EQ(tube.p0.size(), 14U);  // two rods and twelve of the tube
+    ends.push_back(tube.p0[2]);
+    for (std::size_t k = 2; k < 14; ++k) {
       EXPECT_EQ(tube.radius0[k], 0.6F);
-      if (k > 0) {
+      if (k > 2) {
         EXPECT_EQ(tube.p0[k], tube.p1[k - 1]);
       }
     }
-    if (i == 5) ends.push_back(tube.p1[11]);
-    const float x = 6.0F * static_cast<float>(i / 2);
+    if (i == 2) ends.push_back(tube.p1[13]);
+    const float x = 6.0F * static_cast<float>(i);
     // The rods go from the tube over C1' to the ring's nearest atom, here N1.
-    EXPECT_EQ(tube.p1[12], glm::vec3(x + 3, 2, 0));
-    EXPECT_EQ(tube.p0[13], tube.p1[12]);
-    EXPECT_LT(glm::length(tube.p1[13] - glm::vec3(x + 3, 3.6F, 0)), 1e-3F);
-    EXPECT_EQ(tube.radius0[12], 0.25F);
-    EXPECT_LT(std::abs(tube.p0[12].y) + std::abs(tube.p0[12].z), 1e-5F);  // on the tube
-    EXPECT_NEAR(tube.p0[12].x, x + 3, 0.5F);
+    EXPECT_LT(std::abs(tube.p0[0].y) + std::abs(tube.p0[0].z), 1e-5F);  // on the tube
+    EXPECT_NEAR(tube.p0[0].x, x + 3, 0.5F);
+    EXPECT_EQ(tube.p1[0], glm::vec3(x + 3, 2, 0));
+    EXPECT_EQ(tube.p0[1], tube.p1[0]);
+    EXPECT_LT(glm::length(tube.p1[1] - glm::vec3(x + 3, 3.6F, 0)), 1e-3F);
+    EXPECT_EQ(tube.radius0[0], 0.25F);
   }
   // From the first O5' over the phosphorus atoms to the last O3'.
   EXPECT_EQ(ends, (std::vector<glm::vec3>{{1, 0, 0}, {6, 0, 0}, {12, 0, 0}, {17, 0, 0}}));
@@ -397,7 +408,7 @@ TEST(Cartoons, OfNucleicAcidsAreTubesRodsAndSlabs) {
 // The box of a slab holds the ring's atoms and 0.4 more, and is 0.5 high.
 TEST(Cartoons, SlabsHoldTheirRings) {
   const Scene scene = drawn_text(nucleotides(2));
-  const Shape& slab = scene.shapes[2];
+  const Shape& slab = scene.shapes[3];
   const auto& box = std::get<BoxShape>(slab.geometry);
   const dvec3 size = box.p1 - box.p0;
   // A hexagon is 2 r long from corner to corner, along the way to C1', and sqrt(3) r wide. Places
@@ -434,7 +445,7 @@ TEST(Cartoons, OfPhosphorusAlone) {
 TEST(Cartoons, NamesOfOldFiles) {
   std::string text = nucleotides(1);
   std::ranges::replace(text, '\'', '*');
-  EXPECT_EQ(std::get<CapsulesShape>(drawn_text(text).shapes[1].geometry).p0.size(), 14U);
+  EXPECT_EQ(std::get<CapsulesShape>(drawn_text(text).shapes[0].geometry).p0.size(), 14U);
 }
 
 // Of more residues the curves are coarser: at most 576, 256 or 96 triangles each, beside the ends.

@@ -124,6 +124,21 @@ TEST(Ribbons, HaveArrowHeads) {
   EXPECT_NEAR(extent_at(at_end, 1).width, 0.28, 1e-6);
 }
 
+// The side of a head falls from 1.9 to 0.28 within 3.8: its normal leans forward by that slope.
+TEST(Ribbons, NormalsAreThoseOfTheTaper) {
+  const auto meshes = meshes_of(straight({c, e, e, e, c}));
+  const double slope = (1.9 - 0.28) / kStep;
+  std::size_t count = 0;
+  for (std::size_t at = 0; at + 24 <= meshes[3].positions.size(); at += 24) {
+    const double x = static_cast<double>(meshes[3].positions[at].x) / kStep;
+    if (x < 2.6 || x > 3.4) continue;
+    const dvec3 normal(meshes[3].normals[at]), expected = glm::normalize(dvec3(slope, 1, 0));
+    EXPECT_LT(glm::length(normal - expected), 1e-6) << x;
+    ++count;
+  }
+  EXPECT_EQ(count, 9U);
+}
+
 // But for arrow heads, sections change by a smooth step: over 0.6 of a residue, with a slope of at
 // most 1.5 / 0.6 of the change for each residue; a piece is 1/12 of it.
 TEST(Ribbons, ChangeSmoothly) {

@@ -115,7 +115,8 @@ INSTANTIATE_TEST_SUITE_P(
     });
 
 // The records are the depositors', by their programs and eyes: the ends of helices and strands
-// differ most, and 4hhb.pdb goes on with helices where they become 3-10. The bounds are what differs.
+// differ most, and 4hhb.pdb goes on with helices where they become 3-10. The bounds are what
+// differs.
 struct Records {
   const char* file;
   std::size_t residues, most_that_differ;
@@ -166,6 +167,9 @@ TEST(DsspRules, NeedABackboneWithoutGaps) {
       second(helix.begin() + 8, helix.end());
   EXPECT_EQ(pdb_states(test::lines_of(first) + test::lines_of(second, 'A', 9, "ALA", {0, 0, 40})),
             "-HHHHHH--HHHHHH-");
+  // Where a residue is missing, its neighbours' bonds would make a 3-10 helix.
+  const std::vector<test::BackboneAtoms> behind(helix.begin() + 9, helix.end());
+  EXPECT_EQ(pdb_states(test::lines_of(first) + test::lines_of(behind, 'A', 10)), "-HHHHHH--HHHHH-");
   // Another chain, or a residue without its oxygen.
   EXPECT_EQ(pdb_states(test::lines_of(first) + test::lines_of(second, 'B', 9)), "-HHHHHH--HHHHHH-");
   std::string bare = test::lines_of(helix);

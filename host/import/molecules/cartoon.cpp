@@ -213,47 +213,62 @@ class CartoonDrawing {
                    end = std::min(at + 1, last);
       const auto steps = static_cast<std::uint32_t>(
           std::max(1.0, std::round((end - begin) * static_cast<double>(detail_.pieces))));
-      CapsulesShape tube;
       std::vector<dvec3> on_curve;
       for (std::uint32_t k = 0; k <= steps; ++k)
         on_curve.push_back(
             curve.at(std::lerp(begin, end, static_cast<double>(k) / static_cast<double>(steps))));
       if (on_curve.front() == on_curve.back()) on_curve.resize(2);
+      // The rods come first: a shape's last capsule goes on in the next shape (post/joined.cpp).
+      CapsulesShape shape = rods_of(run[i], on_curve);
       for (std::size_t k = 0; k + 1 < on_curve.size(); ++k)
-        add_capsule(on_curve[k], on_curve[k + 1], kTube, tube);
-      add_base(run[i], on_curve, guides[run[i]], tube);
-      add(run[i], std::move(tube), guides[run[i]]);
+        add_capsule(on_curve[k], on_curve[k + 1], kTube, shape);
+      add(run[i], std::move(shape), guides[run[i]]);
     }
+    for (const std::uint32_t r : run) add_slab(r, guides[r]);
   }
 
-  /// Adds the rod from the tube over the sugar's C1' to the base, and the base's slab: a box around
-  /// its rings.
-  void add_base(std::uint32_t residue, const std::vector<dvec3>& on_curve, std::int64_t guide,
-                CapsulesShape& rods) {
-    static constexpr std::array<std::string_view, 9> ring_names = {"N1", "C2", "N3", "C4", "C5",
-                                                                   "C6", "N7", "C8", "N9"};
+  struct BaseRing {
+    std::vector<dvec3> atoms;
+    dvec3 sugar{0}, root{0};  // C1' and the atom nearest to it; without C1' both are the first atom
+  };
+  /// Returns the atoms of a nucleotide's rings, N1 to C6 in their order; none if there are fewer
+  /// than three.
+  std::optional<BaseRing> base_ring(std::uint32_t residue) const {
+    static constexpr std::array<std::string_view, 9> names = {"N1", "C2", "N3", "C4", "C5",
+                                                              "C6", "N7", "C8", "N9"};
     const Residue& of = molecule_.residues[residue];
-    std::vector<dvec3> ring;
-    for (const std::string_view name : ring_names)
+    BaseRing out;
+    for (const std::string_view name : names)
       if (const std::int64_t atom = atom_named(molecule_, of, name); atom >= 0)
-        ring.push_back(place(atom));
-    if (ring.size() < 3) return;
+        out.atoms.push_back(place(atom));
+    if (out.atoms.size() < 3) return std::nullopt;
     const std::int64_t sugar = atom_named(molecule_, of, "C1'");
-    const auto nearest = [](const std::vector<dvec3>& points, const dvec3& to) {
-      return *std::ranges::min_element(points, {}, [&](const dvec3& p) {
-        const dvec3 d = p - to;
-        return glm::dot(d, d);
-      });
-    };
-    const dvec3 from = sugar >= 0 ? place(sugar) : ring[0];
-    const dvec3 root = nearest(ring, from), on_tube = nearest(on_curve, from);
-    if (on_tube != from) add_capsule(on_tube, from, kRod, rods);
-    if (from != root) add_capsule(from, root, kRod, rods);
-    add_slab(residue, ring, root, guide);
+    out.sugar = sugar >= 0 ? place(sugar) : out.atoms[0];
+    out.root = nearest(out.atoms, out.sugar);
+    return out;
   }
 
-  void add_slab(std::uint32_t residue, const std::vector<dvec3>& ring, const dvec3& root,
-                std::int64_t guide) {
+  static dvec3 nearest(const std::vector<dvec3>& points, const dvec3& to) {
+    return *std::ranges::min_element(points, {},
+                                     [&](const dvec3& p) { return glm::dot(p - to, p - to); });
+  }
+
+  /// Returns the rods from the tube over the sugar's C1' to the base.
+  CapsulesShape rods_of(std::uint32_t residue, const std::vector<dvec3>& on_curve) const {
+    CapsulesShape out;
+    const std::optional<BaseRing> ring = base_ring(residue);
+    if (!ring) return out;
+    const dvec3 on_tube = nearest(on_curve, ring->sugar);
+    if (on_tube != ring->sugar) add_capsule(on_tube, ring->sugar, kRod, out);
+    if (ring->sugar != ring->root) add_capsule(ring->sugar, ring->root, kRod, out);
+    return out;
+  }
+
+  /// Adds a box around the rings of a base.
+  void add_slab(std::uint32_t residue, std::int64_t guide) {
+    const std::optional<BaseRing> base = base_ring(residue);
+    if (!base) return;
+    const std::vector<dvec3>& ring = base->atoms;
     dvec3 middle(0), normal(0);
     for (const dvec3& p : ring) middle += p / static_cast<double>(ring.size());
     // The ring's atoms are those of a plane: the sum of its triangles is across it. N1 to C6 go
@@ -262,7 +277,7 @@ class CartoonDrawing {
       normal += glm::cross(ring[i] - middle,
                            ring[(i + 1) % std::min<std::size_t>(ring.size(), 6)] - middle);
     const std::optional<dvec3> up = unit(normal);
-    const std::optional<dvec3> outward = up ? unit(across(middle - root, *up)) : std::nullopt;
+    const std::optional<dvec3> outward = up ? unit(across(middle - base->root, *up)) : std::nullopt;
     if (!outward) return;
     const dvec3 sideways = glm::cross(*up, *outward);
     dvec3 low(0, 0, -kSlabHeight / 2), high(0, 0, kSlabHeight / 2);

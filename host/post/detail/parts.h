@@ -4,6 +4,9 @@
 // The overlays.
 #pragma once
 
+#include <cstdint>
+#include <span>
+
 #include "film/image.h"
 #include "post/detail/canvas.h"
 #include "post/scale_bar.h"
@@ -14,8 +17,10 @@ namespace caplet::post {
 std::array<float, 3> ink_for(const Shown& picture, const LayeredImage& layers);
 
 void draw_depth_cue(Shown& picture, const LayeredImage& layers, double strength);
-/// Draws silhouettes, lines between objects, and lines at large steps of depth.
-void draw_outline(Shown& picture, const LayeredImage& layers, double width);
+/// Draws silhouettes, lines between objects, and lines at large steps of depth. `joined`: numbers
+/// of objects, between those of the same number there is no line; further objects are alone.
+void draw_outline(Shown& picture, const LayeredImage& layers, double width,
+                  std::span<const std::uint32_t> joined = {});
 void draw_scale_bar(Shown& picture, const BarOnPicture& bar, const std::array<float, 3>& ink);
 void draw_axes(Shown& picture, const Scene& scene, const std::array<float, 3>& ink);
 void draw_color_bar(Shown& picture, const Legend& legend, const std::array<float, 3>& ink);
