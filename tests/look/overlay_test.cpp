@@ -5,6 +5,7 @@
 // they run around.
 #include "post/overlay.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -15,6 +16,7 @@
 #include <set>
 #include <span>
 
+#include "import/import.h"
 #include "post/detail/canvas.h"
 #include "post/detail/joined.h"
 #include "post/detail/parts.h"
