@@ -167,9 +167,12 @@ TEST(DsspRules, NeedABackboneWithoutGaps) {
       second(helix.begin() + 8, helix.end());
   EXPECT_EQ(pdb_states(test::lines_of(first) + test::lines_of(second, 'A', 9, "ALA", {0, 0, 40})),
             "-HHHHHH--HHHHHH-");
-  // Where a residue is missing, its neighbours' bonds would make a 3-10 helix.
-  const std::vector<test::BackboneAtoms> behind(helix.begin() + 9, helix.end());
-  EXPECT_EQ(pdb_states(test::lines_of(first) + test::lines_of(behind, 'A', 10)), "-HHHHHH--HHHHH-");
+  // Where a residue of a pi helix is missing, its neighbours' bonds would make an alpha helix.
+  const std::vector<test::BackboneAtoms> pi = test::backbone(16, -57, -70),
+                                         before(pi.begin(), pi.begin() + 8),
+                                         behind(pi.begin() + 9, pi.end());
+  EXPECT_EQ(pdb_states(test::lines_of(before) + test::lines_of(behind, 'A', 10)),
+            "-IIIIII--IIIII-");
   // Another chain, or a residue without its oxygen.
   EXPECT_EQ(pdb_states(test::lines_of(first) + test::lines_of(second, 'B', 9)), "-HHHHHH--HHHHHH-");
   std::string bare = test::lines_of(helix);
