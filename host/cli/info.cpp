@@ -21,8 +21,9 @@ namespace {
 
 void print_text(const nlohmann::ordered_json& info) {
   fmt::print("scene        {}\n", info["scene"].get<std::string>());
-  for (const auto& [kind, count] : info["primitives"].items())
-    fmt::print("{:<12} {}\n", kind, count.get<std::uint64_t>());
+  for (const char* counts : {"contents", "primitives"})
+    for (const auto& [kind, count] : info[counts].items())
+      fmt::print("{:<12} {}\n", kind, count.get<std::uint64_t>());
   if (const auto& bounds = info["bounds"]; bounds.is_null()) {
     fmt::print("bounds       none: there are no shapes\n");
   } else {

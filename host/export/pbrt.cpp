@@ -33,10 +33,11 @@ class SceneWriter {
 
   void write() {
     // This lists every field of the scene, so that a new one does not compile without its
-    // statement. Some only describe pictures and have no statement: the file's axes and the legend
-    // of its colours.
+    // statement. Some only describe the file or pictures and have no statement: its axes, its
+    // contents and the legend of its colours.
     const auto& [textures, materials, media, shapes, objects, instances, lights, view, source,
-                 automatic_camera, has_no_up, framing, world_from_file, unit, legend] = scene_;
+                 automatic_camera, has_no_up, framing, world_from_file, unit, legend, contents] =
+        scene_;
     const auto& [camera, filter, film, sampler, integrator] = view;
     order_materials();
     order_media();

@@ -139,6 +139,18 @@ void tell_range(const ValueRange& range, const ImportOptions& options) {
       asked ? fmt::format("; the values are from {:.6g} to {:.6g}", range.low, range.high) : "");
 }
 
+/// Adds the counts of a file to those of the scene, by their names.
+void add_contents(Scene& scene, const Scene& file) {
+  for (const auto& [name, count] : file.contents) {
+    const auto known =
+        std::ranges::find(scene.contents, name, &std::pair<std::string, std::uint64_t>::first);
+    if (known == scene.contents.end())
+      scene.contents.emplace_back(name, count);
+    else
+      known->second += count;
+  }
+}
+
 /// Returns the legend of a colour map.
 Legend legend_of(const ValueRange& range, const ImportOptions& options) {
   const auto [low, high] = options.range("range").value_or(std::pair(range.low, range.high));
@@ -209,6 +221,7 @@ Scene joined(std::vector<Imported> files, std::span<const fs::path> paths) {
       scene.unit = from.unit;
     for (const Imported& file : files) {
       if (!scene.legend) scene.legend = file.scene.legend;
+      add_contents(scene, file.scene);
       if (settings) continue;
       scene.view.film.least_width =
           std::max(scene.view.film.least_width, file.scene.view.film.least_width);

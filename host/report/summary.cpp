@@ -82,6 +82,8 @@ nlohmann::ordered_json scene_summary(const Scene& scene, const FlatScene& flat) 
   out["scene"] = scene.source;
   out["primitives"] = nlohmann::ordered_json::object();
   for (const auto& [kind, count] : count_primitives(scene)) out["primitives"][kind] = count;
+  out["contents"] = nlohmann::ordered_json::object();
+  for (const auto& [what, count] : scene.contents) out["contents"][what] = count;
   const Bounds bounds = bounds_of(scene);
   if (bounds.empty())
     out["bounds"] = nullptr;

@@ -16,6 +16,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -77,6 +78,8 @@ struct Scene {
   glm::dmat3 world_from_file{1};  // a rotation: its axes are those of the file
   std::string unit;               // the unit of lengths, as people write it ("µm"); empty: unknown
   std::optional<Legend> legend;   // the legend of its colours
+  std::vector<std::pair<std::string, std::uint64_t>>
+      contents;  // counts of what the file holds and shapes do not tell, such as "atoms"
 };
 
 /// Returns the bounds of all shapes in the world, including instances. Those that move count where

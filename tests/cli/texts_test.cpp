@@ -305,6 +305,10 @@ TEST(Texts, ValuesAreThoseOfTheImporters) {
       EXPECT_THAT(taken.err, testing::Not(HasSubstr("'" + value + "' is no"))) << option;
     }
   }
+  EXPECT_THAT(
+      test::run_program({"info", "molecule.pdb"}, bash.folder()).out,
+      HasSubstr("atoms        1\nresidues     1\nchains       1\nligands      0\nmodels       "
+                "1\n"));
   for (const char* color : {"element", "chain", "residue", "bfactor", "secondary"})
     EXPECT_THAT(test::run_program({"info", "molecule.xyz", "--color", color}, bash.folder()).err,
                 testing::Not(HasSubstr("is none of")))

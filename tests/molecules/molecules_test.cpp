@@ -104,6 +104,23 @@ INSTANTIATE_TEST_SUITE_P(Data, MoleculeFile,
                            return name;
                          });
 
+// Counts of the wwPDB's pages on 4HHB: four chains, four haems, two phosphates; 221 water
+// molecules.
+TEST(Contents, AreCounted) {
+  using testing::ElementsAre, testing::Pair;
+  EXPECT_THAT(scene_of_text("c.xyz", "1\n\nC 0 0 0\n1\n\nC 0 0 1\n").contents,
+              ElementsAre(Pair("atoms", 1), Pair("models", 2)));
+  CAPLET_NEEDS_DATA();
+  EXPECT_THAT(scene_of(test::data_folder() / "mol/pdb/4hhb.pdb").contents,
+              ElementsAre(Pair("atoms", 4779), Pair("residues", 574 + 6 + 221), Pair("chains", 4),
+                          Pair("ligands", 6), Pair("models", 1)));
+  const std::vector<std::filesystem::path> two{test::data_folder() / "mol/pdb/1crn.pdb",
+                                               test::data_folder() / "mol/pdb/1l2y.pdb"};
+  EXPECT_THAT(import_scenes(two, test::NoImages()).contents,
+              ElementsAre(Pair("atoms", 327 + 304), Pair("residues", 66), Pair("chains", 2),
+                          Pair("ligands", 0), Pair("models", 39)));
+}
+
 TEST(Assemblies, AreInstancesOfTheirChains) {
   CAPLET_NEEDS_DATA();
   const Scene scene = scene_of(test::data_folder() / "mol/pdb/1M4X.pdb", {{{"assembly", "1"}}});

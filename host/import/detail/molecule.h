@@ -50,6 +50,10 @@ struct Residue {
   Secondary stated = Secondary::coil;  // by the file's records, where it has any
 };
 
+/// Neighbours of a chain whose alpha carbons, or phosphorus atoms, are further apart have residues
+/// missing between them; in angstroms.
+inline constexpr float calpha_gap = 4.6F, phosphorus_gap = 9.0F;
+
 using Bond = std::pair<std::uint32_t, std::uint32_t>;  // atoms, the smaller index first
 
 /// Copies of some chains. Each of `operators` makes one copy.

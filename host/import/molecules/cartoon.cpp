@@ -20,10 +20,9 @@ namespace {
 
 using glm::dvec3;
 
-constexpr double kLongestCalpha = 4.6, kLongestPhosphorus = 9.0;  // as in the style trace
-constexpr float kTube = 0.6F, kRod = 0.25F;                       // radii of nucleic acids
-constexpr double kSlabHeight = 0.5, kSlabMargin = 0.4;            // beyond the atoms of the ring
-constexpr int kStrandPasses = 2;  // of smoothing the sides of strands
+constexpr float kTube = 0.6F, kRod = 0.25F;             // radii of nucleic acids
+constexpr double kSlabHeight = 0.5, kSlabMargin = 0.4;  // beyond the atoms of the ring
+constexpr int kStrandPasses = 2;                        // of smoothing the sides of strands
 
 // Of files with more residues the curves are cut more coarsely, which bounds their memory: an amino
 // acid of 3.8 angstroms has at most 576, 256 or 96 triangles.
@@ -100,9 +99,9 @@ class CartoonDrawing {
   bool goes_on(std::uint32_t from, std::uint32_t to,
                const std::vector<std::int64_t>& guides) const {
     const Residue &a = molecule_.residues[from], &b = molecule_.residues[to];
-    const double gap = b.kind == ResidueKind::amino_acid ? kLongestCalpha : kLongestPhosphorus;
+    const float gap = b.kind == ResidueKind::amino_acid ? calpha_gap : phosphorus_gap;
     return a.chain == b.chain && a.kind == b.kind &&
-           glm::length(place(guides[to]) - place(guides[from])) <= gap;
+           glm::length(place(guides[to]) - place(guides[from])) <= static_cast<double>(gap);
   }
 
   void finish(std::vector<std::uint32_t>& run, const std::vector<std::int64_t>& guides) {

@@ -42,8 +42,6 @@ constexpr float kBall = 0.25F;  // of the van der Waals radius
 constexpr float kBondRadius = 0.12F, kStickRadius = 0.2F, kTraceRadius = 0.45F;  // angstroms
 constexpr float kThinTrace = 0.25F, kThickTrace = 1.1F;  // radii at the least and greatest b factor
 constexpr int kTraceSteps = 6;                           // capsules between two residues
-constexpr float kCalphaGap = 4.6F,
-                kPhosphorusGap = 9.0F;  // a larger distance means that residues are missing
 
 class Painter {
  public:
@@ -253,7 +251,7 @@ class MoleculeDrawing {
       const Residue& residue = molecule_.residues[r];
       if (!kept[r] || residue.trace_atom < 0) continue;
       const Atom& atom = molecule_.atoms[static_cast<std::size_t>(residue.trace_atom)];
-      const float gap = residue.kind == ResidueKind::amino_acid ? kCalphaGap : kPhosphorusGap;
+      const float gap = residue.kind == ResidueKind::amino_acid ? calpha_gap : phosphorus_gap;
       const std::pair now{residue.chain, residue.kind};
       if (!run.empty() && (last != now || glm::length(atom.position - run.back()->position) > gap))
         finish();
@@ -406,6 +404,20 @@ std::vector<Secondary> asked_secondary(const Molecule& molecule, const ImportOpt
   return secondary_of(molecule, by_file, path);
 }
 
+/// Counts what is drawn of the molecule, and the models of its file. Ligands are residues of no
+/// polymer but water; formats without residues have atoms and models.
+std::vector<std::pair<std::string, std::uint64_t>> contents_of(const Molecule& molecule) {
+  std::vector<std::pair<std::string, std::uint64_t>> out = {{"atoms", molecule.atoms.size()}};
+  if (std::ranges::any_of(molecule.residues, [](const Residue& r) { return !r.name.empty(); })) {
+    out.emplace_back("residues", molecule.residues.size());
+    out.emplace_back("chains", molecule.chains.size());
+    out.emplace_back("ligands",
+                     std::ranges::count(molecule.residues, ResidueKind::other, &Residue::kind));
+  }
+  out.emplace_back("models", molecule.frames);
+  return out;
+}
+
 using MoleculeReader = Molecule (*)(std::string_view, const std::string&, const ImportOptions&);
 
 Imported import_molecule(const std::filesystem::path& path, const ImportOptions& options,
@@ -443,6 +455,7 @@ Imported import_molecule(const std::filesystem::path& path, const ImportOptions&
   else
     scene.shapes = drawing.shapes(scene, std::vector<bool>(molecule.residues.size(), true));
   scene.legend = painter.legend();
+  scene.contents = contents_of(molecule);
   scene.has_no_up = true;
   scene.unit = "\u00c5";
   Imported out(std::move(scene));
