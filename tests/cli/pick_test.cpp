@@ -397,6 +397,28 @@ TEST(Pick, ScenesThatMoveAtATime) {
   EXPECT_NEAR(picked({"--pixel", "1,1", "--time", "0"}).at("point").at(2).get<double>(), -1, 1e-5);
 }
 
+// Residues of a cartoon are 3.8 apart, and each reaches halfway to the next.
+TEST(Pick, TellsTheResidueOfACartoon) {
+  std::string text;
+  for (const char* atom : {"    1  CA  GLY A   1       0.000", "    2  CA  LYS A   2       3.800",
+                           "    3  CA  ALA A  33A      7.600"})
+    text += std::string("ATOM  ") + atom + "   0.000   0.000  1.00  1.00           C\n";
+  const std::filesystem::path folder = test::temporary_folder();
+  std::ofstream(folder / "c.pdb") << text;
+  const auto at = [&](const std::string& x) {
+    const Result result = test::run_program(
+        {"pick", "c.pdb", "--style", "cartoon", "--json", "--ray", x + ",0,5,0,0,-1"}, folder);
+    EXPECT_EQ(result.code, 0) << result.err;
+    const auto report = nlohmann::json::parse(result.out);
+    EXPECT_NEAR(report.at("t").get<double>(), 5 - 0.28, 0.004);  // of a 20-gon: 0.28 cos(pi / 20)
+    return report.at("object").get<std::string>();
+  };
+  EXPECT_EQ(at("1.8"), "chain A GLY 1");
+  EXPECT_EQ(at("2"), "chain A LYS 2");
+  EXPECT_EQ(at("5.6"), "chain A LYS 2");
+  EXPECT_EQ(at("5.8"), "chain A ALA 33A");
+}
+
 TEST(Pick, PixelsOfTheImage) {
   const auto folder = folder_with_scene();
   const auto pick = [&](std::vector<std::string> more) {
