@@ -148,10 +148,12 @@ TEST(Cartoons, AreNotTwisted) {
   }
 }
 
-/// The direction of the ribbon's width in the middle of a mesh, and of its curve there.
+/// The direction of the ribbon's width in the middle of a mesh: points 23 and 0 are at one end of
+/// the section, 11 and 12 at the other.
 dvec3 width_of(const TriangleMeshShape& mesh) {
   const std::size_t at = mesh.positions.size() / 24 / 2 * 24;
-  return glm::normalize(dvec3(mesh.positions[at]) - dvec3(mesh.positions[at + 12]));
+  return glm::normalize(dvec3(mesh.positions[at]) + dvec3(mesh.positions[at + 23]) -
+                        dvec3(mesh.positions[at + 11]) - dvec3(mesh.positions[at + 12]));
 }
 
 // The width of an alpha helix lies along its axis, as its carbonyls do (Carson and Bugg 1986). It
@@ -187,6 +189,23 @@ TEST(Cartoons, TurnToTheCarbonyls) {
   }
   for (const TriangleMeshShape& mesh : meshes_of(drawn_text(text)))
     EXPECT_GT(std::abs(glm::dot(width_of(mesh), dvec3(0, std::sqrt(0.5), std::sqrt(0.5)))), 0.9999);
+}
+
+// One carbonyl of a strand that is turned by 60 degrees turns the widths of its two residues by 30,
+// and two means of weights 1, 2, 1 leave (0 + 22.5) / 4 + 22.5 / 2 + 7.5 / 4 = 18.75. Means of unit
+// vectors that differ by up to 30 degrees are those of their angles within 0.7.
+TEST(Cartoons, StrandsAreSmooth) {
+  std::string text = "SHEET    1   A 1 ALA A   1  ALA A  10  0" + std::string(40, ' ') + "\n";
+  for (int i = 0; i < 10; ++i) {
+    const double turn = glm::radians(i == 4 ? 60.0 : 0.0);
+    text += test::pdb_line(2 * i + 1, "CA", "ALA", 'A', i + 1, {3.4 * i, 0, 0}, 0, ' ', "C");
+    text += test::pdb_line(2 * i + 2, "O", "ALA", 'A', i + 1,
+                           {3.4 * i + 1.9, 1.5 * std::cos(turn), 1.5 * std::sin(turn)});
+  }
+  const auto meshes = meshes_of(drawn_text(text));
+  ASSERT_EQ(meshes.size(), 10U);
+  for (const std::size_t i : {4U, 5U})
+    EXPECT_NEAR(glm::degrees(std::acos(std::abs(width_of(meshes[i]).y))), 18.75, 0.7) << i;
 }
 
 // In a strand carbonyls alternate; the ribbon does not, and lies in their plane.
@@ -231,6 +250,15 @@ TEST(Cartoons, AreParted) {
   EXPECT_NEAR(bounds_of(scene.shapes[4]).min.x, 17.22, 2e-6);
   EXPECT_NEAR(bounds_of(scene.shapes[1]).max.x, 6.75, 1e-6);  // halfway to the next
   EXPECT_EQ(test::open_edges_of(meshes_of(scene)), 0U);
+}
+
+// An amino acid and a nucleotide beside it in a chain are no run.
+TEST(Cartoons, OfBothKindsInOneChain) {
+  const Scene scene = drawn_text(calphas({{'A', 0}}) +
+                                 test::pdb_line(2, "P", "DA", 'A', 2, {4, 0, 0}, 0, ' ', "P"));
+  ASSERT_EQ(scene.shapes.size(), 2U);
+  EXPECT_EQ(std::get<CapsulesShape>(scene.shapes[0].geometry).radius0.at(0), 0.28F);
+  EXPECT_EQ(std::get<CapsulesShape>(scene.shapes[1].geometry).radius0.at(0), 0.6F);
 }
 
 TEST(Cartoons, LigandsAreSticksByElement) {

@@ -181,6 +181,21 @@ TEST(DsspRules, NeedABackboneWithoutGaps) {
   EXPECT_EQ(pdb_states(bare), "-HHHHHH--HHHHH-");
 }
 
+// A peptide bond is at most 2.5 long; the bonds across the longer one are still there.
+TEST(DsspRules, PeptideBondsHaveALength) {
+  const std::vector<test::BackboneAtoms> helix = test::backbone(16, -57, -47);
+  const std::vector<test::BackboneAtoms> first(helix.begin(), helix.begin() + 8),
+      second(helix.begin() + 8, helix.end());
+  const auto states = [&](double length) {
+    const glm::dvec3 bond = second[0].n - first[7].c;
+    return pdb_states(
+        test::lines_of(first) +
+        test::lines_of(second, 'A', 9, "ALA", (length / glm::length(bond) - 1) * bond));
+  };
+  EXPECT_EQ(states(2.49), "-HHHHHHHHHHHHHH-");
+  EXPECT_EQ(states(2.51), "-HHHHHH--HHHHHH-");
+}
+
 // Proline has no hydrogen to give.
 TEST(DsspRules, ProlineGivesNoBond) {
   EXPECT_EQ(pdb_states(test::lines_of(test::backbone(12, -57, -47), 'A', 1, "PRO")),
