@@ -326,10 +326,11 @@ void state_secondary(Molecule& molecule, const std::vector<std::int32_t>& number
     if (chain == chains.end() || range.kind == Secondary::coil) continue;
     const std::vector<std::uint32_t>& of_chain = chain->second;
     const auto number_of = [&](std::uint32_t r) { return numbers[r]; };
-    const auto [first, first_end] =
-        std::ranges::equal_range(of_chain, range.number[0], {}, number_of);
-    const auto [last, last_end] =
-        std::ranges::equal_range(of_chain, range.number[1], {}, number_of);
+    // clang 14 cannot compile std::ranges::equal_range.
+    const auto first = std::ranges::lower_bound(of_chain, range.number[0], {}, number_of),
+               first_end = std::ranges::upper_bound(of_chain, range.number[0], {}, number_of),
+               last = std::ranges::lower_bound(of_chain, range.number[1], {}, number_of),
+               last_end = std::ranges::upper_bound(of_chain, range.number[1], {}, number_of);
     const auto coded = [&](auto from, auto to, char code, auto otherwise) {
       const auto found = std::find_if(from, to, [&](std::uint32_t r) { return codes[r] == code; });
       return found == to ? otherwise : found;
