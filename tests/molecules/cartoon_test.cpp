@@ -476,6 +476,22 @@ TEST(Cartoons, NamesOfOldFiles) {
   EXPECT_EQ(std::get<CapsulesShape>(drawn_text(text).shapes[0].geometry).p0.size(), 14U);
 }
 
+// Copies count as residues: of 1,501 in two places curves are as coarse as of 3,002.
+TEST(Cartoons, OfManyCopiesAreCoarse) {
+  std::string text = "REMARK 350 BIOMOLECULE: 1\nREMARK 350 APPLY THE FOLLOWING TO CHAINS: A\n";
+  for (const char* row :
+       {"1   1  1.0 0.0 0.0  0.0", "2   1  0.0 1.0 0.0  0.0", "3   1  0.0 0.0 1.0  0.0",
+        "1   2  1.0 0.0 0.0  0.0", "2   2  0.0 1.0 0.0  0.0", "3   2  0.0 0.0 1.0 50.0"})
+    text += fmt::format("REMARK 350   BIOMT{}\n", row);
+  for (int i = 0; i < 1501; ++i)
+    text += test::pdb_line(i + 1, "CA", "GLY", 'A', i + 1, {3.8 * (i % 200), 5.0 * (i / 200), 0}, 0,
+                           ' ', "C");
+  const Scene scene = drawn_text(text, {{{"assembly", "1"}}});
+  ASSERT_EQ(scene.instances.size(), 2U);
+  EXPECT_EQ(std::get<TriangleMeshShape>(scene.objects.at(0).shapes.at(5).geometry).triangles.size(),
+            8U * 2 * 12);
+}
+
 // Of more residues the curves are coarser: at most 576, 256 or 96 triangles each, beside the ends.
 TEST(Cartoons, OfManyResiduesAreCoarse) {
   const auto triangles = [](int count) {

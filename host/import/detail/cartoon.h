@@ -22,10 +22,11 @@ std::int64_t guide_atom(const Molecule& molecule, const Residue& residue);
 /// ("chain A LYS 33"): of an amino acid a mesh, of a nucleotide capsules and a box. `secondary` has
 /// a value for each residue, `material` returns the material of a guide atom. A chain has a gap
 /// where guide atoms are more than 4.6 angstroms (amino acids) or 9 apart, as in the style trace;
-/// an amino acid between two gaps is a ball.
+/// an amino acid between two gaps is a ball. Curves are cut the more coarsely the more residues the
+/// molecule has, times the `copies` of it that are placed.
 std::vector<Shape> cartoon_shapes(const Molecule& molecule, const std::vector<Secondary>& secondary,
                                   const std::vector<bool>& kept,
                                   const std::function<std::uint32_t(const Atom&)>& material,
-                                  const std::string& path);
+                                  const std::string& path, std::size_t copies = 1);
 
 }  // namespace caplet

@@ -73,14 +73,14 @@ class CartoonDrawing {
                  const std::function<std::uint32_t(const Atom&)>& material, const std::string& path)
       : molecule_(molecule), secondary_(secondary), material_(material), path_(path) {}
 
-  std::vector<Shape> shapes(const std::vector<bool>& kept) {
+  std::vector<Shape> shapes(const std::vector<bool>& kept, std::size_t copies) {
     std::vector<std::int64_t> guides(molecule_.residues.size(), -1);
     std::size_t count = 0;
     for (std::size_t r = 0; r < guides.size(); ++r) {
       guides[r] = guide_atom(molecule_, molecule_.residues[r]);
       count += guides[r] >= 0 ? 1 : 0;
     }
-    detail_ = detail_for(count);
+    detail_ = detail_for(count * copies);
     std::vector<std::uint32_t> run;  // residues without a gap
     for (std::uint32_t r = 0; r < guides.size(); ++r) {
       if (guides[r] < 0 || !kept[r]) continue;
@@ -312,8 +312,8 @@ std::int64_t guide_atom(const Molecule& molecule, const Residue& residue) {
 std::vector<Shape> cartoon_shapes(const Molecule& molecule, const std::vector<Secondary>& secondary,
                                   const std::vector<bool>& kept,
                                   const std::function<std::uint32_t(const Atom&)>& material,
-                                  const std::string& path) {
-  return CartoonDrawing(molecule, secondary, material, path).shapes(kept);
+                                  const std::string& path, std::size_t copies) {
+  return CartoonDrawing(molecule, secondary, material, path).shapes(kept, copies);
 }
 
 }  // namespace caplet

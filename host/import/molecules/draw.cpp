@@ -168,8 +168,9 @@ class MoleculeDrawing {
         style_(style),
         painter_(painter) {}
 
-  /// Makes the shapes of the residues that `kept` marks.
-  std::vector<Shape> shapes(const Scene& scene, const std::vector<bool>& kept) {
+  /// Makes the shapes of the residues that `kept` marks, which are placed `copies` times.
+  std::vector<Shape> shapes(const Scene& scene, const std::vector<bool>& kept,
+                            std::size_t copies = 1) {
     parts_.clear();
     for (std::uint32_t i = 0; i < molecule_.atoms.size(); ++i) {
       const Atom& atom = molecule_.atoms[i];
@@ -195,7 +196,7 @@ class MoleculeDrawing {
     if (style_ == Style::cartoon)
       for (Shape& shape : cartoon_shapes(
                molecule_, secondary_, kept,
-               [this](const Atom& atom) { return painter_.material(atom); }, scene.source))
+               [this](const Atom& atom) { return painter_.material(atom); }, scene.source, copies))
         out.push_back(std::move(shape));
     return out;
   }
@@ -337,7 +338,7 @@ void add_assembly(Scene& scene, const Molecule& molecule, const std::string& nam
     Object object;
     object.name = fmt::format("assembly {}, part {}", name, scene.objects.size() + 1);
     object.where = {scene.source, 0, 0};
-    object.shapes = drawing.shapes(scene, kept);
+    object.shapes = drawing.shapes(scene, kept, part.operators.size());
     if (object.shapes.empty()) continue;
     for (const glm::dmat4& placed : part.operators)
       scene.instances.push_back(
