@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <map>
 #include <mutex>
 #include <optional>
 
@@ -163,24 +164,43 @@ std::vector<Device> Device::chosen(const std::string& choice, Encoding encoding,
     const Found& found = devices[index];
     const Encoding natural =
         profile_of(found.info) == Profile::gpu ? Encoding::single : natural_encoding(found.info);
-    out.push_back(
-        open(found.device, found.info, encoding == Encoding::automatic ? natural : encoding));
+    out.push_back(open(found.device, found.info,
+                       encoding == Encoding::automatic ? natural : encoding,
+                       share_of(found.device, found.info)));
   }
   return out;
 }
 
-Device Device::open(const cl::Device& device, const DeviceInfo& info, Encoding encoding) {
+Device::Shared Device::share_of(const cl::Device& device, const DeviceInfo& info) {
+  const auto opened = [&] {
+    return cl_call("opening the device", info.name, [&] {
+      return Shared{cl::Context(device), std::make_shared<Programs>()};
+    });
+  };
+  // Other drivers compile in moments, and an error may end all that a context of theirs can do.
+  if (!is_pocl(info)) return opened();
+  static std::mutex mutex;
+  // It is never destroyed, since PoCL may be unloaded before it would be.
+  static auto& contexts = *new std::map<cl_device_id, Shared>;
+  const std::lock_guard lock(mutex);
+  const auto found = contexts.find(device());
+  return found != contexts.end() ? found->second
+                                 : contexts.emplace(device(), opened()).first->second;
+}
+
+Device Device::open(const cl::Device& device, const DeviceInfo& info, Encoding encoding,
+                    const Shared& shared) {
   Device out;
   out.info_ = info;
   out.encoding_ = encoding;
   out.profile_ = profile_of(info);
   out.device_ = device;
   cl_call("opening the device", info.name, [&] {
-    out.context_ = cl::Context(device);
+    out.context_ = shared.context;
     out.queue_ = std::make_shared<cl::CommandQueue>(out.context_, device);
   });
   out.accounting_ = std::make_shared<Accounting>();
-  out.programs_ = std::make_shared<Programs>();
+  out.programs_ = shared.programs;
   if (out.is_pocl()) tell_of_pocl_cache();
   if (info.bundled) use_bundled_linker();
   return out;
@@ -204,7 +224,8 @@ std::vector<Device> Device::split(std::size_t parts) const {
   for (const cl::Device& device : devices) {
     DeviceInfo info = info_;
     info.compute_units = device.getInfo<CL_DEVICE_MAX_COMPUTE_UNITS>();
-    out.push_back(open(device, info, encoding_));
+    const Shared own{cl::Context(device), std::make_shared<Programs>()};
+    out.push_back(open(device, info, encoding_, own));
   }
   return out;
 }

@@ -109,6 +109,22 @@ void set_null_arguments(const Device& device, cl::Kernel& kernel) {
 
 }  // namespace
 
+std::optional<Device::Programs::Compiled> Device::Programs::find(const Key& key) {
+  const std::lock_guard lock(mutex_);
+  const auto found = entries_.find(key);
+  if (found == entries_.end()) return std::nullopt;
+  found->second.last_use = ++uses_;
+  return found->second.compiled;
+}
+
+void Device::Programs::add(const Key& key, const Compiled& compiled) {
+  const std::lock_guard lock(mutex_);
+  entries_.insert_or_assign(key, Entry{compiled, ++uses_});
+  if (entries_.size() <= most) return;
+  entries_.erase(std::ranges::min_element(entries_, {},
+                                          [](const auto& entry) { return entry.second.last_use; }));
+}
+
 Program::Program(const Device& device, const std::string& name, const std::string& options)
     : Program(from_source(device, name, kernel_source(name), options)) {}
 
@@ -125,16 +141,13 @@ Program Program::from_source(const Device& device, const std::string& name,
   out.name_ = name;
   const std::pair shared_key(all_options, source);
   const bool shares = cache == BinaryCache::automatic && device.programs_;
-  if (shares) {
-    const std::lock_guard lock(device.programs_->mutex);
-    const auto found = device.programs_->compiled.find(shared_key);
-    if (found != device.programs_->compiled.end()) {
-      out.program_ = found->second.program;
-      out.own_declarations_ = found->second.own_declarations;
+  if (shares)
+    if (const auto found = device.programs_->find(shared_key)) {
+      out.program_ = found->program;
+      out.own_declarations_ = found->own_declarations;
       out.build_seconds_ = seconds_since(start);
       return out;
     }
-  }
   if (const std::optional<Binary> binary =
           keeps_binary ? cache_load(key, "program") : std::nullopt) {
     if (std::optional<cl::Program> program = from_binary(device, *binary, all_options)) {
@@ -153,11 +166,7 @@ Program Program::from_source(const Device& device, const std::string& name,
       if (const Binary binary = binary_of(out.program_); !binary.empty())
         cache_store(key, "program", binary);
   }
-  if (shares) {
-    const std::lock_guard lock(device.programs_->mutex);
-    device.programs_->compiled.emplace(
-        shared_key, Device::Programs::Compiled{out.program_, out.own_declarations_});
-  }
+  if (shares) device.programs_->add(shared_key, {out.program_, out.own_declarations_});
   out.build_seconds_ = seconds_since(start);
   if (!out.from_cache_ && out.build_seconds_ >= noticeable_seconds)
     log::info("compiled {} for {} in {:.1f} s", name, device.info().name, out.build_seconds_);

@@ -11,6 +11,7 @@
 #include <numbers>
 
 #include "coats.h"
+#include "support/thorough.h"
 #include "trials.h"
 
 namespace caplet::test::estimates_test {
@@ -112,13 +113,14 @@ TEST(BsdfEstimates, WeightsAreOfTheValues) {
 }
 
 TEST(BsdfEstimates, AreReciprocal) {
+  const std::size_t count = thorough() ? 200000 : 100000;
   for (const MaterialOnTrial& material : materials_on_trial())
     if (material.trial.estimates)
       for (const BsdfTrial::Case& one : material.trial.cases)
         for (const auto& [o, i] : {std::pair(0.3, 1.1), std::pair(1.3, 0.7)}) {
           const Direction wo = direction(o, 0.3), wi = direction(i, 2.9);
-          const Mean forward = mean_value(one.bsdf, wo, wi, 200000),
-                     backward = mean_value(one.bsdf, wi, wo, 200000);
+          const Mean forward = mean_value(one.bsdf, wo, wi, count),
+                     backward = mean_value(one.bsdf, wi, wo, count);
           const double cos_i = double{wi[2]}, cos_o = double{wo[2]};
           EXPECT_NEAR(forward.value / cos_i, backward.value / cos_o,
                       5 * std::hypot(forward.error / cos_i, backward.error / cos_o) +

@@ -472,7 +472,7 @@ TEST(Pick, MillionsOfRaysDoNotFillMemory) {
     ::getrusage(RUSAGE_CHILDREN, &usage);
     return usage.ru_maxrss;
   };
-  constexpr std::size_t few = 1'000'000, many = 4'000'000;
+  constexpr std::size_t few = 500'000, many = 2'000'000;
   write("few.npy", few);
   write("many.npy", many);
   long peaks[2] = {};
@@ -486,7 +486,7 @@ TEST(Pick, MillionsOfRaysDoNotFillMemory) {
   }
   const Table table = read_table(folder / "out.npy");
   EXPECT_GT(table.rows, many / 2);
-  // Three million more rays are 72 MB of input and more of output; what is held at a time is a
+  // 1.5 million more rays are 36 MB of input and more of output; what is held at a time is a
   // quarter of a million.
   EXPECT_LT(peaks[1] - peaks[0], 24 * 1024);
 }

@@ -439,8 +439,12 @@ TEST_F(OneEdit, AMaterial) {
                   "another kind");
 }
 
+constexpr const char* small_film =
+    "Film \"rgb\" \"integer xresolution\" 96 \"integer yresolution\" 72\n";
+
 TEST(TexturedEdits, AreThoseOfTheEditedScene) {
   const std::string world =
+      std::string(small_film) +
       "WorldBegin\nLightSource \"infinite\"\nTexture \"c\" \"spectrum\" \"checkerboard\" \"rgb "
       "tex1\" [.8 .1 .1]\n"
       "\"float uscale\" 8\nMaterial \"diffuse\" \"texture reflectance\" \"c\" Shape \"sphere\"\n"
@@ -469,7 +473,8 @@ TEST(TexturedEdits, AreThoseOfTheEditedScene) {
 // The material keeps its displacement, whose steps a material made anew has elsewhere.
 TEST(TexturedEdits, KeepWhatBendsTheNormals) {
   Edited edited(
-      scene_of_text("WorldBegin\nLightSource \"infinite\"\nTexture \"h\" \"float\" "
+      scene_of_text(std::string(small_film) +
+                    "WorldBegin\nLightSource \"infinite\"\nTexture \"h\" \"float\" "
                     "\"checkerboard\" \"float uscale\" 8\n"
                     "Material \"diffuse\" \"texture displacement\" \"h\" Shape \"sphere\""));
   edited.edit(MaterialEdit{0, DiffuseMaterial{ConstantSpectrum{0.3}}});
@@ -481,6 +486,7 @@ TEST(TexturedEdits, KeepWhatBendsTheNormals) {
 // Enough lamps for a light tree, which an edit of one makes anew.
 TEST(LampEdits, MakeTheLightTreeAgain) {
   std::string world =
+      std::string(small_film) +
       "WorldBegin\nShape \"sphere\" \"float radius\" 60\nAreaLightSource \"diffuse\"\n";
   for (int i = 0; i < 24; ++i)
     world += "Shape \"capsule\" \"point3 p0\" [" + std::to_string(i) + " 0 0] \"point3 p1\" [" +

@@ -89,7 +89,7 @@ struct ChainCase {
   std::string name;
   std::vector<RoundSolid> pieces;
   std::vector<RoundSolid> solids;  // of the same union as the pieces; empty: the pieces
-  std::size_t samples = std::size_t{1} << 20;
+  std::size_t samples = std::size_t{1} << (thorough() ? 20 : 18);
   friend void PrintTo(const ChainCase& c, std::ostream* out) { *out << c.name; }
 };
 
@@ -227,7 +227,7 @@ TEST(EmissiveChains, GiveTheLightOfTheirUnionInInstances) {
       solids.push_back({dvec3(m * glm::dvec4(piece.p0, 1)), dvec3(m * glm::dvec4(piece.p1, 1)),
                         scale * piece.r0, scale * piece.r1});
   }
-  expect_irradiance(scene, solids, std::size_t{1} << 21);
+  expect_irradiance(scene, solids, std::size_t{1} << (thorough() ? 21 : 19));
 }
 
 /// Heights of the two ends that are left to be sampled, in 255ths, of each light.

@@ -78,13 +78,13 @@ __kernel void sky(SCENE, float px, float py, float pz, __global const float* dir
   out[2 * i + 1] = sqrt(fmax(0.0f, 1.0f / weight - 1.0f));
 }
 
-// This takes from the 2^32 numbers those from i << shift on, 2^shift of them: how many choose each
-// of up to 8 lights, and whether every chance is the light's own.
-__kernel void selections(SCENE, uint shift, __global uint* out, uint count) {
+// This takes from the 2^32 numbers every `step`th of the 2^shift from i << shift on: how many choose
+// each of up to 8 lights, and whether every chance is the light's own.
+__kernel void selections(SCENE, uint shift, uint step, __global uint* out, uint count) {
   MAKE_SCENE;
   uint counts[8] = {0, 0, 0, 0, 0, 0, 0, 0};
   uint wrong = lambda.x > 0.0f ? 0u : 1u;
-  for (uint k = 0; k < (1u << shift); ++k) {
+  for (uint k = 0; k < (1u << shift); k += step) {
     float chance;
     const uint chosen = light_select(&scene.lights, (i << shift) + k, &chance);
     ++counts[min(chosen, 7u)];
@@ -223,12 +223,13 @@ std::vector<glm::dvec2> LightBench::sky(const std::vector<glm::dvec3>& direction
   return found;
 }
 
-std::vector<std::uint64_t> LightBench::all_selections() {
+std::vector<std::uint64_t> LightBench::all_selections(std::uint32_t step) {
   constexpr std::size_t shift = 14, items = std::size_t{1} << (32 - shift);
   Buffer<std::uint32_t> out(device_, 9 * items);
   cl::Kernel kernel = program_->kernel("selections");
   cl_uint at = bind_scene(kernel);
   kernel.setArg(at++, static_cast<cl_uint>(shift));
+  kernel.setArg(at++, step);
   kernel.setArg(at++, out.handle());
   kernel.setArg(at++, static_cast<cl_uint>(items));
   launch(device_, kernel, items, 1);

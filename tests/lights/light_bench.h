@@ -51,9 +51,9 @@ class LightBench {
   /// for unit directions.
   std::vector<glm::dvec2> sky(const std::vector<glm::dvec3>& directions,
                               const glm::dvec3& p = glm::dvec3(0));
-  /// How many of all 2^32 random numbers choose each of up to 8 lights; the ninth: how often the
-  /// chance was not the light's own.
-  std::vector<std::uint64_t> all_selections();
+  /// How many of every `step`th (a power of two) of all 2^32 random numbers choose each of up to 8
+  /// lights; the ninth: how often the chance was not the light's own.
+  std::vector<std::uint64_t> all_selections(std::uint32_t step);
   /// The light that light_select chooses by each of the numbers.
   std::vector<std::uint32_t> select(const std::vector<std::uint32_t>& u);
   /// The light that light_choose takes by each of the numbers.

@@ -9,13 +9,14 @@ import base64
 import contextlib
 import itertools
 import json
+import pathlib
 import re
 import subprocess
 import sys
 import tempfile
 import time
 
-from page_test import PATIENCE, PIXELS, SKIPPED, decoded, editable, main, mean_difference, viewer
+from page_test import PATIENCE, PIXELS, RATIO, SKIPPED, decoded, editable, main, mean_difference, viewer
 
 try:
     import websocket
@@ -30,6 +31,7 @@ class Page:
     """A tab of a Firefox of its own."""
 
     def __init__(self, address, folder):
+        (pathlib.Path(folder) / "user.js").write_text(f'user_pref("layout.css.devPixelsPerPx", "{RATIO}");')
         self.process = subprocess.Popen(["firefox-esr", "--headless", "--no-remote", "--profile", folder, "--width", "1000", "--height", "640", "--remote-debugging-port", "0"],
                                         stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
         for line in self.process.stderr:
@@ -89,14 +91,14 @@ class Page:
 
     def apart(self, other, count):
         """The mean difference to another picture as soon as there are so many samples of every pixel; before that, -1."""
-        samples, now = self.data("samples"), self.pixels()
-        return mean_difference(other, now) if samples >= count and samples == self.data("samples") else -1
+        now = self.script(f"return +document.getElementById('stage').dataset.samples >= given[0] ? {PIXELS} : null", count)
+        return mean_difference(other, decoded(*now)) if now else -1
 
     def middle(self, which):
         return self.script("const e = document.querySelector(given[0]); e.scrollIntoView({block: 'center'}); const b = e.getBoundingClientRect(); return [b.x + b.width / 2, b.y + b.height / 2]", which)
 
     def mouse(self, *steps):
-        """Steps: (x, y) of the stage from its top left, "down" or "up"."""
+        """Steps: (x, y) of the page from the stage's top left, "down" or "up"."""
         left, top = self.script("const b = document.getElementById('stage').getBoundingClientRect(); return [b.x, b.y]")
         actions = [{"type": f"pointer{one.capitalize()}", "button": 0} if isinstance(one, str) else
                    {"type": "pointerMove", "x": round(left + one[0]), "y": round(top + one[1]), "duration": 20} for one in steps]
@@ -148,7 +150,7 @@ def converges(program, scenes, out):
         shown.until_samples(4)
         width, height, pixels = shown.pixels()
         stage = shown.script("const b = document.getElementById('stage').getBoundingClientRect(); return [Math.round(b.width), Math.round(b.height)]")
-        assert [width, height] == stage and 60 < sum(pixels) / len(pixels) < 220
+        assert [width, height] == [round(RATIO * side) for side in stage] and 60 < sum(pixels) / len(pixels) < 220
         shown.script("const e = document.getElementById('exposure'); e.value = 2; e.dispatchEvent(new Event('input'))")
         assert sum(shown.pixels()[2]) > 1.2 * sum(pixels) and shown.data("samples") == 4
         shown.picture(out / "firefox.png")
@@ -180,7 +182,7 @@ def inspects(program, scenes, out):
         for k in range(8):
             x, y = int((0.1 + 0.1 * k) * width), int((0.4 + 0.05 * (k % 5)) * height)
             before = shown.script("return document.getElementById('table').dataset.pixel ?? ''")
-            shown.mouse((x, y))
+            shown.mouse(((x + 0.5) / RATIO, (y + 0.5) / RATIO))
             shown.mouse("down", "up")
             pixel = shown.until("the crossings", lambda: shown.script("const p = document.getElementById('table').dataset.pixel; return p !== given[0] && p", before))
             said = subprocess.run([program, "pick", scene, "--pixel", pixel, "--size", f"{width}x{height}", "--all", "--json"], check=True, capture_output=True, text=True)

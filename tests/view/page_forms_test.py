@@ -11,7 +11,7 @@ import sys
 import time
 
 import page_test
-from page_test import PIXELS, ActionChains, By, Keys, decoded, mean_difference, page, viewer
+from page_test import PIXELS, RATIO, ActionChains, By, Keys, decoded, mean_difference, page, viewer
 
 SCENE = """
 LookAt 4 -5 3  0 0 0.3  0 0 1
@@ -44,9 +44,9 @@ class Work:
 
     def whole(self):
         """What is shown, once it is of the page's size and done; before that nothing."""
-        done, now = self.shown.script(f"""const c = document.getElementById('picture'), s = document.getElementById('stage');
-            return [+s.dataset.samples >= 2 && c.width >= s.clientWidth - 2, {PIXELS}]""")
-        return decoded(*now) if done else None
+        now = self.shown.script(f"""const c = document.getElementById('picture'), s = document.getElementById('stage');
+            return +s.dataset.samples >= 2 && c.width >= {RATIO} * s.clientWidth - 2 ? {PIXELS} : null""")
+        return decoded(*now) if now else None
 
     def edits(self):
         return int(self.shown.find("stage").get_attribute("data-edits") or 0)

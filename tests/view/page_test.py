@@ -26,6 +26,8 @@ import time
 import traceback
 import urllib.parse
 
+import numpy as np
+
 try:
     from selenium import webdriver
     from selenium.common.exceptions import NoAlertPresentException, StaleElementReferenceException
@@ -81,6 +83,7 @@ def viewer(program, scene, *options):
 
 
 SIZE = (1000, 640)
+RATIO = 0.5  # pixels of a picture to one of the page: most of a test's time would go into pictures of the full size
 idle = []  # browsers that no page has: to start one takes as long as many a test
 
 
@@ -88,7 +91,8 @@ def browser():
     if idle:
         return idle.pop()
     options = Options()
-    for argument in ("--headless=new", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage", "--window-size={},{}".format(*SIZE)):
+    for argument in ("--headless=new", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage", "--window-size={},{}".format(*SIZE),
+                     f"--force-device-scale-factor={RATIO}"):
         options.add_argument(argument)
     options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
     driver = webdriver.Chrome(options=options, service=Service(shutil.which("chromedriver")))
@@ -138,8 +142,8 @@ class Page:
 
     def apart(self, other, count):
         """The mean difference to another picture as soon as there are so many samples of every pixel; before that, -1."""
-        samples, now = self.script(f"return [+document.getElementById('stage').dataset.samples || 0, {PIXELS}]")
-        return mean_difference(other, decoded(*now)) if samples >= count else -1
+        now = self.script(f"return +document.getElementById('stage').dataset.samples >= arguments[0] ? {PIXELS} : null", count)
+        return mean_difference(other, decoded(*now)) if now else -1
 
     def words(self, which):
         """The texts of all elements of a selector, of one moment: lists of the page are made anew at any time."""
@@ -161,7 +165,7 @@ class Page:
     def mouse(self, x, y):
         """To a pixel of the picture, from the top left."""
         box = self.find("stage").rect
-        return ActionChains(self.driver, duration=20).move_to_element_with_offset(self.find("stage"), x - box["width"] / 2, y - box["height"] / 2)
+        return ActionChains(self.driver, duration=20).move_to_element_with_offset(self.find("stage"), (x + 0.5) / RATIO - box["width"] / 2, (y + 0.5) / RATIO - box["height"] / 2)
 
     def choose(self, name):
         """What has that name in the scene's tree, and waits until the page knows what it is."""
@@ -241,7 +245,8 @@ def mean_difference(a, b):
     assert a[:2] == b[:2], (a[:2], b[:2])
     if a[2] == b[2]:
         return 0
-    return sum(abs(x - y) for x, y in zip(a[2], b[2])) / len(a[2])
+    bytes_a, bytes_b = (np.frombuffer(one[2], np.uint8).astype(np.int16) for one in (a, b))
+    return float(np.abs(bytes_a - bytes_b).mean())
 
 
 # --- Cases: of the program, the folder of scenes and that of pictures ---
@@ -252,7 +257,7 @@ def converges(program, scenes, out):
         # Every text of the state: what is asked for later may come when the picture is done.
         shown.script("const state = document.getElementById('state'); window.states = [state.textContent]; new MutationObserver(() => "
                      "window.states.push(state.textContent)).observe(state, {childList: true, characterData: true, subtree: true})")
-        shown.until("a picture", lambda: shown.pixels()[0] > 300)
+        shown.until("a picture", lambda: shown.pixels()[0] > 200)
         first = shown.pixels()
         shown.until_samples(16)
         shown.until("the last state", lambda: re.search("16 of 16 samples", shown.find("state").text))
@@ -261,7 +266,7 @@ def converges(program, scenes, out):
         assert noise and noise[-1] < noise[0], states
         width, height, pixels = shown.pixels()
         stage = shown.find("stage").rect
-        assert (width, height) == (round(stage["width"]), round(stage["height"])), (width, height, stage)
+        assert (width, height) == (round(RATIO * stage["width"]), round(RATIO * stage["height"])), (width, height, stage)
         assert 0.1 < mean_difference(first, shown.pixels()) < 40
         assert 60 < sum(pixels) / len(pixels) < 220
         shown.picture(out / "converged.png")
@@ -276,7 +281,7 @@ def camera(program, scenes, out):
     with viewer(program, scenes / "gallery.pbrt", "--spp", "2") as served, page(served.address) as shown:
         shown.until_samples(2)
         first = shown.pixels()
-        shown.mouse(300, 200).click_and_hold().move_by_offset(80, 10).release().perform()
+        shown.mouse(150, 100).click_and_hold().move_by_offset(80, 10).release().perform()
         shown.until("another picture", lambda: shown.apart(first, 2) > 5)
         turned = shown.pixels()
         shown.find("stage").send_keys("+", "+", Keys.ARROW_LEFT)
@@ -505,7 +510,7 @@ def two_pages(program, scenes, out):
         one.until_samples(2)
         two.until_samples(2)
         before = two.pixels()
-        one.mouse(300, 200).click_and_hold().move_by_offset(80, 10).release().perform()
+        one.mouse(150, 100).click_and_hold().move_by_offset(80, 10).release().perform()
         two.until("the other's camera", lambda: two.apart(before, 2) > 5)
         one.until_samples(2)
         assert mean_difference(one.pixels(), two.pixels()) == 0
