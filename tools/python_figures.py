@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 # Copyright Caplet authors
-"""Figures of docs/performance.md, "From Python": arrays to hits, beside `caplet pick` on files of the same rays.
+"""Figures of docs/performance.md, "From Python": arrays to hits, beside `caplet pick` on files of the same rays, and pictures one after another.
 
 usage: python_figures.py CAPLET [RAYS [CAPSULES [ROUNDS]]]    (the package is to be importable; defaults 10000000 1000000 5)
+       python_figures.py --views                              pictures a second by caplet.render, alone
 
 Both ways take turns; medians are printed. Of Python it is the time of one call of caplet.trace, arrays to arrays, with the scene on the
 device; of the program what it says: the time "in all", with reading the rays, sending the scene and writing the hits, and that of the queries alone.
@@ -19,6 +20,24 @@ import time
 import numpy as np
 
 import caplet
+
+
+def views(count=40):
+    """Pictures of some capsules, each of a camera of its own: by a call of caplet.render."""
+    scene = caplet.Scene()
+    rng = np.random.default_rng(16)
+    p0 = rng.random((1000, 3)) - 0.5
+    scene.add_capsules(p0, p0 + rng.normal(0, 0.05, (1000, 3)), 0.01)
+    scene.add_light(caplet.lights.infinite())
+    for size in ((16, 12), (320, 240)):
+        caplet.render(scene, spp=1, size=size)  # compiles
+        times = []
+        for i in range(count):
+            scene.look_at((2 * np.cos(i), 2 * np.sin(i), 0.5), (0, 0, 0))
+            start = time.perf_counter()
+            caplet.render(scene, spp=1, size=size)
+            times.append(time.perf_counter() - start)
+        print(f"caplet.render of {size[0]} x {size[1]} pixels, 1 sample, 1000 capsules: {1000 * statistics.median(times):.0f} ms a picture")
 
 
 def main(program, rays=10_000_000, capsules=1_000_000, rounds=5):
@@ -62,4 +81,7 @@ def main(program, rays=10_000_000, capsules=1_000_000, rounds=5):
 if __name__ == "__main__":
     if len(sys.argv) < 2:
         sys.exit(__doc__)
-    main(sys.argv[1], *map(int, sys.argv[2:]))
+    if sys.argv[1] == "--views":
+        views()
+    else:
+        main(sys.argv[1], *map(int, sys.argv[2:]))

@@ -110,6 +110,32 @@ std::string stage_source(Stage stage, const RowMasks& rows) {
       rows);
 }
 
+std::string options_of(std::string_view source, std::string_view options) {
+  const auto is_of_name = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
+  };
+  const auto names = [&](std::string_view macro) {
+    for (std::size_t at = source.find(macro); at != std::string_view::npos;
+         at = source.find(macro, at + 1)) {
+      const std::size_t end = at + macro.size();
+      if ((at == 0 || !is_of_name(source[at - 1])) &&
+          (end == source.size() || !is_of_name(source[end])))
+        return true;
+    }
+    return false;
+  };
+  std::string out;
+  while (!options.empty()) {
+    const std::size_t end = std::min(options.find(' '), options.size());
+    const std::string_view option = options.substr(0, end);
+    options.remove_prefix(std::min(end + 1, options.size()));
+    if (option.empty()) continue;
+    if (option.starts_with("-D") && !names(option.substr(2, option.find('=') - 2))) continue;
+    out += fmt::format("{}{}", out.empty() ? "" : " ", option);
+  }
+  return out;
+}
+
 namespace {
 
 /// Returns whether kernels are for all rows of the lists, not for those of the scene.
@@ -169,8 +195,9 @@ void Kernels::compile(std::span<const Stage> stages, std::size_t most) {
     auto& compiled = compiled_[static_cast<std::size_t>(stage)];
     if (compiled) continue;
     const std::string name = row_of(stage).name;
+    const std::string source = stage_source(stage, options_.rows);
     Program program =
-        Program::from_source(device_, name, stage_source(stage, options_.rows), options_.compiler);
+        Program::from_source(device_, name, source, options_of(source, options_.compiler));
     cl::Kernel kernel = program.kernel(name);
     const Launch launch = row_of(stage).launch;
     const bool is_one = launch == Launch::one ||

@@ -9,6 +9,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -51,6 +52,11 @@ struct StageOptions {
   /// also work.
   StageOptions together_with(const StageOptions& others) const;
 };
+
+/// Returns those of the options, words like "-DNAME=1", whose macro the source names: scenes that
+/// differ in nothing that a stage knows share its program.
+std::string options_of(std::string_view source, std::string_view options);
+
 /// Returns the options for a scene. With the variable CAPLET_ROWS=all the kernels are for all rows
 /// of the lists, so that tests of other scenes find them compiled; pictures are the same. Throws
 /// InputError if the variable says anything else but `scene`.

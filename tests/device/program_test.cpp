@@ -153,6 +153,48 @@ TEST_F(ProgramTest, AnUnusableCacheFolderIsNoError) {
   EXPECT_FALSE(build().from_cache());
 }
 
+cl_program handle_of(const Program& program) {
+  return program.kernel("count_up").getInfo<CL_KERNEL_PROGRAM>()();
+}
+
+TEST_F(ProgramTest, DevicesOfPoclShareWhatTheyCompile) {
+  CAPLET_NEEDS_POCL();
+  const Device other = test::test_device(Encoding::automatic);
+  EXPECT_EQ(other.context()(), device_.context()());
+  EXPECT_NE(other.queue()(), device_.queue()());
+  const std::uint64_t before = device_.bytes_allocated();
+  const Buffer<cl_uint> buffer(other, 1000);
+  EXPECT_EQ(device_.bytes_allocated(), before);
+  const Program here = Program::from_source(device_, "count_up", count_up, "-DSTEP=1"),
+                there = Program::from_source(other, "count_up", count_up, "-DSTEP=1"),
+                unlike = Program::from_source(other, "count_up", count_up, "-DSTEP=2");
+  EXPECT_EQ(handle_of(here), handle_of(there));
+  EXPECT_NE(handle_of(here), handle_of(unlike));
+  EXPECT_EQ(run(other, there, 1, 2, 1), (std::vector<cl_uint>{1, 0}));
+  EXPECT_EQ(run(other, unlike, 1, 2, 1), (std::vector<cl_uint>{2, 0}));
+  if (device_.info().compute_units < 2) return;
+  for (const Device& part : device_.split(2)) EXPECT_NE(part.context()(), device_.context()());
+}
+
+TEST_F(ProgramTest, TheOneUsedLongestAgoIsDropped) {
+  CAPLET_NEEDS_POCL();
+  constexpr int most = 64;
+  const auto of_step = [&](int step) {
+    return Program::from_source(device_, "count_up", count_up, fmt::format("-DSTEP={}", step));
+  };
+  const Program dropped = of_step(1), used = of_step(2), other = of_step(3);
+  for (int step = 4; step <= most; ++step) of_step(step);
+  EXPECT_EQ(handle_of(of_step(1)), handle_of(dropped));
+  EXPECT_EQ(handle_of(of_step(2)), handle_of(used));
+  for (int step = 4; step <= most; ++step) of_step(step);
+  of_step(2);
+  of_step(3);
+  of_step(most + 1);
+  EXPECT_EQ(handle_of(of_step(2)), handle_of(used));
+  EXPECT_EQ(handle_of(of_step(3)), handle_of(other));
+  EXPECT_NE(handle_of(of_step(1)), handle_of(dropped));
+}
+
 TEST_F(ProgramTest, PoclKeepsItsOwnCache) {
   CAPLET_NEEDS_POCL();
   Program::from_source(device_, "count_up", count_up, "-DSTEP=1");

@@ -4,6 +4,7 @@
 // The stages' kernels and the buffers that they take.
 #include "render/kernels.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include <array>
@@ -73,6 +74,21 @@ TEST(Kernels, OfAllLanesCallWhatIsDeclared) {
         Program::from_source(test_device(), "lanes", stage_source(stage), "-DCAPLET_REAL_WIDTH=8");
     EXPECT_EQ(program.own_declarations(), test_device().is_pocl());
   }
+}
+
+TEST(Kernels, HaveTheOptionsThatTheyName) {
+  EXPECT_EQ(options_of("#ifdef A_B\nx = C;", "-cl-x -DA_B -DA=1 -DC=2  -DC_D -DB"),
+            "-cl-x -DA_B -DC=2");
+  EXPECT_EQ(options_of("AB BA A", "-DA"), "-DA");
+  EXPECT_EQ(options_of("AB BA", "-DA"), "");
+  const std::string sky = "-DCAPLET_UNSEEN_SKY", tree = "-DCAPLET_LIGHT_TREE",
+                    motion = "-DCAPLET_MOTION";
+  const auto kept = [&](Stage stage) {
+    return options_of(stage_source(stage), fmt::format("{} {} {}", sky, tree, motion));
+  };
+  EXPECT_EQ(kept(Stage::shade), fmt::format("{} {} {}", sky, tree, motion));
+  EXPECT_EQ(kept(Stage::extend), motion);
+  EXPECT_EQ(kept(Stage::connect_alpha), motion);
 }
 
 TEST(Kernels, WantTheBuffersOfTheirGroups) {
