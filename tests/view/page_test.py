@@ -190,6 +190,7 @@ class Page:
         alert = self.until("a question", lambda: self.alert())
         text = alert.text
         alert.accept() if yes else alert.dismiss()
+        ActionChains(self.driver).reset_actions()  # a question that came between two keys leaves Control down
         return text
 
     def alert(self):
@@ -526,6 +527,8 @@ def saves(program, scenes, out):
         shown.choose("capsule 5")
         before = shown.pixels()
         shown.move("0 -1 0.5")
+        shown.until("a moved capsule", lambda: shown.apart(before, 2) > 0)
+        before = shown.pixels()
         shown.until("the mark of unsaved changes", shown.is_unsaved)
         shown.press_save()
         assert "comments" in shown.answer(False)
@@ -575,9 +578,11 @@ def keeps(program, scenes, out):
         first = shown.pixels()
         shown.choose("capsule 5")
         shown.move("0 -1 0.5")
+        shown.until("another picture", lambda: shown.apart(first, 2) > 0)
+        once = shown.pixels()
         shown.choose("capsule 7")
         shown.move("0 0 1")
-        shown.until("another picture", lambda: shown.apart(first, 2) > 0)
+        shown.until("a third picture", lambda: shown.apart(once, 2) > 0)
         moved = shown.pixels()
         shown.driver.refresh()
         shown.until("the changes after a reload", lambda: shown.is_unsaved() and shown.apart(moved, 2) == 0)

@@ -24,7 +24,7 @@ constexpr float kTube = 0.6F, kRod = 0.25F;             // radii of nucleic acid
 constexpr double kSlabHeight = 0.5, kSlabMargin = 0.4;  // beyond the atoms of the ring
 constexpr int kStrandPasses = 2;                        // of smoothing the sides of strands
 
-// Of files with more residues the curves are cut more coarsely, which bounds their memory: an amino
+// Files with more residues have coarser curves, which bounds their memory: an amino
 // acid of 3.8 angstroms has at most 576, 256 or 96 triangles.
 constexpr std::size_t kMostFine = 3'000, kMostMedium = 20'000;
 

@@ -54,7 +54,7 @@ export class Keep {
   told(keep) {
     const before = this.now.name;
     this.now = keep;
-    if (keep.name !== before || !this.name.value) this.name.value = keep.name ?? "";
+    if (keep.name !== before) this.name.value = keep.name ?? "";  // an empty field is one that somebody is filling
     this.discard.disabled = !keep.unsaved;
     this.title(keep.unsaved);
     const is = keep.unsaved ? keep.kept ? "unsaved" : "not kept" : "saved";
