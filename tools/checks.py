@@ -21,8 +21,25 @@ import time
 ROOT = pathlib.Path(__file__).resolve().parents[1]
 BUILD = ROOT / "build"
 RUN = str(ROOT / "run")
-# What a test that passes, or any test that begins, says.
-QUIET = re.compile(r"^ *(\d+/\d+ Test +#.*Passed|Start +\d+)")
+# What tests say that begin or pass. The line by which a test begins is held back until it says more.
+QUIET = re.compile(r"^ *(\d+/\d+ Test +#.*Passed|Start +\d+|\[ RUN  |\[ +OK \]|\[-{10}\])")
+BEGINS = re.compile(r"^\[ RUN  ")
+
+
+def count_tests(said, log):
+    """Passed, failed and skipped tests, by what ctest said and its LastTest.log. A program of GoogleTest counts by its own tests."""
+    passed = failed = skipped = 0
+    blocks = dict(re.findall(r"^\d+/\d+ Testing: (\S+)\n(.*?)(?=^\d+/\d+ Testing: |\Z)", log, re.M | re.S))
+    for name, state in re.findall(r"^ *\d+/\d+ +Test +#\d+: (\S+) \.*[ *]*(Passed|Skipped|\w+)", said, re.M):
+        ok, bad, out = (len(re.findall(rf"^\[ +{word} +\] .* \(\d+ ms\)$", blocks.get(name, ""), re.M)) for word in ("OK", "FAILED", "SKIPPED"))
+        if state == "Skipped":
+            out = max(1, out)
+        elif state != "Passed":
+            bad = max(1, bad)  # one that crashes says nothing of it
+        elif ok + out == 0:
+            ok = 1
+        passed, failed, skipped = passed + ok, failed + bad, skipped + out
+    return passed, failed, skipped
 
 
 class Totals:
@@ -48,27 +65,27 @@ class Totals:
 
     def ctest(self, preset, folder):
         """The tests of a preset, which run in build/FOLDER."""
-        lines = []
+        lines, begun = [], ""
         command = ["ctest", "--preset", preset, "-j", str(len(os.sched_getaffinity(0)))]
         with subprocess.Popen(command, cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, stdin=subprocess.DEVNULL, text=True,
                               errors="replace") as process, open(BUILD / folder / "ctest.log", "w") as log:
             for line in process.stdout:
                 lines.append(line)
                 log.write(line)
-                if not QUIET.match(line):
-                    print(line, end="", flush=True)
-        text = "".join(lines)
-        counts = re.findall(r"tests? passed, (\d+) tests? failed out of (\d+)", text)
-        bad, total = map(int, counts[-1]) if counts else (1, 1)
-        if total == 0 or (process.returncode != 0 and bad == 0):
-            bad, total = bad + 1, total + 1
-        self.passed += total - bad
-        self.failed += bad
-        if bad:
-            self.failures.append(f"build/{folder}: {bad} of {total} tests (build/{folder}/ctest.log)")
+                quiet = QUIET.match(line)
+                if not quiet:
+                    print(begun, line, sep="", end="", flush=True)
+                begun = line if quiet and BEGINS.match(line) else ""
         log = BUILD / folder / "Testing/Temporary/LastTest.log"
         details = log.read_text(errors="replace") if log.exists() else ""
-        self.skipped += text.count("***Skipped")
+        passed, failed, skipped = count_tests("".join(lines), details)
+        if failed == 0 and (process.returncode != 0 or passed == 0):
+            failed = 1
+        self.passed += passed
+        self.failed += failed
+        self.skipped += skipped
+        if failed:
+            self.failures.append(f"build/{folder}: {failed} of {passed + failed + skipped} tests (build/{folder}/ctest.log)")
         self.skip_reasons.update(re.findall(r": Skipped\n(.*)", details))
         # Those that pytest skips within one test of ctest.
         for count, reason in re.findall(r"^SKIPPED \[(\d+)\] \S+: (.*)$", details, re.M):

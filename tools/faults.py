@@ -200,7 +200,7 @@ def programs():
     """All test programs, with the rooms that they link. The built program counts as a link of all rooms."""
     out = []
     for cmake in sorted((TREE / "tests").glob("*/CMakeLists.txt")):
-        for name, labels in re.findall(r"caplet_test\((\w+) LABELS ([a-z ]+?) (?:LINK|SOURCES)", cmake.read_text()):
+        for name, labels in re.findall(r"caplet_test\((\w+) LABELS ([a-z ]+?) (?:LINK|SOURCES|SHARDS)", cmake.read_text()):
             target = f"tests/{cmake.parent.name}/{name}"
             query = subprocess.run(["ninja", "-C", BUILD, "-t", "query", target], text=True, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL).stdout
             rooms = set(re.findall(r"host/(?:\w+/)?lib(\w+)\.(?:a|so)", query)) | ({"*"} if "bin/caplet" in query else set())

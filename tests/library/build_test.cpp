@@ -20,6 +20,8 @@
 #include <string>
 #include <vector>
 
+#include "library_device.h"
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -27,11 +29,6 @@ using caplet::Statement;
 using testing::Contains;
 using testing::HasSubstr;
 using testing::IsSupersetOf;
-
-caplet::Device test_device() {
-  const char* named = std::getenv("CAPLET_TEST_DEVICE");
-  return caplet::choose_device(named ? named : "");
-}
 
 class LibraryBuild : public testing::Test {
  protected:

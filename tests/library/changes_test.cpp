@@ -20,14 +20,11 @@
 #include <string>
 #include <vector>
 
+#include "library_device.h"
+
 namespace {
 
 namespace fs = std::filesystem;
-
-caplet::Device test_device() {
-  const char* named = std::getenv("CAPLET_TEST_DEVICE");
-  return caplet::choose_device(named ? named : "");
-}
 
 class LibraryChanges : public testing::Test {
  protected:

@@ -25,15 +25,12 @@
 #include <utility>
 #include <vector>
 
+#include "library_device.h"
+
 namespace {
 
 namespace fs = std::filesystem;
 using testing::HasSubstr;
-
-caplet::Device test_device() {
-  const char* named = std::getenv("CAPLET_TEST_DEVICE");
-  return caplet::choose_device(named ? named : "");
-}
 
 class Library : public testing::Test {
  protected:

@@ -12,7 +12,7 @@ namespace caplet::test {
 
 namespace {
 
-/// Once a process: ctest runs every test in one of its own.
+/// Prints the device once a process.
 void announce(const Device& device) {
   static const bool done = [&] {
     const DeviceInfo& info = device.info();
