@@ -355,7 +355,7 @@ class SceneWriter {
     if (!shape.materials.empty() || std::holds_alternative<CsgShape>(shape.geometry))
       return std::nullopt;
     const auto* capsules = std::get_if<CapsulesShape>(&shape.geometry);
-    if (capsules && capsules->p0.size() == 1 && !capsules->materials.empty())
+    if (capsules && count_of(*capsules) == 1 && !capsules->materials.empty())
       return capsules->materials[0];
     return shape.material;
   }

@@ -108,6 +108,9 @@ struct GeometryWriter {
   Statement write(const CapsulesShape& of, const char*) const {
     if (of.p0.size() == 1) return one_capsule(of);
     Statement out = begin("capsules");
+    if (!of.times.empty())
+      out.list("float", "times", of.times.size(),
+               [&of](Text& text, std::size_t i) { text << of.times[i]; });
     points(out, "point3", "p0", of.p0);
     points(out, "point3", "p1", of.p1);
     floats(out, "radius", of.radius0);

@@ -72,21 +72,25 @@ std::vector<std::array<float, 3>> arrays_of(const std::vector<glm::vec3>& points
 }
 
 CapsulesShape geometry_of(const CapsuleArrays& arrays) {
+  const std::size_t times = std::max<std::size_t>(1, arrays.times.size());
   const std::size_t count = arrays.p0.size();
-  const auto check = [&](const char* name, std::size_t given, bool may_be_none) {
-    if (given != count && !(may_be_none && given == 0))
-      throw InputError(fmt::format("capsules: {} has {} entries, and p0 {}", name, given, count));
+  const auto check = [&](const char* name, std::size_t given, bool may_be_none,
+                         std::size_t at_times = 1) {
+    if (given * at_times != count && !(may_be_none && given == 0))
+      throw InputError(fmt::format("capsules: {} has {} entries, and p0 {}{}", name, given, count,
+                                   at_times > 1 ? fmt::format(" at {} times", times) : ""));
   };
   check("p1", arrays.p1.size(), false);
   check("radius0", arrays.radius0.size(), false);
   check("radius1", arrays.radius1.size(), true);
-  check("materials", arrays.materials.size(), true);
-  check("u", arrays.u.size(), true);
+  check("materials", arrays.materials.size(), true, times);
+  check("u", arrays.u.size(), true, times);
   if (count == 0) throw InputError("capsules: there are none");
   CapsulesShape out{points_of(arrays.p0), points_of(arrays.p1), arrays.radius0, arrays.radius1,
                     arrays.materials};
   if (out.radius1 == out.radius0) out.radius1.clear();
   for (const auto& u : arrays.u) out.u.emplace_back(u[0], u[1]);
+  out.times = arrays.times;
   return out;
 }
 
@@ -312,6 +316,7 @@ CapsuleArrays Scene::capsule_arrays(std::uint32_t shape) const {
   CapsuleArrays out{arrays_of(found->p0), arrays_of(found->p1), found->radius0, found->radius1,
                     found->materials};
   for (const glm::vec2& u : found->u) out.u.push_back({u.x, u.y});
+  out.times = found->times;
   return out;
 }
 

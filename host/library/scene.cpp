@@ -175,7 +175,7 @@ std::uint32_t Scene::shape(const std::string& name) const {
 std::size_t Scene::capsules(std::uint32_t shape) const {
   const auto* capsules =
       std::get_if<CapsulesShape>(&shape_at(data_->model, place_of(data_->model, shape)).geometry);
-  return capsules ? capsules->p0.size() : 0;
+  return capsules ? count_of(*capsules) : 0;
 }
 
 Capsule Scene::capsule(std::uint32_t shape, std::size_t capsule) const {

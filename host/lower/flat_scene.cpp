@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "shared/families.h"
+#include "shared/shapes.h"
 
 namespace caplet {
 
@@ -44,7 +45,8 @@ bool FlatScene::has_media() const {
 }
 
 bool FlatScene::moves() const {
-  return std::ranges::any_of(instances,
+  return (shapes & shape_bit(shape_moving_capsule)) != 0 ||
+         std::ranges::any_of(instances,
                              [](const InstanceRecord& one) { return one.motion_segments > 0; });
 }
 

@@ -33,7 +33,7 @@ struct FlatScene {
   std::uint64_t light_kinds() const;
   std::uint64_t medium_kinds() const;
   bool has_media() const;      // or surfaces that light passes
-  bool moves() const;          // some instance moves while the shutter is open
+  bool moves() const;          // some instance or capsule moves while the shutter is open
   bool multiscatters() const;  // some material makes up for what one scattering loses
   int leaf_kind_bits = CAPLET_LEAF_KIND_BITS;
   bool sky_is_unseen = false;  // by camera rays: there is a backdrop

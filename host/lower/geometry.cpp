@@ -159,7 +159,7 @@ class GeometryLowering {
     std::array<std::uint64_t, shape_count> counts{};
     const auto add = [&](const Shape& shape) {
       if (const auto* capsules = std::get_if<CapsulesShape>(&shape.geometry))
-        counts[shape_sphere] += capsules->p0.size();
+        counts[shape_sphere] += count_of(*capsules);
       if (const auto* mesh = std::get_if<TriangleMeshShape>(&shape.geometry))
         counts[shape_triangle] += mesh->triangles.size();
       if (const auto* mesh = std::get_if<BilinearMeshShape>(&shape.geometry))
@@ -321,9 +321,16 @@ class GeometryLowering {
       reserve_more(out_.mesh_uvs, 2 * capsules.u.size());
       for (const glm::vec2& u : capsules.u) out_.mesh_uvs.insert(out_.mesh_uvs.end(), {u.x, u.y});
     }
-    reserve_more(subtree.primitives, capsules.p0.size());
-    for (std::size_t i = 0; i < capsules.p0.size(); ++i) {
-      const FlatPrimitive flat = flat_capsule(capsules, i, identity ? nullptr : &m, scale);
+    std::optional<CapsuleMotion> motion;
+    std::optional<MovingCapsules> moving;
+    if (!capsules.times.empty()) {
+      const FilmSettings& film = scene_.view.film;
+      moving.emplace(motion.emplace(capsules, film.shutter_open, film.open_time()), out_.leaves);
+    }
+    reserve_more(subtree.primitives, count_of(capsules));
+    for (std::size_t i = 0; i < count_of(capsules); ++i) {
+      const FlatPrimitive flat =
+          moving ? moving->primitive(i) : flat_capsule(capsules, i, identity ? nullptr : &m, scale);
       const int kind = static_cast<int>(flat.shape);
       const uint material = capsules.materials.empty() ? record.material : capsules.materials[i];
       const auto [found, fresh] = geometry_of.try_emplace({kind, material}, 0);

@@ -14,6 +14,7 @@
 #include "base/error.h"
 #include "render/detail/known_rays.h"
 #include "render/detail/launch_policy.h"
+#include "shared/shapes.h"
 
 namespace caplet {
 
@@ -168,6 +169,8 @@ StageOptions stage_options(const FlatScene& scene, const Device& device) {
                     {"cameras", 0}}};
   if (all)
     for (auto& [list, rows] : out.rows) rows = ~std::uint64_t{0};
+  // Programs without times have no shapes that move.
+  if (!scene.moves()) out.rows.at("shapes") &= ~shape_bit(shape_moving_capsule);
   return out;
 }
 

@@ -143,7 +143,8 @@ TracedPaths trace(DeviceScene& scene, std::span<const RayRecord> rays,
   std::vector<Stage> stages{Stage::extend, Stage::connect};
   if (scene.has_camera_stage()) stages.push_back(Stage::extend_camera);
   scene.kernels().compile(stages, paths);
-  PathBuffers buffers(scene.device(), paths, 1, PathNeeds{.layers = Layers::none()});
+  PathBuffers buffers(scene.device(), paths, 1,
+                      PathNeeds{.layers = Layers::none(), .times = scene.moves()});
   std::vector<uint> all(paths);
   std::iota(all.begin(), all.end(), 0u);
   buffers.rays.path_ray.write(rays);
@@ -154,6 +155,7 @@ TracedPaths trace(DeviceScene& scene, std::span<const RayRecord> rays,
       std::vector<ShadowTarget>(shadows.size(), {CAPLET_NONE, CAPLET_NONE, INFINITY, 0}));
   buffers.shadows.path_shadow_radiance.write(std::vector<float4>(shadows.size(), {1, 1, 1, 1}));
   buffers.radiance.path_radiance.write(std::vector<float4>(shadows.size(), {0, 0, 0, 0}));
+  if (scene.moves()) buffers.times.path_time.write(std::vector<float>(paths));
   Bindings bindings = scene.bindings();
   buffers.bind(bindings);
   scene.kernels().run(Stage::extend, bindings, rays.size());

@@ -423,6 +423,17 @@ void known(tapered_capsule_kind, Maker& make) {
              hull_of_balls(end0, end1, 0.5, 0.125));
 }
 
+/// When the shutter opens, where all known rays are seen, it is the tapered capsule.
+void known(moving_capsule_kind, Maker& make) {
+  CapsulesShape moving;
+  moving.p0 = {end0, end1};
+  moving.p1 = {end1, end0};
+  moving.radius0 = {0.5f, 0.25f};
+  moving.radius1 = {0.125f, 0.5f};
+  moving.times = {0, 1};
+  make.solid(shape_moving_capsule, moving, hull_of_balls(end0, end1, 0.5, 0.125));
+}
+
 void known(triangle_kind, Maker& make) {
   const glm::vec3 a(-1, -0.75f, 0), b(1, -0.5f, 0), c(0.25f, 1, 0);
   make.sheet(shape_triangle, TriangleMeshShape{{a, b, c}, {{0, 1, 2}}, {}, {}},

@@ -26,7 +26,7 @@ std::uint64_t bytes_of(const Shape& shape, Counted& counted) {
   std::uint64_t out = sizeof(Shape);
   if (const auto* capsules = std::get_if<CapsulesShape>(&shape.geometry))
     out += bytes_of(capsules->p0) + bytes_of(capsules->p1) + bytes_of(capsules->radius0) +
-           bytes_of(capsules->radius1) + bytes_of(capsules->materials);
+           bytes_of(capsules->radius1) + bytes_of(capsules->materials) + bytes_of(capsules->times);
   if (const auto* mesh = std::get_if<TriangleMeshShape>(&shape.geometry))
     out += bytes_of(mesh->positions) + bytes_of(mesh->triangles) + bytes_of(mesh->normals) +
            bytes_of(mesh->uvs);

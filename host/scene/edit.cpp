@@ -62,7 +62,9 @@ Scene alone(const Scene& scene, const ShapeAt& place, Shape shape) {
 void check(const Scene& scene, const CapsuleEdit& edit) {
   const Shape& shape = shape_at(scene, edit.at);
   const CapsulesShape& capsules = capsules_of(shape);
-  if (edit.capsule >= capsules.p0.size()) no_such("capsule", edit.capsule, capsules.p0.size());
+  if (edit.capsule >= count_of(capsules)) no_such("capsule", edit.capsule, count_of(capsules));
+  if (!capsules.times.empty())
+    throw InputError(shape.where, "one end of capsules that move cannot be edited");
   Shape one;
   one.geometry =
       CapsulesShape{{edit.to.p0}, {edit.to.p1}, {edit.to.radius0}, {edit.to.radius1}, {}};
@@ -224,7 +226,7 @@ const Shape& shape_at(const Scene& scene, const ShapeAt& place) {
 
 Capsule capsule_at(const Scene& scene, const ShapeAt& at, std::size_t capsule) {
   const CapsulesShape& capsules = capsules_of(shape_at(scene, at));
-  if (capsule >= capsules.p0.size()) no_such("capsule", capsule, capsules.p0.size());
+  if (capsule >= count_of(capsules)) no_such("capsule", capsule, count_of(capsules));
   return {capsules.p0[capsule], capsules.p1[capsule], capsules.radius0[capsule],
           capsules.radius1.empty() ? capsules.radius0[capsule] : capsules.radius1[capsule]};
 }

@@ -5,11 +5,33 @@
 #include <algorithm>
 
 #include "scene/motion.h"
+#include "scene/shapes/capsule_motion.h"
 
 namespace caplet {
 
+namespace {
+
+bool moves(const Shape& shape) {
+  const auto* capsules = std::get_if<CapsulesShape>(&shape.geometry);
+  return capsules && !capsules->times.empty();
+}
+bool any_moves(const std::vector<Shape>& shapes) {
+  return std::ranges::any_of(shapes, [](const Shape& one) { return moves(one); });
+}
+
+/// Returns the capsules as kernels see them while the shutter is open, and else to one rounding.
+CapsulesShape frozen(const CapsulesShape& capsules, const FilmSettings& film, double time) {
+  const double at = (time - film.shutter_open) / film.open_time();
+  if (!(at >= 0 && at <= 1)) return at_time(capsules, time);
+  return CapsuleMotion(capsules, film.shutter_open, film.open_time()).at(static_cast<float>(at));
+}
+
+}  // namespace
+
 bool moves(const Scene& scene) {
-  return !scene.view.camera.motion.empty() ||
+  return !scene.view.camera.motion.empty() || any_moves(scene.shapes) ||
+         std::ranges::any_of(scene.objects,
+                             [](const Object& one) { return any_moves(one.shapes); }) ||
          std::ranges::any_of(scene.instances,
                              [](const Instance& one) { return !one.motion.empty(); });
 }
@@ -21,6 +43,15 @@ Scene frozen_at(Scene scene, double time) {
   };
   for (Instance& instance : scene.instances)
     freeze(instance.motion, instance.pivot, instance.world_from_object);
+  const auto freeze_shapes = [&](std::vector<Shape>& shapes) {
+    for (Shape& shape : shapes)
+      if (moves(shape)) {
+        auto& capsules = std::get<CapsulesShape>(shape.geometry);
+        capsules = frozen(capsules, scene.view.film, time);
+      }
+  };
+  freeze_shapes(scene.shapes);
+  for (Object& object : scene.objects) freeze_shapes(object.shapes);
   freeze(scene.view.camera.motion, glm::dvec3(0), scene.view.camera.world_from_camera);
   return scene;
 }

@@ -10,7 +10,7 @@
 
 namespace caplet {
 
-/// Returns whether instances or the camera have motions.
+/// Returns whether instances, capsules or the camera have motions.
 bool moves(const Scene& scene);
 
 /// Returns the scene as it is at a time (seconds): nothing of it moves.

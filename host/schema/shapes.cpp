@@ -44,6 +44,9 @@ constexpr std::array capsules_rows = {
     Row{{"radius", "radii, at the first ends where radius1 is given", 0}, "float"},
     Row{{"radius1", "radii at the second ends", 0}, "float"},
     Row{{"u", "u at the ends, two a capsule"}, "float"},
+    Row{{"times", "when they are as the lists say, all at each; none: they rest", -no_limit,
+         no_limit, "seconds"},
+        "float"},
     Row{{"capsulematerials", "names of materials; \"\" is the shape's own"}, "string"},
     Row{{"materialindices", "which of capsulematerials each capsule has", 0}, "integer"}};
 constexpr std::array cone_rows = {

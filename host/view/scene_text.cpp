@@ -90,7 +90,7 @@ Json thing_text(const Scene& scene, std::uint32_t id, std::uint32_t primitive) {
       materials.push_back(shape.materials.empty() ? shape.material : shape.materials[i]);
     out["materials"] = std::move(materials);
     const auto* capsules = std::get_if<CapsulesShape>(&shape.geometry);
-    if (!capsules || primitive >= capsules->p0.size()) return out;
+    if (!capsules || primitive >= count_of(*capsules)) return out;
     const Capsule capsule = capsule_at(scene, {std::nullopt, id}, primitive);
     const auto place = [&shape](const glm::vec3& p) {
       return to_json(glm::dvec3(shape.world_from_object * glm::dvec4(p, 1)));

@@ -28,12 +28,15 @@ struct Capsule {
 
 /// Arrays with one entry per capsule; spheres have p0 = p1. `radius1` is empty when none is
 /// tapered; `materials`, by number, are empty where all have the shape's. `u` is empty, or u at p0
-/// and at p1 of the capsules of a chain (docs/shapes.md, "Chains").
+/// and at p1 of the capsules of a chain (docs/shapes.md, "Chains"). Capsules that move have
+/// `times`, two or more that rise (seconds): points and radii are then those of all capsules at the
+/// first time, then at the second one, and so on.
 struct CapsuleArrays {
   std::vector<std::array<float, 3>> p0, p1;
   std::vector<float> radius0, radius1;
   std::vector<std::uint32_t> materials;
   std::vector<std::array<float, 2>> u = {};
+  std::vector<double> times = {};
 };
 
 /// Triangles by corner indices, counter-clockwise from outside. Normals (any length) and uvs: empty

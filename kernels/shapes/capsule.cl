@@ -114,12 +114,11 @@ static inline real_mask capsule_near(const NearRay* ray, __global const float* b
          (end >= t_min * ray->length);
 }
 
-static inline real_mask capsule_hit(const ShapeRay* ray, __global const float* block, uint lane,
-                                    real* t, real_mask* side) {
+static inline real_mask capsule_hit_of(const ShapeRay* ray, RealVector p0, RealVector p1, real r,
+                                       real* t, real_mask* side) {
   CapsuleLine c;
   real shift;
-  real_mask hit = capsule_line(ray, capsule_p0_lanes(block, lane), capsule_p1_lanes(block, lane),
-                               capsule_r_lanes(block, lane), &c, &shift);
+  real_mask hit = capsule_line(ray, p0, p1, r, &c, &shift);
   *t = shift;
   *side = int_of(0);
   if (mask_bits(hit) == 0) return hit;
@@ -137,16 +136,26 @@ static inline real_mask capsule_hit(const ShapeRay* ray, __global const float* b
   return hit;
 }
 
-static inline Span capsule_span(const ShapeRay* ray, __global const float* block, uint lane) {
+static inline real_mask capsule_hit(const ShapeRay* ray, __global const float* block, uint lane,
+                                    real* t, real_mask* side) {
+  return capsule_hit_of(ray, capsule_p0_lanes(block, lane), capsule_p1_lanes(block, lane),
+                        capsule_r_lanes(block, lane), t, side);
+}
+
+static inline Span capsule_span_of(const ShapeRay* ray, RealVector p0, RealVector p1, real r) {
   CapsuleLine c;
   real shift;
-  real_mask enters = capsule_line(ray, capsule_p0_lanes(block, lane), capsule_p1_lanes(block, lane),
-                                  capsule_r_lanes(block, lane), &c, &shift);
+  real_mask enters = capsule_line(ray, p0, p1, r, &c, &shift);
   real_mask exits = enters;
   c.h = sqrt(real_max(c.h, real_of(0.0f)));
   const real t_enter = shift + capsule_end(ray, &c, -1.0f, &enters);
   const real t_exit = shift + capsule_end(ray, &c, 1.0f, &exits);
   return span_of(enters, t_enter, t_exit);
+}
+
+static inline Span capsule_span(const ShapeRay* ray, __global const float* block, uint lane) {
+  return capsule_span_of(ray, capsule_p0_lanes(block, lane), capsule_p1_lanes(block, lane),
+                         capsule_r_lanes(block, lane));
 }
 
 #endif

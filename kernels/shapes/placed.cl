@@ -9,6 +9,7 @@
 #include "groups.cl"
 #include "math/motion.cl"
 #include "math/vector.cl"
+#include "shapes/real.cl"
 
 #ifdef CAPLET_MOTION
 static inline Affine placed_at(const Tree* tree, uint instance, uint matrix) {
@@ -32,6 +33,25 @@ static inline Affine world_from_object(const Tree* tree, uint instance) {
   return affine_load(tree->instances[instance].world_from_object);
 }
 #endif
+
+// Returns the ray for the tree's shapes, at the tree's time.
+static inline ShapeRay shape_ray_of(const Tree* tree, float3 o, float3 d, float t_min) {
+  ShapeRay ray = shape_ray(o, d, t_min, tree->leaves);
+#ifdef CAPLET_MOTION
+  ray.time = tree->time;
+#endif
+  return ray;
+}
+
+// Returns when the tree is seen, in [0, 1] of the shutter.
+static inline float time_of(const Tree* tree) {
+#ifdef CAPLET_MOTION
+  return tree->time;
+#else
+  (void)tree;
+  return 0.0f;
+#endif
+}
 
 // Returns the scene's tree at another time.
 static inline Tree tree_at(const Tree* tree, float time) {

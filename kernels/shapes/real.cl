@@ -126,6 +126,9 @@ typedef struct {
   float ff_min;  // below this a squared direction component is rounding noise (2^-50 |d|^2)
   int sees_entering, sees_leaving;  // -1 or 0: crossings that count
   __global const float* leaves;     // shapes of no fixed size keep data there
+#ifdef CAPLET_MOTION
+  float time;  // when the ray sees the scene
+#endif
 #if CAPLET_REAL_WIDTH == 8
   TriangleRay triangle;  // kept; one at a time registers are dearer
 #endif

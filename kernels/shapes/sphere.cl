@@ -26,13 +26,15 @@ static inline real_mask sphere_span_within(const ShapeRay* ray, real wx, real wy
   return qq <= outer * outer;
 }
 
-static inline Span sphere_span(const ShapeRay* ray, __global const float* block, uint lane) {
-  const RealVector c = sphere_c_lanes(block, lane);
+static inline Span sphere_span_of(const ShapeRay* ray, RealVector c, real r) {
   const real wx = ray->ox - c.x, wy = ray->oy - c.y, wz = ray->oz - c.z;
   real t_enter, t_exit;
-  const real_mask hit = sphere_span_within(ray, wx, wy, wz, sphere_r_lanes(block, lane),
-                                           real_of(0.0f), &t_enter, &t_exit);
+  const real_mask hit = sphere_span_within(ray, wx, wy, wz, r, real_of(0.0f), &t_enter, &t_exit);
   return span_of(hit, t_enter, t_exit);
+}
+
+static inline Span sphere_span(const ShapeRay* ray, __global const float* block, uint lane) {
+  return sphere_span_of(ray, sphere_c_lanes(block, lane), sphere_r_lanes(block, lane));
 }
 
 SPAN_HIT(sphere)

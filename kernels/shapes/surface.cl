@@ -72,7 +72,8 @@ static inline Surface surface_at(const Tree* tree, const Surfaces* surfaces, con
       backward,
       geometry.uv_space != CAPLET_NONE ? tree->leaves + geometry.uv_space : 0,
       d,
-      chain_u};
+      chain_u,
+      time_of(tree)};
   LocalSurface found = surface_local(&query);
   if (geometry.flags & CAPLET_GEOMETRY_FLIP_NORMAL) {
     found.ng = -found.ng;

@@ -48,6 +48,7 @@ typedef struct {
   __global const float* space;
   float3 direction;               // of the ray, of any length, in the space of x
   __global const float* chain_u;  // u at p0 and at p1 of a capsule of a chain; 0: it is in none
+  float time;                     // when the ray sees the scene (Tree)
 } SurfaceQuery;
 
 static inline float norm1(float3 v) { return fabs(v.x) + fabs(v.y) + fabs(v.z); }

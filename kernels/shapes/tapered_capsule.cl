@@ -17,12 +17,9 @@
 #include "shapes/lanes.cl"
 #include "shapes/sphere.cl"
 
-static inline Span tapered_capsule_span(const ShapeRay* ray, __global const float* block,
-                                        uint lane) {
-  const RealVector p0 = tapered_capsule_p0_lanes(block, lane),
-                   p1 = tapered_capsule_p1_lanes(block, lane);
+static inline Span tapered_capsule_span_of(const ShapeRay* ray, RealVector p0, RealVector p1,
+                                           real r0, real r1) {
   const real bx = p1.x - p0.x, by = p1.y - p0.y, bz = p1.z - p0.z;
-  const real r0 = tapered_capsule_r0_lanes(block, lane), r1 = tapered_capsule_r1_lanes(block, lane);
   const real wx = ray->ox - p0.x, wy = ray->oy - p0.y, wz = ray->oz - p0.z;
   const real zero = real_of(0.0f);
 
@@ -89,6 +86,13 @@ static inline Span tapered_capsule_span(const ShapeRay* ray, __global const floa
   t_exit = real_max(ok1 ? base + t1 : -far, t_exit);
   t_exit = real_max(ok2 ? base + t2 : -far, t_exit);
   return span_of(near_axis & (hit0 | hit1 | ok1 | ok2), shift + t_enter, shift + t_exit);
+}
+
+static inline Span tapered_capsule_span(const ShapeRay* ray, __global const float* block,
+                                        uint lane) {
+  return tapered_capsule_span_of(
+      ray, tapered_capsule_p0_lanes(block, lane), tapered_capsule_p1_lanes(block, lane),
+      tapered_capsule_r0_lanes(block, lane), tapered_capsule_r1_lanes(block, lane));
 }
 
 SPAN_HIT(tapered_capsule)

@@ -154,7 +154,7 @@ static inline uint trace_list(const Tree* tree, uint root, RayRecord ray, uint c
   ulong stack[CAPLET_STACK_SIZE];
   int top = 0, floor = 0;  // below `floor` lie the entries of the upper tree
   SlabRay slab = slab_ray(world_o, world_d);
-  ShapeRay shape = shape_ray(world_o, world_d, t_min, leaves);
+  ShapeRay shape = shape_ray_of(tree, world_o, world_d, t_min);
   int current = (int)root;
   for (;;) {
     if (current >= 0) {
@@ -179,7 +179,7 @@ static inline uint trace_list(const Tree* tree, uint root, RayRecord ray, uint c
       instance = CAPLET_NONE;
       floor = 0;
       slab = slab_ray(world_o, world_d);
-      shape = shape_ray(world_o, world_d, t_min, leaves);
+      shape = shape_ray_of(tree, world_o, world_d, t_min);
     }
   }
 #endif

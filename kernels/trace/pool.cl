@@ -47,11 +47,12 @@ static inline int octant_of(const SlabRay* s) {
   return (s->near_x != 0 ? 1 : 0) | (s->near_y != 8 ? 2 : 0) | (s->near_z != 16 ? 4 : 0);
 }
 
-// Sets up the ray as it is in the world.
-static inline void pool_ray(PooledRay* r, const Tree* tree, float3 o, float3 d) {
+// Sets up the ray of `r->item` as it is in the world.
+static inline void pool_ray(PooledRay* r, const Stage* g, const Tree* tree, float3 o, float3 d) {
+  const Tree then = tree_at(tree, TRACED_TIME(g, r->item));
   r->instance = CAPLET_NONE;
   r->slab = slab_ray(o, d);
-  r->shape = shape_ray(o, d, r->t_min, tree->leaves);
+  r->shape = shape_ray_of(&then, o, d, r->t_min);
   r->near = near_ray(o, d);
   r->flip = octant_of(&r->slab);
 }
@@ -66,7 +67,7 @@ static inline int pool_begin(PooledRay* r, const Stage* g, const Tree* tree, uin
 #endif
   r->t_min = ray.t_min > 0.0f ? ray.t_min : 0.0f;  // never -0: stack entries go by the bits
   r->nearest = nothing_before(ray.t_max);
-  pool_ray(r, tree, o, d);
+  pool_ray(r, g, tree, o, d);
   r->current = (int)root;
   r->enter[0] = -1;  // ends every search for the next entry
   r->child[0] = 0;
@@ -114,7 +115,7 @@ static inline void pool_enter_instance(PooledRay* r, const Stage* g, const Tree*
 
 static inline void pool_leave_instance(PooledRay* r, const Stage* g, const Tree* tree) {
   const RayRecord ray = traced_ray(g, r->item);
-  pool_ray(r, tree, (float3)(ray.ox, ray.oy, ray.oz), (float3)(ray.dx, ray.dy, ray.dz));
+  pool_ray(r, g, tree, (float3)(ray.ox, ray.oy, ray.oz), (float3)(ray.dx, ray.dy, ray.dz));
 }
 
 // Begins with the first ray of [*next, end) that may hit something, and reports those before it as

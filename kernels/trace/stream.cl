@@ -120,7 +120,8 @@ static void trace_stream(const Stage* g, uint first, uint count) {
     const float3 o = (float3)(ray.ox, ray.oy, ray.oz), d = (float3)(ray.dx, ray.dy, ray.dz);
     const SlabRay slab = slab_ray(o, d);
     const float t_min = ray.t_min > 0.0f ? ray.t_min : 0.0f;
-    const ShapeRay shape = shape_ray(o, d, t_min, tree->leaves);
+    const Tree then = tree_at(tree, TRACED_TIME(g, first + i));
+    const ShapeRay shape = shape_ray_of(&then, o, d, t_min);
     nearest[i] = nothing_before(ray.t_max);
     const int valid = line_is_valid(o, d) && ray.t_min < ray.t_max && t_min < nearest[i].t;
     stream_ray(&space, i, &slab, &shape, t_min, nearest[i].t, valid);

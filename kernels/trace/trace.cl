@@ -175,7 +175,7 @@ static inline int ray_to_instance(const Tree* tree, uint instance, float3 world_
   const float3 d = affine_vector(&to_object, world_d);
   const uint flags = tree->instances[instance].flags;
   *slab = slab_ray(o, d);
-  *shape = shape_ray(o, d, t_min, tree->leaves);
+  *shape = shape_ray_of(tree, o, d, t_min);
   if (flags & CAPLET_INSTANCE_NO_ENTERING) shape->sees_entering = 0;
   if (flags & CAPLET_INSTANCE_NO_LEAVING) shape->sees_leaving = 0;
   return line_is_valid(o, d);
@@ -198,7 +198,7 @@ static inline HitRecord trace_ray(const Tree* tree, uint root, RayRecord ray, co
   ulong stack[CAPLET_STACK_SIZE];
   int top = 0, floor = 0;  // below `floor` lie the entries of the upper tree
   SlabRay slab = slab_ray(world_o, world_d);
-  ShapeRay shape = shape_ray(world_o, world_d, t_min, leaves);
+  ShapeRay shape = shape_ray_of(tree, world_o, world_d, t_min);
   int current = (int)root;
   for (;;) {
     if (current >= 0) {
@@ -222,7 +222,7 @@ static inline HitRecord trace_ray(const Tree* tree, uint root, RayRecord ray, co
       instance = CAPLET_NONE;
       floor = 0;
       slab = slab_ray(world_o, world_d);
-      shape = shape_ray(world_o, world_d, t_min, leaves);
+      shape = shape_ray_of(tree, world_o, world_d, t_min);
     }
   }
 }

@@ -91,7 +91,7 @@ static inline ShapeRay walk_ray(const Tree* tree, CAPLET_RAY_SPACE const RayReco
     d = affine_vector(&to_object, d);
     unseen = tree->instances[instance].flags;
   }
-  ShapeRay shape = shape_ray(o, d, t_min > 0.0f ? t_min : 0.0f, tree->leaves);
+  ShapeRay shape = shape_ray_of(tree, o, d, t_min > 0.0f ? t_min : 0.0f);
   if (unseen & CAPLET_INSTANCE_NO_ENTERING) shape.sees_entering = 0;
   if (unseen & CAPLET_INSTANCE_NO_LEAVING) shape.sees_leaving = 0;
   return shape;

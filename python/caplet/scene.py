@@ -48,39 +48,84 @@ class Shape:
     def __bool__(self):
         return True
 
-    def _part(self, which):
-        return self._scene._native.capsule_arrays(self.number)[which]
+    def _arrays(self):
+        return self._scene._native.capsule_arrays(self.number)
+
+    def _at_times(self, array, times):
+        return array.reshape(len(times), -1, *array.shape[1:]) if times else array
 
     @property
     def p0(self):
-        """The capsules' first ends, float32 (n, 3), in the shape's space; a copy: `set` changes them."""
-        return self._part(0)
+        """The capsules' first ends, float32 (n, 3), or (k, n, 3) at k times, in the shape's space; a copy: `set` changes them."""
+        now = self._arrays()
+        return self._at_times(now[0], now[6])
 
     @property
     def p1(self):
-        """The other ends, float32 (n, 3)."""
-        return self._part(1)
+        """The other ends, float32 (n, 3) or (k, n, 3)."""
+        now = self._arrays()
+        return self._at_times(now[1], now[6])
 
     @property
     def radius(self):
-        """Of both ends, float32 (n, 2), scene units."""
-        return np.stack([self._part(2), self._part(3)], axis=1)
+        """Of both ends, float32 (n, 2) or (k, n, 2), scene units."""
+        now = self._arrays()
+        return self._at_times(np.stack([now[2], now[3]], axis=1), now[6])
 
     @property
     def u(self):
         """Of capsules of a chain: what the texture coordinate u is at p0 and at p1, float32 (n, 2); none of others, (0, 2)."""
-        return self._part(5)
+        return self._arrays()[5]
+
+    @property
+    def times(self):
+        """The times (seconds) between which the capsules move; none where they rest."""
+        return self._arrays()[6]
+
+    def animate(self, times, p0=None, p1=None, radius=None):
+        """Moves the capsules' ends while the shutter is open, and changes their radii.
+
+        times: k times (seconds, rising), two or more. p0, p1: (k, n, 3). radius: one, (n,), (k, n), or (k, n, 2) of both ends. What is
+        not given stays as it is, or as it is at the first time. Between two times all goes straight and evenly; before the first and
+        after the last one it rests. With no times the capsules rest where they are at the first one. The shutter is that of the camera:
+        `shutteropen`, `shutterclose` (0 and 1 second).
+        """
+        times = arrays.floats(times, "times").astype(np.float64)
+        if times.ndim != 1:
+            raise InputError(f"times: shape (k,) is needed, not {times.shape}")
+        keys, count = max(1, len(times)), len(self)
+
+        def at_times(value, name, shape, now):
+            given = arrays.floats(now if value is None else value, name)
+            if name == "radius" and given.ndim in (1, 2) and given.shape[-1] == count:
+                given = given[..., np.newaxis]
+            try:
+                return np.broadcast_to(given, (keys, *shape)).reshape(keys * count, shape[1])
+            except ValueError:
+                raise InputError(f"{name}: shape {(keys, *shape)} is needed, not {np.shape(now if value is None else value)}") from None
+
+        def first(array):
+            return array[0] if self.times else array
+
+        ends = at_times(radius, "radius", (count, 2), first(self.radius))
+        materials, u = self._arrays()[4:6]
+        self._scene._native.set_capsules(
+            self.number, keys * count, at_times(p0, "p0", (count, 3), first(self.p0)), at_times(p1, "p1", (count, 3), first(self.p1)),
+            ends[:, 0], ends[:, 1], materials if len(materials) else None, u if len(u) else None, times.tolist())
+        self._scene._changed()
 
     def set(self, p0=None, p1=None, radius=None, u=None):
         """Other capsules: what is not given stays. Shapes as in Scene.add_capsules; their number may change with all three (materials and u,
         where it is not given, then go)."""
-        now = self._scene._native.capsule_arrays(self.number)
+        now = self._arrays()
+        if now[6]:
+            raise InputError("the capsules move: animate changes them")
         one, two, ends, more, given, count = _capsules(now[0] if p0 is None else p0, now[1] if p1 is None else p1,
                                                        np.stack(now[2:4], axis=1) if radius is None else radius, u=u)
         materials = now[4] if len(now[4]) == count else None
         if u is None and len(now[5]) == count:
             given = now[5]
-        self._scene._native.set_capsules(self.number, count, one, two, ends, more, materials, given)
+        self._scene._native.set_capsules(self.number, count, one, two, ends, more, materials, given, [])
         self._scene._changed()
 
     def set_material(self, material):

@@ -124,14 +124,16 @@ std::vector<caplet::Transform> transforms_of(const Array& array) {
 caplet::CapsuleArrays capsules_of(const Array& p0, const Array& p1, const Array& radius0,
                                   const std::optional<Array>& radius1,
                                   const std::optional<Array>& materials,
-                                  const std::optional<Array>& u, std::size_t count) {
+                                  const std::optional<Array>& u, std::size_t count,
+                                  const std::vector<double>& times = {}) {
   caplet::CapsuleArrays out;
+  out.times = times;
   out.p0 = rows_of<3>(p0, count);
   out.p1 = rows_of<3>(p1, count);
   out.radius0 = floats_of(radius0, count);
   if (radius1) out.radius1 = floats_of(*radius1, count);
   if (materials) out.materials = numbers_of(*materials);
-  if (u) out.u = rows_of<2>(*u, count);
+  if (u) out.u = rows_of<2>(*u, count / std::max<std::size_t>(1, times.size()));
   return out;
 }
 
@@ -435,12 +437,15 @@ void bind_shapes(nb::class_<HeldScene>& held) {
       .def("set_capsules",
            in_turn([](Scene& scene, std::uint32_t shape, std::size_t count, const Array& p0,
                       const Array& p1, const Array& radius0, const std::optional<Array>& radius1,
-                      const std::optional<Array>& materials, const std::optional<Array>& u) {
+                      const std::optional<Array>& materials, const std::optional<Array>& u,
+                      const std::vector<double>& times) {
              const Released released;
-             scene.set_capsules(shape, capsules_of(p0, p1, radius0, radius1, materials, u, count));
+             scene.set_capsules(shape,
+                                capsules_of(p0, p1, radius0, radius1, materials, u, count, times));
            }),
            nb::arg("shape"), nb::arg("count"), nb::arg("p0"), nb::arg("p1"), nb::arg("radius0"),
-           nb::arg("radius1").none(), nb::arg("materials").none(), nb::arg("u").none())
+           nb::arg("radius1").none(), nb::arg("materials").none(), nb::arg("u").none(),
+           nb::arg("times"))
       .def("capsule_arrays", in_turn([](const Scene& scene, std::uint32_t shape) {
              caplet::CapsuleArrays arrays = scene.capsule_arrays(shape);
              if (arrays.radius1.empty()) arrays.radius1 = arrays.radius0;
@@ -449,7 +454,7 @@ void bind_shapes(nb::class_<HeldScene>& held) {
                                    array_of<float, 1>(std::move(arrays.radius0), {count}),
                                    array_of<float, 1>(std::move(arrays.radius1), {count}),
                                    array_of<std::uint32_t, 1>(std::move(arrays.materials), {named}),
-                                   rows_array(arrays.u));
+                                   rows_array(arrays.u), arrays.times);
            }));
 }
 

@@ -131,6 +131,7 @@ OF = {  # where the same name is something else
     ("from_nibabel", "radius"): 0.1, ("from_sonata", "radius"): 0.1, ("from_neuroml", "radius"): 0.1, ("from_neuroml", "cell"): "c",
     ("from_sonata", "ids"): [0, 1], ("from_sonata", "color"): [[0.1, 0.2, 0.3], [0.4, 0.5, 0.6], [0.7, 0.8, 0.9]],
     ("add", "radius"): 0.5, ("add_many", "radius"): 0.5, ("animate_instance", "transforms"): [np.eye(4)] * 2, ("animate_camera", "transforms"): [np.eye(4)] * 2,
+    ("animate", "p0"): [THREE[:2]] * 2, ("animate", "p1"): np.add([THREE[:2]] * 2, 1), ("animate", "radius"): [[0.1, 0.2]] * 2,
 }
 # Of entries that take more by **options: what of it holds numbers.
 MORE = {"add_spheres": ("color", "transform"), "add_cylinders": ("color", "transform"), "add_cones": ("color", "transform"), "add_boxes": ("color", "transform"),

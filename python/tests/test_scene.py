@@ -552,3 +552,42 @@ def test_instances_and_cameras_move(tmp_path):
             moving.animate_instance(0, *wrong)
     with pytest.raises(caplet.InputError):
         moving.animate_instance(7, [0, 1], [right, right])
+
+
+def test_ends_of_capsules_move(tmp_path):
+    scene = caplet.Scene()
+    shape = scene.add_capsules([[0, 0, 0], [0, 1, 0]], [[0, 0, 0], [0, 1, 0]], [0.5, 0.1], material=materials.diffuse(reflectance=0), emission={"L": (1, 1, 1)})
+    scene.camera = cameras.orthographic(eye=(0, 0, 5), target=(0, 0, 0), screenwindow=(-2, 2, -2, 2))
+    scene.filter("box")
+    rest = caplet.render(scene, spp=2, size=(16, 16))
+
+    # The first grows to a radius of 1, the other one goes right by 1. They overlap only within x < 1.
+    ends = np.float32([[[0, 0, 0], [0, -1.5, 0]], [[0, 0, 0], [1, -1.5, 0]]])
+    shape.animate([0, 1], p0=ends, p1=ends, radius=[[0.5, 0.1], [1, 0.1]])
+    assert shape.times == [0, 1] and len(shape) == 2
+    assert np.array_equal(shape.p0, ends) and np.array_equal(shape.p1, ends) and np.array_equal(shape.radius[..., 0], np.float32([[0.5, 0.1], [1, 0.1]]))
+    image = caplet.render(scene, spp=1024, size=(16, 16)).rgb[..., 1]
+    # The window is 4 wide. The first covers pi times the mean of r^2, which is 7/12 for r from 1/2 to 1.
+    assert abs(image.mean() * 16 - np.pi * (7 / 12 + 0.01)) < 0.02
+    # Rows 13 and 14 hold y = -1.25 to -1.75. The other one's middle is left of x = 0.5, where column 10 begins, for half the time.
+    assert abs(image[13:15, :10].sum() / 16 - np.pi * 0.01 / 2) < 0.002
+
+    scene.save(tmp_path / "moving.pbrt")
+    assert same_pictures(scene, caplet.load(tmp_path / "moving.pbrt"))
+    # Whole arrays stay as they are where they are not given: here the other one's radius alone changes.
+    shape.animate([0, 0.5, 2], radius=np.float32([[[0.5, 0.5], [0.1, 0.2]]] * 3))
+    assert np.array_equal(shape.p0, ends[[0, 0, 0]]) and np.array_equal(shape.radius[2], np.float32([[0.5, 0.5], [0.1, 0.2]]))
+    with pytest.raises(caplet.InputError, match="the capsules move"):
+        shape.set(radius=1)
+    held = shape.p0
+    for wrong in (dict(times=[0]), dict(times=[1, 0]), dict(times=[0, np.nan]), dict(times=[[0, 1]]), dict(times=[0, 1], p0=np.zeros((3, 2, 3))),
+                  dict(times=[0, 1], p0=np.zeros((2, 3, 3))), dict(times=[0, 1], radius=-1), dict(times=[0, 1], p1=[[[0, 0, np.inf]]])):
+        with pytest.raises(caplet.InputError):
+            shape.animate(**wrong)
+        assert np.array_equal(shape.p0, held) and shape.times == [0, 0.5, 2]
+
+    shape.animate([], p0=[[0, 0, 0], [0, 1, 0]], p1=[[0, 0, 0], [0, 1, 0]], radius=[0.5, 0.1])
+    again = caplet.render(scene, spp=2, size=(16, 16))
+    assert shape.times == [] and all(np.array_equal(again[name].view(np.uint32), rest[name].view(np.uint32)) for name in rest.channels)
+    shape.set(radius=0.2)
+    assert np.array_equal(shape.radius, np.full((2, 2), np.float32(0.2)))

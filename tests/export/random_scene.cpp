@@ -420,8 +420,8 @@ class Maker {
       shape.material = shape.materials[0];
     }
     if (auto* capsules = std::get_if<CapsulesShape>(&shape.geometry);
-        capsules && capsules->p0.size() > 1 && random_.one_in(2))
-      for (std::size_t i = 0; i < capsules->p0.size(); ++i) capsules->materials.push_back(some());
+        capsules && count_of(*capsules) > 1 && random_.one_in(2))
+      for (std::size_t i = 0; i < count_of(*capsules); ++i) capsules->materials.push_back(some());
     if (random_.one_in(3)) shape.name = "a shape \\ named";
     shape.reverse_orientation = random_.one_in(3);
     if (is_closed(shape) && next_medium_ < scene_.media.size()) {
@@ -466,6 +466,9 @@ class Maker {
       many.radius1.push_back(static_cast<float>(random_.uniform(0.01, 0.1)));
     }
     finish(many);
+    many.times = {0.25, 1};
+    finish(many);
+    if (auto& emission = scene_.shapes.back().emission) emission->power.reset();
     // A box of no light's business around a medium.
     const auto interface = std::ranges::find_if(scene_.materials, [](const Material& one) {
       return std::holds_alternative<InterfaceMaterial>(one.model);

@@ -470,6 +470,39 @@ TEST(WriteScene, AFileIsReplacedAsAWholeOrNotAtAll) {
 
 // --- What importers read for the writer's sake ---
 
+TEST(OurStatements, CapsulesThatMove) {
+  const std::string statement =
+      "Shape \"capsules\" \"float times\" [0.25 2] \"point3 p0\" [0 0 0 1 0 0  2 0 0 3 0 0] "
+      "\"point3 p1\" [0 1 0 1 1 0  0 2 0 1 2 0] \"float radius\" [0.1 0.2]";
+  const Scene scene =
+      scene_of(world + statement + "\n" + statement + " \"float radius1\" [1 2 3 4]\n");
+  const auto& read = std::get<CapsulesShape>(scene.shapes[0].geometry);
+  EXPECT_EQ(read.times, (std::vector<double>{0.25, 2}));
+  EXPECT_EQ(count_of(read), 2u);
+  EXPECT_EQ(read.p0, (std::vector<glm::vec3>{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}}));
+  EXPECT_EQ(read.radius0, (std::vector<float>{0.1f, 0.2f, 0.1f, 0.2f}));
+  EXPECT_TRUE(read.radius1.empty());
+  const auto& tapered = std::get<CapsulesShape>(scene.shapes[1].geometry);
+  EXPECT_EQ(tapered.radius1, (std::vector<float>{1, 2, 3, 4}));
+  const auto said = [&](const std::string& text) {
+    try {
+      scene_of(world + text);
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  EXPECT_THAT(said("AreaLightSource \"diffuse\" \"rgb L\" [1 1 1] \"float power\" 5\n" + statement),
+              HasSubstr("capsules that move cannot be a light of a given \"power\""));
+  EXPECT_THAT(said("ObjectBegin \"a\"\n" + statement +
+                   "\nObjectEnd\nObjectBegin \"b\" Shape \"sphere\" ObjectEnd\nShape \"csg\" "
+                   "\"string operation\" \"union\" \"string operands\" [\"a\" \"b\"]\n"),
+              HasSubstr("moves; an operand rests"));
+  EXPECT_THAT(said("Shape \"capsule\" \"float times\" [0 1] \"point3 p0\" [0 0 0] \"point3 p1\" [1 "
+                   "0 0] \"float radius\" 1\n"),
+              HasSubstr("times"));
+}
+
 TEST(OurStatements, CapsulesInLists) {
   const std::string materials =
       "MakeNamedMaterial \"a\" \"string type\" \"diffuse\"\nMakeNamedMaterial \"b\" \"string "
@@ -494,6 +527,14 @@ Shape "capsules" "point3 p0" [0 0 0 1 0 0] "point3 p1" [0 1 0
     return std::string();
   };
   const std::string ends = "\"point3 p1\" [0 1 0 1 1 0] ";
+  EXPECT_THAT(said(ends + "\"float radius\" [1 1] \"float times\" [1]"),
+              HasSubstr("\"times\" takes two times or more"));
+  EXPECT_THAT(said(ends + "\"float radius\" [1 1] \"float times\" [1 1]"),
+              HasSubstr("\"times\" must rise"));
+  EXPECT_THAT(said(ends + "\"float radius\" [1 1] \"float times\" [0 1 2]"),
+              HasSubstr("\"p0\" has 2 points, which are not as many at each of 3 times"));
+  EXPECT_THAT(said(ends + "\"float radius\" [1 1 1] \"float times\" [0 1]"),
+              HasSubstr("has 3 values for 1 capsules at 2 times"));
   EXPECT_THAT(said("\"float radius\" [1 1]"), HasSubstr("\"p1\" is missing"));
   EXPECT_THAT(said("\"point3 p1\" [0 1 0] \"float radius\" [1 1]"),
               HasSubstr("has 1 points for 2"));

@@ -192,6 +192,26 @@ TEST_F(LibraryBuild, WhatIsWrongIsToldAndChangesNothing) {
   EXPECT_THAT(capsules([](auto& one) { one.radius1 = {1, 2}; }), HasSubstr("radius1 has 2"));
   EXPECT_THAT(capsules([&](auto& one) { one.p1[0][2] = nan; }), HasSubstr("finite"));
   EXPECT_THAT(capsules([](auto& one) { one.materials = {9}; }), HasSubstr("no material 9"));
+  const auto moving = [&](std::vector<double> times, std::size_t ends, auto change) {
+    return capsules([&](auto& one) {
+      one.p0.resize(ends);
+      one.p1.resize(ends, {1, 0, 0});
+      one.radius0.resize(ends, 1);
+      one.times = std::move(times);
+      change(one);
+    });
+  };
+  const auto as_is = [](auto&) {};
+  EXPECT_THAT(moving({0, 1}, 3, as_is), HasSubstr("as many ends at each of their times"));
+  EXPECT_THAT(moving({0, 1}, 1, [](auto& one) { one.radius0 = {-1}; }), HasSubstr("as many ends"));
+  EXPECT_THAT(moving({0}, 1, as_is), HasSubstr("two times or more"));
+  const std::vector<std::vector<double>> falling{{1, 0}, {0, 0}, {0, INFINITY}, {nan, 1}};
+  for (const auto& times : falling)
+    EXPECT_THAT(moving(times, 2, as_is), HasSubstr("times must be finite and rise"));
+  EXPECT_THAT(moving({0, 1}, 4, [](auto& one) { one.radius0[3] = -1; }),
+              HasSubstr("capsule 1 has a negative radius"));
+  EXPECT_THAT(moving({0, 1}, 4, [](auto& one) { one.u.resize(4); }),
+              HasSubstr("u has 4 entries, and p0 4 at 2 times"));
   EXPECT_THAT(said([&] { scene.add_shape("sphre", {}); }),
               AllOf(HasSubstr("sphre"), HasSubstr("'sphere'")));
   EXPECT_THAT(said([&] {
@@ -307,6 +327,32 @@ TEST_F(LibraryBuild, CrossingsInNumbersAreTheHits) {
     }
   EXPECT_EQ(at, every.size());
   EXPECT_THROW(picker.nearest(rays, std::span(numbers).first(3)), caplet::InputError);
+}
+
+TEST_F(LibraryBuild, CapsulesThatMoveAreTakenAndGivenInBulk) {
+  caplet::Scene scene;
+  const caplet::CapsuleArrays moving{{{0, 0, 0}, {5, 0, 0}, {0, 0, 1}, {5, 0, 0}},
+                                     {{1, 0, 0}, {6, 0, 0}, {1, 0, 1}, {6, 0, 0}},
+                                     {1, 2, 3, 2},
+                                     {1, 2, 0, 2},
+                                     {},
+                                     {{0, 0.5f}, {0.5f, 1}},
+                                     {0, 0.5}};
+  scene.add_capsules(moving);
+  EXPECT_EQ(scene.capsules(0), 2u);
+  EXPECT_EQ(scene.capsule(0, 1).p0, (std::array<float, 3>{5, 0, 0}));
+  EXPECT_THAT(said([&] {
+                scene.set_capsule(0, 0, {{0, 0, 0}, {1, 0, 0}, 1, 1});
+              }),
+              HasSubstr("capsules that move cannot be edited"));
+  EXPECT_THROW(scene.capsule(0, 2), caplet::InputError);
+  const caplet::CapsuleArrays given = scene.capsule_arrays(0);
+  EXPECT_EQ(given.p0, moving.p0);
+  EXPECT_EQ(given.p1, moving.p1);
+  EXPECT_EQ(given.radius0, moving.radius0);
+  EXPECT_EQ(given.radius1, moving.radius1);
+  EXPECT_EQ(given.u, moving.u);
+  EXPECT_EQ(given.times, moving.times);
 }
 
 TEST_F(LibraryBuild, CapsulesAreTakenAndGivenInBulk) {

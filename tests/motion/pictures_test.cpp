@@ -102,6 +102,39 @@ TEST(MotionPictures, OfACapsuleThatTurnsAndFalls) {
       });
 }
 
+/// Returns whether a point is in the hull of two disks.
+bool is_in_hull(const dvec2& p, const dvec2& a, const dvec2& b, double r0, double r1) {
+  for (int k = 0; k <= 32; ++k) {
+    const double s = k / 32.0;
+    if (glm::length(p - (a + s * (b - a))) < r0 + s * (r1 - r0)) return true;
+  }
+  return false;
+}
+
+// One end rests and grows, the other one goes round a corner.
+TEST(MotionPictures, OfACapsuleWhoseEndsMove) {
+  expect_coverage(
+      from_above + "WorldBegin\n" + shining +
+          "Shape \"capsules\" \"float times\" [0 0.5 1] \"point3 p0\" [-1 -1 0 -1 -1 0 -1 -1 0]\n"
+          "  \"point3 p1\" [-1 1 0  1 1 0  1 -0.5 0] \"float radius\" [0.2 0.2 0.6]\n"
+          "  \"float radius1\" [0.2 0.3 0.1]\n",
+      [](const dvec2& at, double time) {
+        const double u = 2 * time, v = u - 1;
+        const dvec2 end = u < 1 ? dvec2(-1 + 2 * u, 1) : dvec2(1, 1 - 1.5 * v);
+        return is_in_hull(at, {-1, -1}, end, u < 1 ? 0.2 : 0.2 + 0.4 * v,
+                          u < 1 ? 0.2 + 0.1 * u : 0.3 - 0.2 * v);
+      });
+}
+
+TEST(MotionPictures, OfASphereThatGrows) {
+  expect_coverage(from_above + "WorldBegin\n" + shining +
+                      "Shape \"capsules\" \"float times\" [0 1] \"point3 p0\" [0 0 0 0 1 0]\n"
+                      "  \"point3 p1\" [0 0 0 0 1 0] \"float radius\" [0.2 0.9]\n",
+                  [](const dvec2& at, double time) {
+                    return glm::length(at - dvec2(0, time)) < 0.2 + 0.7 * time;
+                  });
+}
+
 // Only while the shutter is open; and nothing moves before the first and after the last key.
 TEST(MotionPictures, OfTheTimeThatTheShutterIsOpen) {
   std::string text = from_above;
@@ -274,6 +307,30 @@ TEST(MotionPictures, OfGlassFogAndHolesAreTheMeanOfFrozenOnes) {
           "AttributeBegin\nTranslate 0.3 1 0.2\nActiveTransform StartTime\nTranslate -0.8 0 0\n"
           "ActiveTransform All\nMaterial \"diffuse\" \"rgb reflectance\" [0.7 0.2 0.2]\n"
           "Shape \"sphere\" \"float radius\" 0.8 \"float alpha\" 0.5\nAttributeEnd\n",
+      512);
+}
+
+// A lamp, a glass rod, one of fog, and one with holes whose ends move; the last one also turns.
+TEST(MotionPictures, OfCapsulesWhoseEndsMoveAreTheMeanOfFrozenOnes) {
+  const auto moving = [](const std::string& p0, const std::string& p1, const std::string& radii) {
+    return "Shape \"capsules\" \"float times\" [0 1] \"point3 p0\" [" + p0 + "] \"point3 p1\" [" +
+           p1 + "] \"float radius\" [" + radii + "]";
+  };
+  expect_mean_of_frozen(
+      in_front +
+          "MakeNamedMedium \"fog\" \"string type\" \"homogeneous\" \"rgb sigma_s\" [2 2 2] \"rgb "
+          "sigma_a\" [0.2 0.2 0.2]\nWorldBegin\n"
+          "LightSource \"infinite\" \"rgb L\" [0.4 0.4 0.4]\n" +
+          ground + "AttributeBegin\nAreaLightSource \"diffuse\" \"rgb L\" [8 8 8]\n" +
+          moving("0 1 1.5  1 1 1", "0 1 1.5  2 0 1.5", "0.1 0.3") +
+          "\nAttributeEnd\nAttributeBegin\nMaterial \"dielectric\"\n" +
+          moving("1 -1 0.4  1 -1 0.6", "1.5 -1 0.4  0.5 -1 1.5", "0.3 0.3") +
+          "\nAttributeEnd\nAttributeBegin\nMaterial \"interface\"\nMediumInterface \"fog\" \"\"\n" +
+          moving("-1.5 0 0.7  -1 0 0.7", "-1 0 0.7  -1 0 1.5", "0.5 0.4") +
+          "\nAttributeEnd\nActiveTransform EndTime\nRotate 60 0 0 1\nActiveTransform All\n"
+          "Material \"diffuse\" \"rgb reflectance\" [0.7 0.2 0.2]\n" +
+          moving("-0.5 -1.5 0.3  0 -1.5 0.3", "0 -1.5 0.3  0 -1.5 0.9", "0.3 0.2") +
+          " \"float alpha\" 0.5\n",
       512);
 }
 

@@ -4,6 +4,7 @@
 // Reads capsules from lists in a statement: the content of a .capsules file.
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "import/detail/pbrt/geometry.h"
 
@@ -11,24 +12,43 @@ namespace caplet::pbrt {
 
 namespace {
 
-/// Reads one float from 0 up per capsule; none where the parameter is missing or wrong (reported).
-std::vector<float> radii(Parameters& parameters, const char* name, std::size_t count) {
+std::string at_times(std::size_t times) {
+  return times > 1 ? " at " + std::to_string(times) + " times" : "";
+}
+
+/// Reads one float from 0 up per capsule, or per capsule and time; none where the parameter is
+/// missing or wrong (reported).
+std::vector<float> radii(Parameters& parameters, const char* name, std::size_t count,
+                         std::size_t times) {
   std::vector<float> out;
   const Parameter* given = parameters.values(name, {"float"});
   if (!given) return out;
-  if (given->numbers.size() != count) {
+  if (given->numbers.size() != count && given->numbers.size() != count * times) {
     parameters.error(name, "has " + std::to_string(given->numbers.size()) + " values for " +
-                               std::to_string(count) + " capsules");
+                               std::to_string(count) + " capsules" + at_times(times));
     return out;
   }
-  out.reserve(count);
+  out.reserve(count * times);
   for (const double value : given->numbers) {
     out.push_back(to_float(parameters, name, value));
     if (value >= 0) continue;
     parameters.error(name, "must not be negative");
     return {};
   }
+  while (out.size() < count * times)  // they stay the same
+    out.insert(out.end(), out.begin(), out.begin() + static_cast<std::ptrdiff_t>(count));
   return out;
+}
+
+/// Reads "float times", two or more that rise; none where it is missing or wrong (reported).
+std::vector<double> times_of(Parameters& parameters) {
+  const Parameter* given = parameters.values("times", {"float"});
+  if (!given) return {};
+  const std::vector<double>& times = given->numbers;
+  if (times.size() >= 2 && std::ranges::adjacent_find(times, std::greater_equal()) == times.end())
+    return times;
+  parameters.error("times", times.size() < 2 ? "takes two times or more" : "must rise");
+  return {};
 }
 
 /// Reads the materials that "materialindices" selects from "capsulematerials".
@@ -41,10 +61,10 @@ void read_materials(Parameters& parameters, const MaterialIndex& material_index,
     return parameters.error(
         names ? "capsulematerials" : "materialindices",
         names ? "needs \"integer materialindices\"" : "needs \"string capsulematerials\"");
-  if (indices->numbers.size() != capsules.p0.size())
+  if (indices->numbers.size() != count_of(capsules))
     return parameters.error("materialindices",
                             "has " + std::to_string(indices->numbers.size()) + " values for " +
-                                std::to_string(capsules.p0.size()) + " capsules");
+                                std::to_string(count_of(capsules)) + " capsules");
   std::vector<std::uint32_t> known;
   for (const std::string& name : names->strings)
     known.push_back(material_index(name, names->where));
@@ -88,16 +108,24 @@ CapsulesShape make_capsule_list(Parameters& parameters, const MaterialIndex& mat
     if (!parameters.has(name)) parameters.error("\"" + std::string(name) + "\" is missing");
   capsules.p0 = vectors3(parameters, parameters.values("p0", {"point3"}));
   capsules.p1 = vectors3(parameters, parameters.values("p1", {"point3"}));
-  const std::size_t count = capsules.p0.size();
-  if (count == 0 || capsules.p1.empty()) return {};
-  if (capsules.p1.size() != count) {
+  capsules.times = times_of(parameters);
+  if (capsules.p0.empty() || capsules.p1.empty()) return {};
+  if (capsules.p1.size() != capsules.p0.size()) {
     parameters.error("p1", "has " + std::to_string(capsules.p1.size()) + " points for " +
-                               std::to_string(count) + " of \"p0\"");
+                               std::to_string(capsules.p0.size()) + " of \"p0\"");
     return {};
   }
-  capsules.radius0 = radii(parameters, "radius", count);
+  const std::size_t times = std::max<std::size_t>(1, capsules.times.size());
+  if (capsules.p0.size() % times != 0) {
+    parameters.error("p0", "has " + std::to_string(capsules.p0.size()) +
+                               " points, which are not as many" + " at each of " +
+                               std::to_string(times) + " times");
+    return {};
+  }
+  const std::size_t count = count_of(capsules);
+  capsules.radius0 = radii(parameters, "radius", count, times);
   if (capsules.radius0.empty()) return {};
-  capsules.radius1 = radii(parameters, "radius1", count);
+  capsules.radius1 = radii(parameters, "radius1", count, times);
   if (capsules.radius1 == capsules.radius0) capsules.radius1.clear();
   read_materials(parameters, material_index, capsules);
   capsules.u = chain_u(parameters, count);

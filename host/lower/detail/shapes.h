@@ -10,11 +10,13 @@
 #include <glm/mat3x3.hpp>
 #include <glm/mat4x4.hpp>
 #include <glm/vec3.hpp>
+#include <optional>
 #include <vector>
 
 #include "lower/detail/pieces.h"
 #include "lower/flat_primitive.h"
 #include "scene/scene.h"
+#include "scene/shapes/capsule_motion.h"
 
 namespace caplet {
 
@@ -59,6 +61,21 @@ double bilinear_area(const float* data, const glm::dmat3& m);
 /// capsule or tapered capsule.
 FlatPrimitive flat_capsule(const CapsulesShape& capsules, std::size_t i, const glm::dmat4* m,
                            double scale);
+
+/// MovingCapsules makes primitives of capsules that move, and writes how they move to `leaves`.
+class MovingCapsules {
+ public:
+  MovingCapsules(const CapsuleMotion& motion, std::vector<float>& leaves);
+  /// Returns capsule i; what rests while the shutter is open is as flat_capsule has it.
+  FlatPrimitive primitive(std::size_t i);
+
+ private:
+  const CapsuleMotion& motion_;
+  std::vector<float>& leaves_;
+  std::optional<CapsulesShape> resting_;
+  std::uint32_t times_ = 0;  // where they are in `leaves`
+};
+
 FlatPrimitive flat_partial_disk(const DiskShape& disk);
 /// Returns the kinds of a csg primitive's operands, as shape_bit()s.
 std::uint64_t csg_operand_shapes(const FlatPrimitive& csg, const std::vector<float>& leaves);

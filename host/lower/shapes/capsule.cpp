@@ -38,7 +38,10 @@ FlatPrimitive flat_capsule(const CapsulesShape& capsules, std::size_t i, const M
   return p;
 }
 
-bool bakes_under(const CapsulesShape&, const Matrix& m) { return similarity_scale(m) > 0; }
+bool bakes_under(const CapsulesShape& capsules, const Matrix& m) {
+  // Those that move keep their own space, where they are to the bit what they are at one time.
+  return capsules.times.empty() ? similarity_scale(m) > 0 : m == Matrix(1);
+}
 glm::dmat3 turn_under(const CapsulesShape&, const Matrix& m) { return turn_of_similarity(m); }
 
 ExactBox capsule_box(const FlatPrimitive& p) {

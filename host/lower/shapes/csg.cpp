@@ -99,8 +99,8 @@ struct FlatOf {
   const SourceLocation& where;
 
   FlatPrimitive operator()(const CapsulesShape& capsules) const {
-    if (capsules.p0.size() != 1)
-      throw InputError(where, "a csg operand of capsules must hold exactly one");
+    if (capsules.p0.size() != 1 || !capsules.times.empty())
+      throw InputError(where, "a csg operand of capsules must hold exactly one that rests");
     return flat_capsule(capsules, 0, &m, similarity_scale(m));
   }
   FlatPrimitive operator()(const TriangleMeshShape&) const { return open(); }

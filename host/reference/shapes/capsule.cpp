@@ -86,7 +86,7 @@ dvec2 chain_uv_of(const Capsule& c, const dvec3& x, const dvec3& direction) {
 
 std::vector<Primitive> references_of(const CapsulesShape& capsules) {
   std::vector<Primitive> out;
-  for (std::size_t i = 0; i < capsules.p0.size(); ++i) {
+  for (std::size_t i = 0; i < count_of(capsules); ++i) {
     const double radius0 = capsules.radius0[i];
     const double radius1 =
         capsules.radius1.empty() ? radius0 : static_cast<double>(capsules.radius1[i]);

@@ -26,7 +26,7 @@ void check(const CsgShape& csg, ShapeCheck& report) {
   for (const auto& operand : csg.operands) {
     const auto* capsules = std::get_if<CapsulesShape>(&operand->geometry);
     if (!is_closed(*operand)) return report.error("the csg has an operand that is an open surface");
-    if (capsules && capsules->p0.size() != 1)
+    if (capsules && (capsules->p0.size() != 1 || !capsules->times.empty()))
       return report.error("the csg has an operand of more or fewer than one capsule");
     if (operand->emission) return report.error("the csg has an operand that is an area light");
   }

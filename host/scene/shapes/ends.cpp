@@ -77,6 +77,15 @@ void check_ends(const dvec3& p0, const dvec3& p1, const std::string& what, Shape
     report.error(what + " has no axis: its ends are the same point as 32-bit floats");
 }
 
+void check_times(const CapsulesShape& capsules, ShapeCheck& report) {
+  const std::vector<double>& times = capsules.times;
+  if (times.empty()) return;
+  if (times.size() < 2) report.error("capsules that move need two times or more");
+  for (std::size_t i = 0; i < times.size(); ++i)
+    if (!std::isfinite(times[i]) || (i > 0 && !(times[i] > times[i - 1])))
+      return report.error("the capsules' times must be finite and rise");
+}
+
 Cap drawn_cap(Draws& draws) {
   return draws.one_in(2) ? Cap::flat : draws.one_in(2) ? Cap::round : Cap::open;
 }
@@ -98,19 +107,23 @@ Bounds bounds_under(const CapsulesShape& capsules, const glm::dmat4& m) {
 }
 
 void check(const CapsulesShape& capsules, ShapeCheck& report) {
-  const std::size_t count = capsules.p0.size();
-  if (capsules.p1.size() != count || capsules.radius0.size() != count ||
-      (!capsules.radius1.empty() && capsules.radius1.size() != count) ||
+  const std::size_t all = capsules.p0.size(), count = count_of(capsules);
+  if (capsules.p1.size() != all || capsules.radius0.size() != all ||
+      (!capsules.radius1.empty() && capsules.radius1.size() != all) ||
       (!capsules.materials.empty() && capsules.materials.size() != count) ||
       (!capsules.u.empty() && capsules.u.size() != count))
     return report.error("the capsules' lists differ in length");
-  for (std::size_t i = 0; i < count; ++i) {
+  if (!capsules.times.empty() && all % capsules.times.size() != 0)
+    return report.error("capsules that move need as many ends at each of their times");
+  check_times(capsules, report);
+  for (std::size_t i = 0; i < all; ++i) {
     const float r0 = capsules.radius0[i], r1 = capsules.radius1.empty() ? r0 : capsules.radius1[i];
-    const auto capsule = [i] { return "capsule " + std::to_string(i); };
+    const auto capsule = [i, count] { return "capsule " + std::to_string(i % count); };
     if (!is_finite(capsules.p0[i]) || !is_finite(capsules.p1[i]) || !std::isfinite(r0) ||
         !std::isfinite(r1))
       return report.error(capsule() + " is not finite");
     if (r0 < 0 || r1 < 0) return report.error(capsule() + " has a negative radius");
+    if (i >= count) continue;
     if (!capsules.u.empty() && !(is_finite(capsules.u[i]) && std::abs(capsules.u[i].x) <= 1e18f &&
                                  std::abs(capsules.u[i].y) <= 1e18f))
       return report.error(capsule() + "'s u is not finite or beyond 1e18");

@@ -17,11 +17,15 @@ namespace caplet {
 /// `materials` is empty or holds an index into Scene::materials per capsule (overriding
 /// Shape::material). `u` is empty, or holds u at p0 and at p1 of each capsule of a chain, which
 /// then has the uv of pbrt's curves (docs/shapes.md, "Chains").
+///
+/// Capsules that move have `times`, two or more that rise (seconds). p0, p1, radius0 and radius1
+/// then hold all capsules at the first time, then all at the second one, and so on.
 struct CapsulesShape {
   std::vector<glm::vec3> p0, p1;
   std::vector<float> radius0, radius1;
   std::vector<std::uint32_t> materials;
   std::vector<glm::vec2> u = {};
+  std::vector<double> times = {};
 };
 
 /// The ends of a cylinder or cone. The solid is the convex hull of its two ends: flat ones are
@@ -44,9 +48,12 @@ struct ConeShape {
   std::array<Cap, 2> caps{Cap::flat, Cap::flat};
 };
 
-inline std::size_t count_of(const CapsulesShape& capsules) { return capsules.p0.size(); }
+inline std::size_t count_of(const CapsulesShape& capsules) {
+  return capsules.times.empty() ? capsules.p0.size() : capsules.p0.size() / capsules.times.size();
+}
 inline std::size_t surfaces_of(const CapsulesShape&) { return 1; }
 inline bool closed(const CapsulesShape&) { return true; }
+/// Bounds them at all times.
 Bounds bounds_under(const CapsulesShape& capsules, const glm::dmat4& m);
 void check(const CapsulesShape& capsules, ShapeCheck& report);
 Beyond beyond(const CapsulesShape& capsules, const glm::dvec3& p);  // only the first capsule

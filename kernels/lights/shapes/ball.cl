@@ -45,7 +45,7 @@ static inline int primitive_crossing(const Tree* tree, const Surfaces* surfaces,
     o = affine_point(&to_object, p);
     d = affine_vector(&to_object, wi);
   }
-  ShapeRay ray = shape_ray(o, d, t_min, tree->leaves);
+  ShapeRay ray = shape_ray_of(tree, o, d, t_min);
   if (instance != CAPLET_NONE) {
     // Every shape that is sampled here tests for the first crossing of a side that is seen.
     if (tree->instances[instance].flags & CAPLET_INSTANCE_NO_ENTERING) ray.sees_entering = 0;
