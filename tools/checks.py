@@ -21,7 +21,8 @@ import time
 ROOT = pathlib.Path(__file__).resolve().parents[1]
 BUILD = ROOT / "build"
 RUN = str(ROOT / "run")
-# What tests say that begin or pass. The line by which a test begins is held back until it says more.
+# These lines tell of tests that begin or pass. The line by which a test begins is held back until
+# the test says more.
 QUIET = re.compile(r"^ *(\d+/\d+ Test +#.*Passed|Start +\d+|\[ RUN  |\[ +OK \]|\[-{10}\])")
 BEGINS = re.compile(r"^\[ RUN  ")
 

@@ -36,8 +36,14 @@ void print_text(const nlohmann::ordered_json& info) {
              info["lights"].get<std::uint64_t>());
   if (const auto moving = info["moving"].get<std::uint64_t>(); moving > 0)
     fmt::print("moving       {} of {} instances\n", moving, info["instances"].get<std::uint64_t>());
-  fmt::print("image        {} x {}, {} samples per pixel\n", info["image"]["width"].get<int>(),
-             info["image"]["height"].get<int>(), info["samples_per_pixel"].get<int>());
+  if (const auto moving = info["moving_capsules"].get<std::uint64_t>(); moving > 0)
+    fmt::print("moving       {} capsules\n", moving);
+  const int samples = info["samples_per_pixel"].get<int>();
+  fmt::print("image        {} x {}, {}\n", info["image"]["width"].get<int>(),
+             info["image"]["height"].get<int>(),
+             info.contains("noise") ? fmt::format("noise {:g} %, at most {} samples per pixel",
+                                                  100 * info["noise"].get<double>(), samples)
+                                    : fmt::format("{} samples per pixel", samples));
   fmt::print("bytes        {} host, {} device\n", info["bytes"]["host"].get<std::uint64_t>(),
              info["bytes"]["device"].get<std::uint64_t>());
   fmt::print("bvh          {} nodes, depth {}, SAH cost {:.4g}\n",

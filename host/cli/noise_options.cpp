@@ -13,12 +13,10 @@
 namespace caplet::cli {
 
 std::optional<NoiseTarget> noise_target(const RenderFlags& options) {
-  if (!options.noise) {
-    if (options.least_samples) throw InputError(SourceLocation{"--min-spp"}, "goes with --noise");
-    return {};
-  }
+  if (!options.noise) return {};
   NoiseTarget out;
   out.noise = *options.noise;
+  out.space = options.noise_space.value_or(NoiseSpace::relative);
   if (options.samples_per_pixel) out.most = narrow<std::uint32_t>(*options.samples_per_pixel);
   if (options.least_samples) out.least = narrow<std::uint32_t>(*options.least_samples);
   if (out.least > out.most && options.least_samples)
@@ -32,10 +30,21 @@ std::optional<NoiseTarget> noise_target(const RenderFlags& options) {
 }
 
 RenderFlags with_noise_of(const SamplerSettings& sampler, RenderFlags options) {
-  const bool has_own = options.noise || options.samples_per_pixel || !options.film.samples.empty();
-  if (has_own || !(sampler.noise > 0)) return options;
-  options.noise = sampler.noise;
-  options.samples_per_pixel = sampler.samples_per_pixel;
+  const bool has_own = options.noise || options.samples_per_pixel;
+  if (!has_own && sampler.noise > 0) {
+    if (!options.film.samples.empty())
+      throw InputError(
+          SourceLocation{"--samples"},
+          "needs --spp: the scene is rendered to a noise, which gives pixels different "
+          "numbers of samples");
+    options.noise = sampler.noise;
+    options.samples_per_pixel = sampler.samples_per_pixel;
+    if (!options.noise_space) options.noise_space = sampler.space();
+  }
+  if (options.least_samples && !options.noise && !options.time_limit)
+    throw InputError(SourceLocation{"--min-spp"}, "goes with --noise or --time");
+  if (options.noise_space && !options.noise)
+    throw InputError(SourceLocation{"--noise-space"}, "goes with --noise");
   return options;
 }
 

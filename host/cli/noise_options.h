@@ -17,7 +17,7 @@ namespace caplet::cli {
 std::optional<NoiseTarget> noise_target(const RenderFlags& options);
 
 /// Returns the options with the noise that the scene's file asks for, where they have neither one
-/// nor a number of samples.
+/// nor a number of samples. Throws InputError where options do not go together.
 RenderFlags with_noise_of(const SamplerSettings& sampler, RenderFlags options);
 
 /// Replaces a sampler whose points are even at one number of samples alone, and warns.

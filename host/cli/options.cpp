@@ -266,14 +266,7 @@ double parse_noise(const std::string& text) {
   return noise;
 }
 
-std::string usual_samples() {
-  const SamplerSettings usual;
-  std::string out = std::to_string(usual.samples_per_pixel);
-  for (const Format& format : formats())
-    if (format.samples_per_pixel != usual.samples_per_pixel)
-      out += fmt::format(", {} of {}", format.samples_per_pixel, format.name);
-  return out;
-}
+std::string usual_noise_text() { return fmt::format("{:g}%", 100 * usual_noise); }
 
 std::string usual_least_width() {
   std::string out = fmt::format("{}", FilmSettings{}.least_width);

@@ -57,7 +57,7 @@ std::string scene_extensions();
 
 /// Returns the defaults of pictures if neither the scene nor the user sets them, for help: samples
 /// per pixel of all formats ("16, 64 of swc"), least widths of capsules, and the size.
-std::string usual_samples();
+std::string usual_noise_text();
 /// Parses a positive time as seconds: "90", "90s", "5m", "1h30m". Throws InputError that names the
 /// option.
 double parse_seconds(const std::string& option, const std::string& text);

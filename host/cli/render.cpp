@@ -369,7 +369,7 @@ RenderResult written(const Work& work, RenderResult result, report::RunSeconds& 
     report::write_pictures(exr, preview, picture, channels_of(work), result.render_seconds, finish);
   });
   flaws.warn();
-  result.noise = flaws.noise.relative();
+  result.noise = flaws.noise.in(work.options.noise_space.value_or(work.scene.view.sampler.space()));
   seconds.write += phase.lap();
   return result;
 }
@@ -675,6 +675,7 @@ void run_render(const RenderFlags& given, const Invocation& invocation) {
   render_options.samples_per_pixel = narrow<int>(samples.end - samples.begin);
   render_options.noise = noise_target(options);
   render_options.time_limit = options.time_limit;
+  render_options.least_samples = narrow<std::uint32_t>(options.least_samples.value_or(0));
   render_options.batch_paths = options.batch_paths;
   render_options.time_stages = !options.stats.empty();
   render_options.film_on_device = !film;

@@ -62,17 +62,33 @@ void add_size(CLI::App& command, RenderFlags& o) {
   command.option_defaults()->group("Size and quality");
   command
       .add_option("--spp", o.samples_per_pixel,
-                  "Samples per pixel; unless asked the scene's, else " + usual_samples() +
-                      "; with --noise the most that a pixel gets, else " +
-                      std::to_string(NoiseTarget{}.most))
+                  "Samples per pixel; with --noise the most that a pixel gets, else " +
+                      std::to_string(NoiseTarget{}.most) +
+                      "; unless asked the scene's, or its noise")
       ->check(CLI::Range(1, 1 << 24))
       ->type_name("N");
   command
       .add_option_function<std::string>(
           "--noise", [&o](const std::string& text) { o.noise = parse_noise(text); },
-          "Render to this noise: pixels get as many samples as they need for it")
+          "Render to this noise: pixels get as many samples as they need for it; of files that "
+          "say nothing of it " +
+              usual_noise_text())
       ->type_name("PERCENT%");
-  command.add_option("--min-spp", o.least_samples, "With --noise: the fewest samples of a pixel")
+  command
+      .add_option_function<std::string>(
+          "--noise-space",
+          [&o](const std::string& name) {
+            o.noise_space = static_cast<NoiseSpace>(std::ranges::find(noise_space_names, name) -
+                                                    noise_space_names.begin());
+          },
+          "What --noise is a share of: the luminance around a pixel, or the range of a display")
+      ->check(CLI::IsMember(
+          std::vector<std::string>(noise_space_names.begin(), noise_space_names.end())))
+      ->type_name("relative|display")
+      ->default_str("relative");
+  command
+      .add_option("--min-spp", o.least_samples,
+                  "With --noise and --time: the fewest samples of a pixel")
       ->check(CLI::Range(2, 1 << 24))
       ->default_str(std::to_string(NoiseTarget{}.least))
       ->type_name("N");

@@ -30,6 +30,7 @@ struct RenderFlags {
   std::optional<int> samples_per_pixel, least_samples, max_depth;
   std::optional<std::uint32_t> seed;
   std::optional<double> noise, time_limit, clamp, separation, convergence;
+  std::optional<NoiseSpace> noise_space;
   std::string layout, display;
   FilmFlags film;
   MatteFlags mattes;

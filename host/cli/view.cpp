@@ -25,6 +25,7 @@
 #include "cli/options.h"
 #include "cli/trial.h"
 #include "device/second_try.h"
+#include "film/denoise.h"
 #include "film/sample_plan.h"
 #include "lower/live_scene.h"
 #include "view/addresses.h"
@@ -41,7 +42,7 @@ struct ViewFlags {
   std::uint16_t port = 0;
   int samples = 0;
   std::optional<double> noise;
-  bool no_browser = false, read_only = false, quiet = false;
+  bool no_browser = false, read_only = false, no_denoise = false, quiet = false;
 };
 
 /// Opens the desktop's browser, if there is a desktop, and leaves errors to it.
@@ -113,6 +114,7 @@ void run_view(const ViewFlags& options) {
   viewer_options.server.token =
       options.port ? view::kept_token(options.host, options.port, name) : view::random_token();
   viewer_options.read_only = options.read_only;
+  viewer_options.denoises = !options.no_denoise && has_denoiser();
   viewer_options.samples = options.samples;
   if (options.noise) {
     viewer_options.noise = *options.noise;
@@ -169,6 +171,8 @@ void add_view(CLI::App& app) {
       ->add_option("--size", o->size,
                    "Size in pixels of the first picture; the page asks for its own")
       ->type_name("WxH");
+  command->add_flag("--no-denoise", o->no_denoise,
+                    "Show pictures with their noise, where Open Image Denoise is there");
   command->option_defaults()->group("Device");
   add_device(*command, o->device);
   add_encoding(*command, o->encoding);

@@ -45,6 +45,7 @@ struct Library {
                     std::size_t height, std::size_t offset, std::size_t pixel_bytes,
                     std::size_t row_bytes);
   void (*set_filter_bool)(Filter, const char* name, bool value);
+  void (*set_monitor)(Filter, bool (*)(void* user, double share), void* user);
   void (*commit_filter)(Filter);
   void (*execute_filter)(Filter);
   void (*release_filter)(Filter);
@@ -92,6 +93,7 @@ Library library_of(void* handle) {
   find(out.new_filter, "oidnNewFilter");
   find(out.set_image, "oidnSetSharedFilterImage");
   find(out.set_filter_bool, "oidnSetFilterBool");
+  find(out.set_monitor, "oidnSetFilterProgressMonitorFunction");
   find(out.commit_filter, "oidnCommitFilter");
   find(out.execute_filter, "oidnExecuteFilter");
   find(out.release_filter, "oidnReleaseFilter");
@@ -121,7 +123,8 @@ using Pixels = std::vector<std::array<float, 3>>;
 /// A device, and what is done with it.
 class Denoiser {
  public:
-  Denoiser() : oidn_(library()), device_(oidn_.new_device(device_cpu)) {
+  explicit Denoiser(const std::function<bool()>& goes_on = {})
+      : goes_on_(goes_on), oidn_(library()), device_(oidn_.new_device(device_cpu)) {
     if (!device_) check();
     oidn_.set_device_bool(device_, "setAffinity", false);  // its threads are not the only ones
     oidn_.commit_device(device_);
@@ -143,8 +146,9 @@ class Denoiser {
     const char* name;
     Pixels* pixels;
   };
-  /// Runs the filter of ray-traced pictures. Its output replaces the first input.
-  void run(const std::vector<Input>& inputs, bool is_hdr, bool has_clean_guides, std::size_t width,
+  /// Runs the filter of ray-traced pictures. Its output replaces the first input. Returns false if
+  /// it was ended.
+  bool run(const std::vector<Input>& inputs, bool is_hdr, bool has_clean_guides, std::size_t width,
            std::size_t height) const {
     const std::unique_ptr<OpaqueFilter, void (*)(Library::Filter)> filter(
         oidn_.new_filter(device_, "RT"), oidn_.release_filter);
@@ -157,19 +161,36 @@ class Denoiser {
     set("output", output);
     oidn_.set_filter_bool(filter.get(), "hdr", is_hdr);
     oidn_.set_filter_bool(filter.get(), "cleanAux", has_clean_guides);
+    Monitor monitor{goes_on_};
+    if (goes_on_) oidn_.set_monitor(filter.get(), &Monitor::ask, &monitor);
     oidn_.commit_filter(filter.get());
     oidn_.execute_filter(filter.get());
-    check();
+    check(monitor.is_ended);
+    if (monitor.is_ended) return false;
     *inputs.front().pixels = std::move(output);
+    return true;
   }
 
  private:
-  void check() const {
+  struct Monitor {
+    const std::function<bool()>& goes_on;
+    bool is_ended = false;
+
+    static bool ask(void* user, double /*share*/) {
+      auto& of = *static_cast<Monitor*>(user);
+      of.is_ended = of.is_ended || !of.goes_on();
+      return !of.is_ended;
+    }
+  };
+
+  /// Throws the device's error, unless it is that the filter was ended.
+  void check(bool is_ended = false) const {
     const char* message = nullptr;
-    if (oidn_.get_device_error(device_, &message) != 0)
+    if (oidn_.get_device_error(device_, &message) != 0 && !is_ended)
       throw RunError(fmt::format("Open Image Denoise: {}", message ? message : "an unknown error"));
   }
 
+  const std::function<bool()> goes_on_;
   const Library& oidn_;
   Library::Device device_;
 };
@@ -200,23 +221,33 @@ void check_denoiser(const std::string& flag) {
   }
 }
 
+bool has_denoiser() {
+  try {
+    library();
+    return true;
+  } catch (const RunError&) {
+    return false;
+  }
+}
+
 std::string denoiser_name() { return "Open Image Denoise " + Denoiser().version(); }
 
-void denoise(LayeredImage& image) {
+bool denoise(LayeredImage& image, const std::function<bool()>& goes_on) {
   const auto width = static_cast<std::size_t>(image.data_width),
              height = static_cast<std::size_t>(image.data_height);
   Pixels picture = gathered(image, color), albedos = gathered(image, albedo),
          normals = gathered(image, normal);
-  const Denoiser denoiser;
+  const Denoiser denoiser(goes_on);
   std::vector<Denoiser::Input> inputs{{"color", &picture}};
   const bool is_guided = !albedos.empty() && !normals.empty();
   if (is_guided) {
-    denoiser.run({{"albedo", &albedos}}, false, false, width, height);
-    denoiser.run({{"normal", &normals}}, false, false, width, height);
+    if (!denoiser.run({{"albedo", &albedos}}, false, false, width, height) ||
+        !denoiser.run({{"normal", &normals}}, false, false, width, height))
+      return false;
     inputs.push_back({"albedo", &albedos});
     inputs.push_back({"normal", &normals});
   }
-  denoiser.run(inputs, true, is_guided, width, height);
+  if (!denoiser.run(inputs, true, is_guided, width, height)) return false;
   std::vector<Channel> before;
   for (const std::size_t c : {0U, 1U, 2U})
     for (Channel& channel : image.channels)
@@ -227,6 +258,7 @@ void denoise(LayeredImage& image) {
       }
   image.channels.insert(image.channels.end(), std::make_move_iterator(before.begin()),
                         std::make_move_iterator(before.end()));
+  return true;
 }
 
 }  // namespace caplet

@@ -5,6 +5,7 @@
 // when it is asked for.
 #pragma once
 
+#include <functional>
 #include <string>
 
 #include "film/image.h"
@@ -13,13 +14,16 @@ namespace caplet {
 
 /// Throws RunError, which names `flag` and how to get it, where the library cannot be loaded.
 void check_denoiser(const std::string& flag);
+/// Returns whether it can be loaded.
+bool has_denoiser();
 /// Returns its name and version, for metadata. Throws RunError.
 std::string denoiser_name();
 
 /// Replaces R G B, scene-linear, by a picture without noise, and keeps what they were as noisy.R
 /// noisy.G noisy.B. albedo.R/G/B and N.X/Y/Z guide it where both are there; they are denoised
 /// themselves before. The picture is that of shapes and sky, before a backdrop is put under it.
-/// Throws RunError.
-void denoise(LayeredImage& image);
+/// Where `goes_on` is given, it is asked again and again, and false ends the work. Returns whether
+/// it is complete; else the image is as it was. Throws RunError.
+bool denoise(LayeredImage& image, const std::function<bool()>& goes_on = {});
 
 }  // namespace caplet

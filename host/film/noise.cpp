@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "film/detail/sums_around.h"
+#include "film/preview.h"
 
 namespace caplet {
 
@@ -31,7 +32,12 @@ NoisePixel pixel_of(const Film& film, std::size_t pixel) {
 
 }  // namespace
 
-std::optional<double> noise_of(const std::vector<NoisePixel>& pixels, int width) {
+double noise_unit(NoiseSpace space, double luminance, double floor) {
+  const double seen = std::max(0.0, luminance);
+  return space == NoiseSpace::display ? 1 / display_slope(seen) : seen + floor;
+}
+
+std::optional<double> noise_of(const std::vector<NoisePixel>& pixels, int width, NoiseSpace space) {
   const auto columns = static_cast<std::size_t>(std::max(1, width));
   std::vector<Luminance> own(pixels.size());
   Luminance all;
@@ -47,8 +53,8 @@ std::optional<double> noise_of(const std::vector<NoisePixel>& pixels, int width)
   for (std::size_t i = 0; i < own.size(); ++i) {
     if (!pixels[i].seen) continue;
     around[i].add(own[i]);
-    const double relative_to = std::max(0.0, around[i].sum / around[i].pixels) + floor;
-    sum += double{pixels[i].variance} / (relative_to * relative_to);
+    const double unit = noise_unit(space, around[i].sum / around[i].pixels, floor);
+    sum += double{pixels[i].variance} / (unit * unit);
   }
   return std::sqrt(sum / all.pixels);
 }

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "film/film.h"
+#include "scene/sampler.h"
 
 namespace caplet {
 
@@ -18,6 +19,12 @@ namespace caplet {
 /// to 21.
 inline constexpr double noise_floor = 0.25;
 
+/// Returns what the standard deviation of a pixel's luminance is divided by: luminance and floor,
+/// or one over the slope of previews' tone curve (tone_mapped and sRGB's curve) for a grey of this
+/// luminance, so that noise is a share of the display's range. `luminance`: mean around the pixel;
+/// `floor`: noise_floor of the picture's mean.
+double noise_unit(NoiseSpace space, double luminance, double floor);
+
 /// NoisePixel is what the noise of a picture depends on.
 struct NoisePixel {
   float luminance = 0, variance = 0;  // of its mean
@@ -25,9 +32,10 @@ struct NoisePixel {
 };
 
 /// Returns the root of the mean, over the pixels that are seen, of the variance over the square of
-/// floor and mean luminance, which is that of such pixels at most variance_radius away. Empty if
-/// they have no light. `pixels`: row by row.
-std::optional<double> noise_of(const std::vector<NoisePixel>& pixels, int width);
+/// noise_unit, for the mean luminance of such pixels at most variance_radius away. Empty if they
+/// have no light. `pixels`: row by row.
+std::optional<double> noise_of(const std::vector<NoisePixel>& pixels, int width,
+                               NoiseSpace space = NoiseSpace::relative);
 
 /// PictureNoise is the noise of a film, by what the replicates of each pixel say themselves: their
 /// mean over a picture is true, while the layer `variance` shares them with neighbours that may be
@@ -38,7 +46,7 @@ class PictureNoise {
   /// do not follow those that it has are not added: a picture may be developed twice.
   void add(const Film& film, int first, int count);
   /// Returns the noise of the pixels that have an estimate; empty if there are none.
-  std::optional<double> relative() const { return noise_of(pixels_, width_); }
+  std::optional<double> in(NoiseSpace space) const { return noise_of(pixels_, width_, space); }
 
  private:
   int width_ = 0, next_row_ = 0;  // of the whole picture

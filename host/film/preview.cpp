@@ -43,6 +43,14 @@ std::array<float, 3> tone_map(const std::array<float, 3>& rgb) {
   return out;
 }
 
+double display_slope(double luminance) {
+  const double over = std::max(0.0, (luminance - double{knee}) / (1 - double{knee}));
+  const double mapped =
+      over > 0 ? 1 - (1 - double{knee}) * std::exp(-over) : luminance;  // as tone_map has a grey
+  const double encoding = mapped <= 0.0031308 ? 12.92 : 1.055 / 2.4 * std::pow(mapped, 1 / 2.4 - 1);
+  return encoding * std::exp(-over);
+}
+
 Shown shown(const LayeredImage& image) {
   const std::array<const Channel*, 3> channels{image.find("R"), image.find("G"), image.find("B")};
   if (!channels[0] || !channels[1] || !channels[2])

@@ -19,6 +19,10 @@ namespace caplet {
 /// as film and eyes do. Negative and NaN components are 0, infinite ones white.
 std::array<float, 3> tone_map(const std::array<float, 3>& rgb);
 
+/// Returns the slope of the displayed value, sRGB's curve of tone_map, for a grey of this
+/// luminance, from 12.92 for black down to 0. luminance: 0 or more.
+double display_slope(double luminance);
+
 /// Shown is the displayed data window of an image: linear sRGB from 0 to 1. `alpha` is empty where
 /// all is opaque; otherwise colours are not multiplied by it.
 struct Shown {

@@ -37,14 +37,14 @@ OwnSum own_of(const Film& film, std::size_t pixel) {
           film.sum(Layer::color, 1, pixel) / film.samples(pixel), 1};
 }
 
-/// RelativeVariance is the variance of one sample of a pixel over the square of the luminance
-/// around it and the floor: as its own replicates say it, if they do, and as its neighbours' do.
+/// RelativeVariance is the variance of one sample of a pixel over the square of its noise_unit: as
+/// its own replicates say it, if they do, and as its neighbours' do.
 struct RelativeVariance {
   double own = 0, others = 0;
   bool seen = false;
 };
 
-std::vector<RelativeVariance> relative_variances(const SampledPixels& pixels) {
+std::vector<RelativeVariance> relative_variances(const SampledPixels& pixels, NoiseSpace space) {
   const std::vector<OwnSum>& own = pixels.own();
   OwnSum all;
   for (const OwnSum& pixel : own) all.add(pixel);
@@ -54,12 +54,12 @@ std::vector<RelativeVariance> relative_variances(const SampledPixels& pixels) {
   std::vector<RelativeVariance> out(own.size());
   tbb::parallel_for(std::size_t{0}, own.size(), [&](std::size_t pixel) {
     const OwnSum& near = others[pixel];
-    const double mean = near.pixels > 0 ? near.luminance / near.pixels : 0,
-                 luminance = std::max(0.0, mean) + floor;
-    if (!(luminance > 0)) return;
+    const double mean = near.pixels > 0 ? near.luminance / near.pixels : 0;
+    if (!(std::max(0.0, mean) + floor > 0)) return;
+    const double unit = noise_unit(space, mean, floor);
     out[pixel].seen = own[pixel].pixels > 0;
-    out[pixel].own = own[pixel].variance / (luminance * luminance);
-    if (near.pixels > 0) out[pixel].others = near.variance / near.pixels / (luminance * luminance);
+    out[pixel].own = own[pixel].variance / (unit * unit);
+    if (near.pixels > 0) out[pixel].others = near.variance / near.pixels / (unit * unit);
   });
   return out;
 }
@@ -69,7 +69,7 @@ std::vector<RelativeVariance> relative_variances(const SampledPixels& pixels) {
 class Wanted {
  public:
   Wanted(const SampledPixels& pixels, const NoiseTarget& target)
-      : pixels_(pixels), target_(target), variances_(relative_variances(pixels)) {
+      : pixels_(pixels), target_(target), variances_(relative_variances(pixels, target.space)) {
     double own = 0, squares = 0, seen = 0;
     for (std::size_t pixel = 0; pixel < variances_.size(); ++pixel) {
       if (!variances_[pixel].seen) continue;

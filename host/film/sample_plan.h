@@ -13,11 +13,12 @@
 
 namespace caplet {
 
-/// NoiseTarget says when a picture has enough samples: when its noise (film/noise.h) is at most
-/// `noise`. With noise 0 each pixel gets `most` samples.
+/// NoiseTarget says when a picture has enough samples: when its noise in `space` (film/noise.h) is
+/// at most `noise`. With noise 0 each pixel gets `most` samples.
 struct NoiseTarget {
   double noise = 0;
-  std::uint32_t least = 16, most = 1u << 14;  // samples of a pixel, least <= most
+  std::uint32_t least = 16, most = most_noise_samples;  // samples of a pixel, least <= most
+  NoiseSpace space = NoiseSpace::relative;
 };
 
 /// PixelSamples is the next `count` samples of some pixels.
@@ -85,7 +86,7 @@ class SampledPixels {
 /// the target. The film has the layer `variance` unless the target's noise is 0.
 ///
 /// The fewest samples with which a picture has a noise are in proportion to the root of the
-/// variance of a sample over luminance and floor, pixel by pixel (Neyman, "On the two different
+/// variance of a sample over noise_unit, pixel by pixel (Neyman, "On the two different
 /// aspects of the representative method", 1934).
 ///
 /// A pixel is judged by its neighbours alone: the mean of the variances of a sample, and of the

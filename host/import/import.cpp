@@ -203,7 +203,7 @@ Scene joined(std::vector<Imported> files, std::span<const fs::path> paths) {
     if (files[i].has_camera) with_camera = i;
   }
   // Without a camera, the first file that states a picture or lights gives size and samples; if
-  // none does, the format that asks for most.
+  // none does, the format that asks for most width, and a noise if one has it.
   std::optional<std::size_t> settings = with_camera;
   for (std::size_t i = 0; i < files.size() && !settings; ++i)
     if (!files[i].scene.view.film.filename.empty() || files[i].is_lit) settings = i;
@@ -225,8 +225,7 @@ Scene joined(std::vector<Imported> files, std::span<const fs::path> paths) {
       if (settings) continue;
       scene.view.film.least_width =
           std::max(scene.view.film.least_width, file.scene.view.film.least_width);
-      scene.view.sampler.samples_per_pixel =
-          std::max(scene.view.sampler.samples_per_pixel, file.scene.view.sampler.samples_per_pixel);
+      if (file.scene.view.sampler.noise > 0) scene.view.sampler = file.scene.view.sampler;
     }
   }
   Imported out(std::move(scene));
@@ -262,13 +261,30 @@ const Format& format_of(const fs::path& path) {
   throw InputError({path.string()}, "no known scene format (known: " + known + ")");
 }
 
+namespace {
+
+/// Reads a file, with its format's defaults for what such files do not state.
+Imported import_file(const Format& format, const fs::path& path, const ImageReader& images,
+                     const ImportOptions& options) {
+  Imported file = format.import(path, images, options);
+  View& view = file.scene.view;
+  if (format.least_width > 0) view.film.least_width = format.least_width;
+  if (format.noise > 0) {
+    view.sampler.noise = format.noise;
+    view.sampler.samples_per_pixel = most_noise_samples;
+  }
+  return file;
+}
+
+}  // namespace
+
 Imported read_scene(const fs::path& path, const ImageReader& images, const ImportOptions& options,
                     const Format* format) {
   const Fence fence(path, options);
   check_readable(path);
   if (!format) format = &format_of(path);
   check_known(options, {format});
-  return format->import(path, images, options);
+  return import_file(*format, path, images, options);
 }
 
 Scene presented(Imported file) {
@@ -312,7 +328,7 @@ Scene import_scenes(std::span<const fs::path> paths, const ImageReader& images,
     of_all.seen = std::make_shared<ValueRange>();
     const Fence fence(paths[i], options);
     Imported file =
-        formats_of_files[i]->import(paths[i], images, known_to(*formats_of_files[i], of_all));
+        import_file(*formats_of_files[i], paths[i], images, known_to(*formats_of_files[i], of_all));
     if (const ValueRange& seen = *of_all.seen; seen.is_there) {
       by_values.push_back(i);
       all.what = seen.what;

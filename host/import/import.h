@@ -36,7 +36,7 @@ struct Format {
   Imported (*import)(const std::filesystem::path& path, const ImageReader& images,
                      const ImportOptions& options);
   // The default for files that do not state it.
-  int samples_per_pixel = SamplerSettings{}.samples_per_pixel;
+  double noise = usual_noise;  // 0: of SamplerSettings
   double least_width = FilmSettings{}.least_width;
 };
 

@@ -16,10 +16,10 @@ Imported imported(const std::filesystem::path& path, const ImageReader& images,
   return function(path, images, options);
 }
 
-void set_picture(std::vector<Format>& rows, const char* name, int samples, double least_width) {
+void set_picture(std::vector<Format>& rows, const char* name, double noise, double least_width) {
   for (Format& format : rows)
     if (format.name == name) {
-      format.samples_per_pixel = samples;
+      format.noise = noise;
       format.least_width = least_width;
     }
 }
@@ -58,21 +58,13 @@ const std::vector<Format>& formats() {
     };
 #define IMPORTER(...)
 #define FULL_IMPORTER(...)
-#define PICTURE(name, samples, least_width) set_picture(rows, name, samples, least_width);
+#define PICTURE(name, noise, least_width) set_picture(rows, name, noise, least_width);
 #include "import/importers.def"
 #undef IMPORTER
 #undef FULL_IMPORTER
     return rows;
   }();
   return all;
-}
-
-void set_usual_picture(Scene& scene, const std::string& name) {
-  for (const Format& format : formats())
-    if (format.name == name) {
-      scene.view.sampler.samples_per_pixel = format.samples_per_pixel;
-      scene.view.film.least_width = format.least_width;
-    }
 }
 
 }  // namespace caplet

@@ -445,8 +445,6 @@ Scene import_swc(const std::filesystem::path& path, const ImageReader&,
     scene.shapes.push_back(std::move(shape));
   }
   scene.has_no_up = true;
-  // Axons are thinner than a pixel.
-  set_usual_picture(scene, "swc");
   scene.unit = "\u00b5m";
   return scene;
 }

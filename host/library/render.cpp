@@ -14,18 +14,18 @@ Film render(const Scene& scene, const Device& device, const RenderOptions& optio
   Scene drawn = scene;
   drawn.widen_to_least();
   const caplet::Scene& model = *Inside::model(drawn);
-  if (options.noise) check_noise(*options.noise, model.view.sampler);
+  const std::optional<NoiseTarget> noise = options.noise ? options.noise : drawn.noise_target();
+  if (noise) check_noise(*noise, model.view.sampler);
   const caplet::Device& on = Inside::device(device);
   const FlatScene flat = lower(model);
   try_device(on, {.shapes = flat.shapes, .render = true});
   const auto samples = static_cast<std::uint32_t>(model.view.sampler.samples_per_pixel);
   const FlatView view = lower_view(model);
-  caplet::Session session(
-      flat, view, {on},
-      {.layers = layers_with(layers), .most_samples = options.noise ? 0 : samples});
+  caplet::Session session(flat, view, {on},
+                          {.layers = layers_with(layers), .most_samples = noise ? 0 : samples});
   SessionRuns runs;
-  if (options.noise)
-    runs.render_to(session, *options.noise, options);
+  if (noise)
+    runs.render_to(session, *noise, options);
   else
     runs.render(session, samples, options);
   return runs.film(session, model, flat, view);

@@ -122,10 +122,20 @@ void Scene::set_crop(int x0, int y0, int x1, int y1) {
 int Scene::samples_per_pixel() const { return data_->model.view.sampler.samples_per_pixel; }
 void Scene::set_samples_per_pixel(int samples) {
   check_range("samples per pixel", samples, 1, most_samples);
-  changed().model.view.sampler.samples_per_pixel = samples;
+  SamplerSettings& sampler = changed().model.view.sampler;
+  sampler.samples_per_pixel = samples;
+  sampler.noise = 0;
 }
 
 double Scene::noise() const { return data_->model.view.sampler.noise; }
+
+std::optional<NoiseTarget> Scene::noise_target() const {
+  const SamplerSettings& sampler = data_->model.view.sampler;
+  const int most = sampler.samples_per_pixel;
+  if (!(sampler.noise > 0) || most < 2) return {};
+  return NoiseTarget{sampler.noise, std::min(NoiseTarget{}.least_samples, most), most,
+                     sampler.space() == NoiseSpace::display};
+}
 
 int Scene::max_depth() const { return data_->model.view.integrator.max_depth; }
 void Scene::set_max_depth(int events) {

@@ -50,13 +50,15 @@ class Course {
     // A pass has as many samples as take up to half the time between two looks.
     for (std::uint32_t samples = options_.looks.empty() ? total : 1; done < total;) {
       const Clock::time_point begin = Clock::now();
-      samples = std::min(samples, total - done);
+      const bool is_owed = done < std::min(total, options_.least_samples);
+      const std::uint32_t next =
+          std::min(samples, (is_owed ? std::min(total, options_.least_samples) : total) - done);
       const std::uint32_t more = session_.render(
-          samples,
+          next,
           [&](const SessionProgress& now) {
             heard(now);
             if (progress_) {
-              Progress told{(done + now.fraction * samples) / total,
+              Progress told{(done + now.fraction * next) / total,
                             narrow<int>(done + now.samples_done),
                             now.samples_per_second,
                             {}};
@@ -64,9 +66,9 @@ class Course {
               progress_(told);
             }
           },
-          time_left());
+          is_owed ? std::nullopt : time_left());
       done += more;
-      if (more < samples || stopped()) break;
+      if (more < next || stopped(done)) break;
       const double seconds = seconds_since(begin);
       if (seconds < shortest_ / 4) samples *= 2;
       if (seconds > shortest_ / 2) samples = std::max<std::uint32_t>(1, samples / 2);
@@ -90,7 +92,7 @@ class Course {
           plan_samples(sampled, parts.empty() ? 0 : parts.front().sample_begin, target);
       reached = {plan.noise, sampled.mean_samples()};
       const double done = pixels * reached.mean_samples, all = done + plan.paths_left;
-      if (plan.empty() || !begun || stopped()) return session_.film();
+      if (plan.empty() || !begun || stopped(target.least)) return session_.film();
       look();
       double here = 0;  // of the plan's paths
       while (!plan.empty()) {
@@ -112,7 +114,7 @@ class Course {
             time_left());
         here += paths;
         speed_ = paths / std::max(1e-3, seconds_since(begin));
-        if (!complete || stopped()) return session_.film();
+        if (!complete || stopped(target.least)) return session_.film();
         if (!plan.empty()) look();
       }
     }
@@ -123,8 +125,10 @@ class Course {
   bool cancelled() const { return options_.cancelled && options_.cancelled(); }
 
  private:
-  bool stopped() const {
-    return cancelled() || (options_.time_limit && seconds() >= *options_.time_limit);
+  /// Returns whether to end, with `done` samples of each pixel.
+  bool stopped(std::uint32_t done) const {
+    return cancelled() || (options_.time_limit && seconds() >= *options_.time_limit &&
+                           done >= options_.least_samples);
   }
   std::optional<double> time_left() const {
     if (!options_.time_limit) return {};

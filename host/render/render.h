@@ -32,6 +32,7 @@ struct RenderOptions {
   std::optional<NoiseTarget>
       noise;  // in its place: samples of each pixel until it has little noise
   std::optional<double> time_limit;  // seconds; the pass under way is finished
+  std::uint32_t least_samples = 0;   // of each pixel, however long they take
   std::function<bool()> cancelled;   // asked after each batch: no more passes when true
   std::size_t batch_paths = 0;       // 0: chosen for the device
   bool time_stages = false;  // wait for each stage and report its seconds (costs some on GPUs)
@@ -61,7 +62,7 @@ struct RenderResult {
   int samples_per_pixel = 0;              // in the film; in the mean, where it is one of a target
   std::optional<NoiseReached> reached;
   bool interrupted = false;     // cancelled
-  std::optional<double> noise;  // of the picture that was written, over its mean
+  std::optional<double> noise;  // of the picture that was written, in the space it was rendered in
   double compile_seconds = 0, render_seconds = 0, first_pass_seconds = 0;
   std::uint64_t camera_rays = 0, bounce_rays = 0, shadow_rays = 0;
   std::uint64_t peak_device_bytes = 0;

@@ -41,6 +41,18 @@ std::uint64_t bytes_of(const Shape& shape, Counted& counted) {
   return out + bytes_of(shape.materials);
 }
 
+std::uint64_t moving_capsules(const Scene& scene) {
+  std::uint64_t out = 0;
+  const auto add = [&](const std::vector<Shape>& shapes) {
+    for (const Shape& shape : shapes)
+      if (const auto* capsules = std::get_if<CapsulesShape>(&shape.geometry))
+        if (!capsules->times.empty()) out += count_of(*capsules);
+  };
+  add(scene.shapes);
+  for (const Object& object : scene.objects) add(object.shapes);
+  return out;
+}
+
 nlohmann::ordered_json to_json(const glm::dvec3& v) {
   return nlohmann::ordered_json::array({v.x, v.y, v.z});
 }
@@ -95,8 +107,10 @@ nlohmann::ordered_json scene_summary(const Scene& scene, const FlatScene& flat) 
   out["instances"] = scene.instances.size();
   out["moving"] = std::ranges::count_if(scene.instances,
                                         [](const Instance& one) { return !one.motion.empty(); });
+  out["moving_capsules"] = moving_capsules(scene);
   out["image"] = {{"width", scene.view.film.width}, {"height", scene.view.film.height}};
   out["samples_per_pixel"] = scene.view.sampler.samples_per_pixel;
+  if (scene.view.sampler.noise > 0) out["noise"] = scene.view.sampler.noise;
   out["max_depth"] = scene.view.integrator.max_depth;
   out["bytes"] = {{"host", model_bytes(scene)}, {"device", flat.device_bytes()}};
   out["bvh"] = {{"nodes", flat.bvh_nodes}, {"depth", flat.bvh_depth}, {"sah", flat.bvh_sah}};

@@ -11,6 +11,14 @@ namespace caplet {
 
 /// The least noise that a picture can be rendered to.
 inline constexpr double least_noise = 1e-5;
+/// The noise of pictures of files that say nothing of samples.
+inline constexpr double usual_noise = 0.05;
+/// The most samples of a pixel of a picture that is rendered to a noise, unless asked.
+inline constexpr int most_noise_samples = 1 << 14;
+
+/// What noise is measured in (film/noise.h): shares of the luminance, or of the display's range.
+enum class NoiseSpace { relative, display };
+inline constexpr std::array noise_space_names = {"relative", "display"};
 
 struct SamplerSettings {
   enum class Kind {
@@ -26,6 +34,9 @@ struct SamplerSettings {
   bool jitter = true;  // stratified
   double noise = 0;    // of the picture, to which it is rendered with at most samples_per_pixel; 0:
                        // samples_per_pixel of every pixel. Not of stratified ones
+  int noise_space = 0;  // NoiseSpace
+
+  NoiseSpace space() const { return static_cast<NoiseSpace>(noise_space); }
 
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {
@@ -40,6 +51,8 @@ struct SamplerSettings {
       visit.number(
           {"noise", "to which the picture is rendered, with at most pixelsamples; 0: any", 0, 1},
           self.noise);
+      visit.choice({"noisespace", "what noise is a share of: luminance, or the display's range"},
+                   self.noise_space, noise_space_names);
     }
     visit.seed({"seed", "another one gives other noise"}, self.seed);
   }

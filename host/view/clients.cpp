@@ -49,8 +49,12 @@ std::vector<ClientId> Clients::take(ClientId id, const Message& message, const s
     if (const ShowView* look = std::get_if<ShowView>(&message)) {
       wanted_ = *look;
       ++wanted_number_;
-      for (const auto& [other, of] : clients_)
-        if (other != id) others.push_back(other);
+      others = all_but(id);
+    } else if (const Denoise* denoise = std::get_if<Denoise>(&message)) {
+      if (!greeting_.contains("denoise")) throw InputError("there is no Open Image Denoise");
+      denoise_ = denoise->on;
+      greeting_["denoise"] = denoise->on;
+      others = all_but(id);
     } else if (const Seen* seen = std::get_if<Seen>(&message)) {
       client.is_seen = seen->seen;
     } else if (const Ask* ask = std::get_if<Ask>(&message)) {
@@ -67,6 +71,13 @@ std::vector<ClientId> Clients::take(ClientId id, const Message& message, const s
   }
   changed_.notify_all();
   return others;
+}
+
+std::vector<ClientId> Clients::all_but(ClientId id) const {
+  std::vector<ClientId> out;
+  for (const auto& [other, of] : clients_)
+    if (other != id) out.push_back(other);
+  return out;
 }
 
 void Clients::wish(ClientId id, const Message& message, const std::string& text) {
@@ -95,9 +106,10 @@ bool Clients::any(const std::function<bool(const Client&)>& is_so) const {
 bool Clients::wait_for_work(bool has_more) {
   std::unique_lock lock(mutex_);
   changed_.wait(lock, [&] {
-    return ended_ || wanted_number_ != taken_number_ || !wishes_.empty() || any(&Client::waits) ||
-           (has_more && any(&Client::is_seen));
+    return ended_ || is_called_ || denoise_ || wanted_number_ != taken_number_ ||
+           !wishes_.empty() || any(&Client::waits) || (has_more && any(&Client::is_seen));
   });
+  is_called_ = false;
   return !ended_;
 }
 
@@ -106,6 +118,11 @@ std::optional<ShowView> Clients::take_look() {
   if (wanted_number_ == taken_number_) return {};
   taken_number_ = wanted_number_;
   return wanted_;
+}
+
+std::optional<bool> Clients::take_denoise() {
+  const std::lock_guard lock(mutex_);
+  return std::exchange(denoise_, {});
 }
 
 std::deque<Wish> Clients::take_wishes() {
@@ -157,6 +174,14 @@ void Clients::show_one_eye() {
 void Clients::greet_with(const nlohmann::ordered_json& members) {
   const std::lock_guard lock(mutex_);
   for (const auto& [name, value] : members.items()) greeting_[name] = value;
+}
+
+void Clients::wake() {
+  {
+    const std::lock_guard lock(mutex_);
+    is_called_ = true;
+  }
+  changed_.notify_all();
 }
 
 void Clients::end() {

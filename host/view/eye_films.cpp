@@ -11,6 +11,7 @@
 #include "film/develop.h"
 #include "film/exr_bytes.h"
 #include "film/sample_plan.h"
+#include "report/denoised.h"
 #include "view/detail/shown_view.h"
 #include "view/detail/snapshot.h"
 
@@ -21,9 +22,10 @@ namespace {
 constexpr int coarsest_scale = 16;
 constexpr double first_guess_paths_a_second = 5e5;
 
-SessionOptions session_options(const ViewerOptions& options) {
+SessionOptions session_options(const ViewerOptions& options, bool denoises) {
   SessionOptions out;
   out.layers = Layers::none().with(Layer::object).with(Layer::primitive).with(Layer::variance);
+  if (denoises) out.layers = Layers::of_bits(out.layers.bits() | report::denoising_layers().bits());
   out.batch_paths = options.batch_paths;
   return out;
 }
@@ -31,11 +33,12 @@ SessionOptions session_options(const ViewerOptions& options) {
 }  // namespace
 
 EyeFilms::EyeFilms(LiveScene& live, const Editor& editor, const Device& device,
-                   const ViewerOptions& options)
+                   const ViewerOptions& options, bool denoises)
     : live_(live),
       editor_(editor),
       options_(options),
-      session_(live.flat(), live.view(), std::vector<Device>{device}, session_options(options)),
+      session_options_(session_options(options, denoises)),
+      session_(live.flat(), live.view(), std::vector<Device>{device}, session_options_),
       look_(look_of_scene(live.scene())),
       paths_a_second_(first_guess_paths_a_second) {
   (void)live_.take_changes();
@@ -92,6 +95,7 @@ void EyeFilms::begin(const ShowView& look) {
   set_film(look, scale);
   look_ = look;
   ++view_;
+  begun_ = Clock::now();
 }
 
 std::uint32_t EyeFilms::samples_of_step(std::size_t eye, double pixels) const {
@@ -118,25 +122,38 @@ void EyeFilms::step(const std::function<void(bool is_coarse)>& between_batches) 
   samples_[eye_] += count;
 }
 
-Picture EyeFilms::picture() {
+Film EyeFilms::film(std::size_t eye) {
+  return eye == eye_ ? session_.film() : films_.at(eye).value();
+}
+
+NoisyImage EyeFilms::noisy(std::size_t eye) {
+  FilmSettings settings = live_.scene().view.film;
+  NoisyImage out;
+  out.backdrop = std::exchange(settings.backdrop, {});
+  out.image = develop(film(eye), settings, session_options_.layers);
+  out.samples = samples(eye);
+  out.eye = eye;
+  return out;
+}
+
+Picture EyeFilms::picture(std::size_t eye) {
   PictureFlaws flaws;
   const LayeredImage image =
-      develop(session_.film(), live_.scene().view.film, session_options(options_).layers, flaws);
+      develop(film(eye), live_.scene().view.film, session_options_.layers, flaws);
   Picture out = shown_of(image, is_full());
-  const std::optional<double> noise = flaws.noise.relative();
+  const std::optional<double> noise = flaws.noise.in(live_.scene().view.sampler.space());
   out.noise = static_cast<float>(noise.value_or(0));
-  noise_[eye_] = noise.value_or(std::numeric_limits<double>::infinity());
+  noise_[eye] = noise.value_or(std::numeric_limits<double>::infinity());
   out.version = ++version_;
   out.view = view_;
-  out.eye = static_cast<int>(eye_);
+  out.eye = static_cast<int>(eye);
   out.scale = scale_;
-  out.samples = samples_[eye_];
+  out.samples = samples_[eye];
   return out;
 }
 
 std::string EyeFilms::snapshot() {
-  return exr_bytes(develop(eye_ == 0 ? session_.film() : *films_[0], live_.scene().view.film,
-                           session_options(options_).layers));
+  return exr_bytes(develop(film(0), live_.scene().view.film, session_options_.layers));
 }
 
 }  // namespace caplet::view

@@ -46,7 +46,7 @@ using MaterialModel = decltype(Material::model);
 using LightModel = decltype(Light::model);
 using TextureModel = decltype(Texture::model);
 
-void whole(FormFields& to, const Field& field, int& value) {
+void add_whole(FormFields& to, const Field& field, int& value) {
   to.whole(field.name, value, static_cast<int>(field.low), static_cast<int>(field.high));
 }
 
@@ -70,7 +70,7 @@ class MaterialFields : public CompositesInParts<MaterialFields> {
     with_slot(field.name, true,
               [&](Slot& slot) { to_.number(field.name, value, field.low, field.high, &slot); });
   }
-  void integer(const Field& field, int& value) { whole(to_, field, value); }
+  void integer(const Field& field, int& value) { add_whole(to_, field, value); }
   void flag(const Field& field, bool& value) { to_.flag(field.name, value); }
   void parts(const Field&, std::array<std::uint32_t, 2>& of) {
     to_.material("material 0", of[0]);
@@ -158,7 +158,7 @@ class TextureFields : public IgnoresFields {
   void number(const Field& field, double& value) {
     to_.number(field.name, value, field.low, field.high);
   }
-  void integer(const Field& field, int& value) { whole(to_, field, value); }
+  void integer(const Field& field, int& value) { add_whole(to_, field, value); }
   void vector(const Field& field, glm::dvec3& value) { to_.point(field.name, value); }
   template <class Names>
   void choice(const Field& field, int& value, const Names& names) {

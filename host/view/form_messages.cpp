@@ -6,7 +6,7 @@ namespace caplet::view::message {
 
 namespace {
 
-constexpr std::size_t longest_name = 100;
+constexpr std::size_t longest_text = 100;
 constexpr std::size_t most_numbers = 16;
 
 Spectrum spectrum(const json& of) {
@@ -18,7 +18,7 @@ Spectrum spectrum(const json& of) {
   if (of.contains("rgb")) return RgbSpectrum{point(of, "rgb"), ColorSpace::srgb};
   if (!of.contains("name"))
     refuse("to", "is not one of constant, rgb, blackbody, name and texture");
-  const std::string name = text(of, "name", longest_name);
+  const std::string name = text(of, "name", longest_text);
   const auto known = named_spectrum(name);
   if (!known) refuse("to", fmt::format("there is no spectrum \"{}\"", name));
   return *known;
@@ -49,7 +49,7 @@ FormSubject::Kind kind_of(const std::string& name, const char* field) {
 
 Add add(const json& of) {
   Add out;
-  out.what = kind_of(text(of, "of", longest_name), "of");
+  out.what = kind_of(text(of, "of", longest_text), "of");
   if (out.what != FormSubject::Kind::material && out.what != FormSubject::Kind::texture &&
       out.what != FormSubject::Kind::light && out.what != FormSubject::Kind::shape)
     refuse("of", "is none of material, texture, light and shape");
@@ -57,7 +57,7 @@ Add add(const json& of) {
     out.like = id(of, "like");
     return out;
   }
-  out.kind = text(of, "kind", longest_name);
+  out.kind = text(of, "kind", longest_text);
   if (out.what == FormSubject::Kind::texture) out.is_float = truth(of, "of_floats");
   if (out.what == FormSubject::Kind::shape) out.material = id(of, "material");
   if (out.what != FormSubject::Kind::shape && out.what != FormSubject::Kind::light) return out;
@@ -70,13 +70,13 @@ Add add(const json& of) {
 }  // namespace
 
 FormSubject part(const json& object) {
-  return {kind_of(text(object, "of", longest_name), "of"),
+  return {kind_of(text(object, "of", longest_text), "of"),
           object.contains("part") ? id(object, "part") : 0};
 }
 
 std::optional<FormChange> form_change(const json& of) {
   const json& what = field(of, "what");
-  if (what == "set") return Set{part(of), text(of, "field", longest_name), value(field(of, "to"))};
+  if (what == "set") return Set{part(of), text(of, "field", longest_text), value(field(of, "to"))};
   if (what == "add") return add(of);
   if (what == "remove") {
     const FormSubject which = part(of);

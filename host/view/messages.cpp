@@ -101,6 +101,7 @@ Message parse_message(std::string_view text) {
   if (!message.is_object()) throw InputError("the message is no object");
   const json& type = field(message, "type");
   if (type == "look") return look(message);
+  if (type == "denoise") return Denoise{truth(message, "on")};
   if (type == "seen") return Seen{truth(message, "seen")};
   if (type == "ask") return ask(message);
   if (type == "snapshot") return Snapshot{};
@@ -116,9 +117,9 @@ Message parse_message(std::string_view text) {
   if (type == "save") return save(message);
   if (type == "discard") return Discard{};
   if (type == "kept") return Kept{truth(message, "restore")};
-  refuse(
-      "type",
-      "is none of look, seen, ask, snapshot, describe, form, edit, undo, save, discard and kept");
+  refuse("type",
+         "is none of look, denoise, seen, ask, snapshot, describe, form, edit, undo, save, discard "
+         "and kept");
 }
 
 }  // namespace caplet::view

@@ -27,6 +27,10 @@ struct ShowView {
   double separation = 0;    // distance of the eyes of a stereo pair; 0: a single eye
   double convergence = 0;   // distance at which both views coincide; 0: infinity
 };
+/// Whether pictures are denoised, for all pages.
+struct Denoise {
+  bool on = true;
+};
 /// Whether the page is visible.
 struct Seen {
   bool seen = true;
@@ -101,8 +105,8 @@ struct Kept {
   bool restore = false;  // replay them as far as possible; else forget them
 };
 
-using Message =
-    std::variant<ShowView, Seen, Ask, Snapshot, Describe, Form, Edit, Undo, Save, Discard, Kept>;
+using Message = std::variant<ShowView, Denoise, Seen, Ask, Snapshot, Describe, Form, Edit, Undo,
+                             Save, Discard, Kept>;
 
 /// The longest file name, in bytes.
 inline constexpr std::size_t longest_name = 200;

@@ -15,7 +15,7 @@ namespace caplet::view {
 namespace {
 
 constexpr std::uint32_t magic = 0x464c5043;  // "CPLF"
-constexpr std::uint32_t flag_whole = 1, flag_ids = 2, flag_right = 4;
+constexpr std::uint32_t flag_whole = 1, flag_ids = 2, flag_right = 4, flag_denoised = 8;
 
 void put(std::string& out, std::uint32_t value) {
   for (int i = 0; i < 4; ++i) out.push_back(static_cast<char>(value >> (8 * i) & 0xffu));
@@ -118,8 +118,8 @@ std::string packed(const Picture& now, const Picture* before) {
   put(out, static_cast<std::uint32_t>(now.scale));
   put(out, now.samples);
   put(out, std::bit_cast<std::uint32_t>(now.noise));
-  put(out,
-      (same_size ? 0u : flag_whole) | (ids ? flag_ids : 0u) | (now.eye == 1 ? flag_right : 0u));
+  put(out, (same_size ? 0u : flag_whole) | (ids ? flag_ids : 0u) |
+               (now.eye == 1 ? flag_right : 0u) | (now.is_denoised ? flag_denoised : 0u));
   put(out, static_cast<std::uint32_t>(tiles.size()));
   put(out, static_cast<std::uint32_t>(data.size()));
   return out + deflated(data);

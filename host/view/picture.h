@@ -19,6 +19,7 @@ struct Picture {
   int width = 0, height = 0;  // of the rendered picture
   int scale = 1;              // one pixel covers so many pixels per side of the page's picture
   std::uint32_t samples = 0;
+  bool is_denoised = false;  // the colours are without noise, and may be of fewer samples
   float noise =
       0;  // root mean square of the standard error of a pixel's luminance, over the mean luminance
   std::vector<std::uint16_t> color;       // R G B of each pixel, linear, half floats

@@ -13,6 +13,8 @@ namespace caplet::view {
 
 namespace {
 
+constexpr double rest_seconds = 1;  // after which a picture is denoised
+
 /// Thrown when a new view is requested, to abandon the picture in progress.
 struct Superseded {};
 
@@ -44,6 +46,7 @@ void RenderLoop::work() {
     const std::optional<ShowView> look = tools_.clients.take_look();
     if (has_changed || look) begin(look.value_or(tools_.films.look()));
     if (tools_.films.has_more() && tools_.clients.is_seen()) step();
+    if (tools_.denoising) denoise();
   } catch (const Superseded&) {
     tools_.films.drop();
   } catch (const InputError& error) {  // the scene cannot have such a view
@@ -53,6 +56,7 @@ void RenderLoop::work() {
 
 void RenderLoop::begin(const ShowView& look) {
   tools_.films.begin(look);
+  if (tools_.denoising) tools_.denoising->forget();
   if (tools_.films.eyes() == 1) tools_.clients.show_one_eye();
 }
 
@@ -62,11 +66,45 @@ void RenderLoop::step() {
     // A coarse picture is always shown, because nothing else appears while the camera moves.
     if (!is_coarse && tools_.clients.is_superseded()) throw Superseded();
   });
-  auto picture = std::make_shared<const Picture>(tools_.films.picture());
-  const auto eye = static_cast<std::size_t>(picture->eye);
-  tools_.clients.show(eye, std::move(picture));
-  tools_.server.picture_changed();
+  show(tools_.films.picture());
   if (tools_.films.is_full()) tools_.keeping.pause();
+}
+
+void RenderLoop::show(Picture picture) {
+  if (tools_.denoising && picture.scale == 1) tools_.denoising->improve(picture);
+  const auto eye = static_cast<std::size_t>(picture.eye);
+  tools_.clients.show(eye, std::make_shared<const Picture>(std::move(picture)));
+  tools_.server.picture_changed();
+}
+
+/// Shows what has been denoised, and begins the next picture: after a rest each time that the
+/// samples have doubled, and at the end.
+void RenderLoop::denoise() {
+  Denoising& denoising = *tools_.denoising;
+  EyeFilms& films = tools_.films;
+  const auto show_all = [&] {
+    for (std::size_t eye = 0; eye < films.eyes(); ++eye)
+      if (films.samples(eye) > 0) show(films.picture(eye));
+  };
+  if (const std::optional<bool> on = tools_.clients.take_denoise()) {
+    denoising.turn(*on);
+    show_all();
+  }
+  try {
+    if (denoising.has_new()) show_all();
+  } catch (const RunError& error) {
+    tools_.clients.greet_with({{"denoise", false}});
+    tools_.server.send_to_all(text_of({{"type", "denoise"}, {"on", false}}));
+    tools_.server.send_to_all(error_text(error.what()));
+    return show_all();
+  }
+  if (!denoising.is_on() || !denoising.is_idle()) return;
+  if (films.has_more() && films.seconds() < rest_seconds) return;
+  for (std::size_t eye = 0; eye < films.eyes(); ++eye) {
+    const std::uint32_t before = denoising.samples(eye), now = films.samples(eye);
+    if (now > before && (now >= 2 * before || !films.has_more()))
+      return denoising.begin(films.noisy(eye));
+  }
 }
 
 void RenderLoop::answer_all() {

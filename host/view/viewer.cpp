@@ -9,6 +9,7 @@
 
 #include "base/error.h"
 #include "view/detail/clients.h"
+#include "view/detail/denoising.h"
 #include "view/detail/edit_desk.h"
 #include "view/detail/eye_films.h"
 #include "view/detail/keeping.h"
@@ -33,12 +34,16 @@ class Viewer::State {
         editor_(live_),
         keeping_(live_, editor_, std::move(keeper)),
         clients_(look_of_scene(live_.scene()), options.read_only),
-        films_(live_, editor_, device, options),
+        films_(live_, editor_, device, options, options.denoises),
         picker_(live_, editor_, films_.device_scene(), device.info().name),
         desk_(live_, editor_, keeping_, clients_, films_, device.info().name),
         checked_(live_.scene().view) {
     checked_.camera.medium.reset();  // looks do not set the medium
     desk_.prepare_greeting(options.read_only);
+    if (options.denoises) {
+      denoising_.emplace([this] { clients_.wake(); });
+      clients_.greet_with({{"denoise", true}});
+    }
     ServerEvents events;
     events.file = page_file;
     events.joined = [this](ClientId id) { server_->send(id, clients_.join(id)); };
@@ -46,7 +51,8 @@ class Viewer::State {
     events.message = [this](ClientId id, const std::string& text) { said(id, text); };
     events.picture = [this](ClientId id) { return picture_for(id); };
     server_.emplace(options.server, std::move(events));
-    loop_.emplace(RenderTools{clients_, *server_, films_, picker_, desk_, keeping_});
+    loop_.emplace(RenderTools{clients_, *server_, films_, picker_, desk_, keeping_,
+                              denoising_ ? &*denoising_ : nullptr});
   }
 
   ~State() { (void)end(); }
@@ -54,6 +60,7 @@ class Viewer::State {
   std::optional<std::filesystem::path> end() {
     clients_.end();
     loop_.reset();
+    denoising_.reset();
     server_.reset();
     return keeping_.end();
   }
@@ -75,9 +82,14 @@ class Viewer::State {
     if (const ShowView* look = std::get_if<ShowView>(&message)) check_look(*look);
     const std::vector<ClientId> others = clients_.take(id, message, text);
     if (others.empty()) return;
-    nlohmann::ordered_json looked = camera_text(std::get<ShowView>(message));
-    looked["type"] = "looked";
-    for (const ClientId other : others) server_->send(other, text_of(looked));
+    nlohmann::ordered_json told;
+    if (const Denoise* denoise = std::get_if<Denoise>(&message)) {
+      told = {{"type", "denoise"}, {"on", denoise->on}};
+    } else {
+      told = camera_text(std::get<ShowView>(message));
+      told["type"] = "looked";
+    }
+    for (const ClientId other : others) server_->send(other, text_of(told));
   } catch (const InputError& error) {
     server_->send(id, error_text(error.what()));
   }
@@ -97,6 +109,7 @@ class Viewer::State {
   Picker picker_;
   EditDesk desk_;
   View checked_;  // the server's thread
+  std::optional<Denoising> denoising_;
   std::optional<Server> server_;
   std::optional<RenderLoop> loop_;
 };

@@ -11,6 +11,7 @@ namespace caplet::view {
 struct ViewerOptions {
   ServerOptions server;
   bool read_only = false;  // refuse changes
+  bool denoises = false;   // pages may have pictures without noise; the denoiser is there
   int samples = 0;         // per pixel of a finished picture; 0: the scene's own
   double noise = 0;  // of a finished picture (film/noise.h), which may have fewer samples; 0: none
   double coarse_seconds = 0.08;                    // approximate time of a view's first picture

@@ -27,6 +27,17 @@ struct Bounds {
   std::array<double, 3> min{}, max{};
 };
 
+/// A render to a noise gives each pixel as many samples as it needs for it. The noise is the root
+/// of the mean, over the pixels that show something, of the variance of the mean of a pixel's
+/// samples over the square of the luminance around it, with a quarter of the picture's mean
+/// luminance added; with `in_display`, of that variance times the square of the slope of previews'
+/// tone curve at this luminance.
+struct NoiseTarget {
+  double noise = 0.05;                           // 1e-5 to 1
+  int least_samples = 16, most_samples = 16384;  // of a pixel
+  bool in_display = false;
+};
+
 /// Copies are cheap until one of them is changed.
 class CAPLET_API Scene {
  public:
@@ -55,10 +66,14 @@ class CAPLET_API Scene {
   /// Restricts rendering to the pixels from (x0, y0), counted from the top left, to before (x1,
   /// y1).
   void set_crop(int x0, int y0, int x1, int y1);
+  /// Samples of each pixel, or where the picture is rendered to a noise the most of one.
   int samples_per_pixel() const;
-  void set_samples_per_pixel(int samples);  // 1 to 2^24
-  /// The noise that its file asks for (Session::render_to); 0: none.
+  void set_samples_per_pixel(int samples);  // 1 to 2^24, and no noise
+  /// The noise that the picture is rendered to (Session::render_to), which its file asks for, or
+  /// files that say nothing of samples have; 0: none.
   double noise() const;
+  /// Returns what a picture is rendered to, if it is a noise.
+  std::optional<NoiseTarget> noise_target() const;
   /// The most scattering events of a path.
   int max_depth() const;
   void set_max_depth(int events);  // 0 to 2^16

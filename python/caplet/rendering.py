@@ -123,12 +123,12 @@ class Session:
         finally:
             told.close()
 
-    def render_to(self, noise=0.05, min_spp=16, max_spp=16384, time_limit=None, progress=None):
+    def render_to(self, noise=0.05, min_spp=16, max_spp=16384, time_limit=None, progress=None, noise_space="relative"):
         """Gives each pixel the samples that it still needs for a noise; returns the noise that the picture has.
 
         noise: the root of the mean, over the pixels that show something, of the variance of a pixel over the square of the luminance
-        around it, with a quarter of the picture's mean luminance added. min_spp, max_spp: samples a pixel, at least and at most.
-        Others as of `render`.
+        around it, with a quarter of the picture's mean luminance added. noise_space: "display" for a share of a display's range, after
+        the previews' tone curve. min_spp, max_spp: samples a pixel, at least and at most. Others as of `render`.
 
         >>> scene = Scene()
         >>> ball = scene.add_spheres((0, 0, 0), 1)
@@ -137,11 +137,12 @@ class Session:
         True
         """
         noise, min_spp, max_spp = float(noise), _count(min_spp, "min_spp", 1 << 24), _count(max_spp, "max_spp", 1 << 24)
+        in_display = _in_display(noise_space)
         told = _Progress(progress, max_spp)
         try:
-            reached = self._native.render_to(noise, min_spp, max_spp, time_limit, told.part(0, max_spp))
+            reached = self._native.render_to(noise, min_spp, max_spp, in_display, time_limit, told.part(0, max_spp))
             if self._cancelled:  # of an interrupt that came when the render before had ended
-                reached = self._native.render_to(noise, min_spp, max_spp, time_limit, told.part(0, max_spp))
+                reached = self._native.render_to(noise, min_spp, max_spp, in_display, time_limit, told.part(0, max_spp))
             self._cancelled = False
             return reached
         except KeyboardInterrupt:
@@ -183,12 +184,18 @@ def _count(value, name, most):
     return int(value)
 
 
+def _in_display(noise_space):
+    if not isinstance(noise_space, str) or noise_space not in ("relative", "display"):
+        raise InputError(f'noise_space: "relative" or "display" is needed, not {noise_space!r}')
+    return noise_space == "display"
+
+
 def render(scene, spp=None, size=None, device=None, seed=None, time_limit=None, progress=None, samples=None, noise=None, min_spp=16,
-           cryptomatte=False, deep=False):
+           cryptomatte=False, deep=False, noise_space="relative"):
     """Renders a scene. Returns an Image.
 
-    spp: samples a pixel; None: the scene's, or its noise where its file asks for one. noise: what the picture is rendered to (Session.render_to), where min_spp is the fewest and
-    spp the most samples a pixel (None: 16384). samples: (A, B), only samples A to B - 1 of every pixel, in place of spp: images of
+    spp: samples a pixel; None: the scene's (Scene.noise, Scene.spp). noise: what the picture is rendered to (Session.render_to has
+    noise_space), where min_spp is the fewest and spp the most samples a pixel (None: 16384). samples: (A, B), only samples A to B - 1 of every pixel, in place of spp: images of
     different samples add to that of all. size: (width, height) in pixels. Others as of Session. After Ctrl-C there is no image:
     a Session keeps what was done.
     """
@@ -209,12 +216,13 @@ def render(scene, spp=None, size=None, device=None, seed=None, time_limit=None, 
     session._cancelled, session._size = False, None
     if first:
         session._native.begin_at(first)
-    if noise is None and spp is None and samples is None and native.noise > 0:
-        noise, spp = native.noise, native.spp
+    if noise is None and spp is None and samples is None and native.noise_target:
+        noise, least, spp, in_display = native.noise_target
+        min_spp, noise_space = min(min_spp, spp), "display" if in_display else "relative"
     if noise is not None:
         if samples is not None:
             raise InputError("noise: does not go with samples")
-        session.render_to(noise, min_spp, 16384 if spp is None else spp, time_limit, progress)
+        session.render_to(noise, min_spp, 16384 if spp is None else spp, time_limit, progress, noise_space)
         return session.image()
     told = _Progress(progress, spp or native.spp)
     try:

@@ -280,7 +280,7 @@ class Scene:
 
     @property
     def spp(self):
-        """Samples a pixel, from 1 to 2^24."""
+        """Samples a pixel, from 1 to 2^24; where the picture is rendered to a noise the most of one. Setting it ends that."""
         return self._native.spp
 
     @spp.setter
@@ -289,7 +289,8 @@ class Scene:
 
     @property
     def noise(self):
-        """The noise that its file asks for, with at most spp samples a pixel; 0: none."""
+        """The noise that the picture is rendered to, with at most spp samples a pixel: what its file asks for, or 0.05 of files of
+        formats without samples; 0: none."""
         return self._native.noise
 
     @property

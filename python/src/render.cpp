@@ -279,16 +279,16 @@ void bind_session(nb::module_& m) {
           nb::arg("samples"), nb::arg("time_limit").none(), nb::arg("progress").none())
       .def(
           "render_to",
-          [](HeldSession& held, double noise, int least, int most, std::optional<double> time_limit,
-             const nb::object& progress) {
+          [](HeldSession& held, double noise, int least, int most, bool in_display,
+             std::optional<double> time_limit, const nb::object& progress) {
             double reached = 0;
             run_session(held, time_limit, progress, [&](const caplet::RenderOptions& options) {
-              reached = held.session.render_to({noise, least, most}, options);
+              reached = held.session.render_to({noise, least, most, in_display}, options);
             });
             return reached;
           },
-          nb::arg("noise"), nb::arg("least"), nb::arg("most"), nb::arg("time_limit").none(),
-          nb::arg("progress").none())
+          nb::arg("noise"), nb::arg("least"), nb::arg("most"), nb::arg("in_display"),
+          nb::arg("time_limit").none(), nb::arg("progress").none())
       .def("cancel", [](HeldSession& held) { held.session.cancel(); })
       .def("film",
            [](HeldSession& held) {

@@ -9,11 +9,13 @@
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
+#include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
 
 #include <algorithm>
 #include <memory>
 #include <optional>
+#include <tuple>
 #include <type_traits>
 #include <utility>
 
@@ -311,6 +313,13 @@ void bind_settings(nb::class_<HeldScene>& held) {
       .def_prop_rw("spp", in_turn(&Scene::samples_per_pixel),
                    in_turn(&Scene::set_samples_per_pixel))
       .def_prop_ro("noise", in_turn(&Scene::noise))
+      .def_prop_ro("noise_target", in_turn([](const Scene& scene) {
+                     const std::optional<caplet::NoiseTarget> target = scene.noise_target();
+                     using Parts = std::tuple<double, int, int, bool>;
+                     return target ? std::optional(Parts(target->noise, target->least_samples,
+                                                         target->most_samples, target->in_display))
+                                   : std::nullopt;
+                   }))
       .def_prop_rw("max_depth", in_turn(&Scene::max_depth), in_turn(&Scene::set_max_depth))
       .def_prop_rw("seed", in_turn(&Scene::seed), in_turn(&Scene::set_seed))
       .def_prop_ro("lights", in_turn(&Scene::lights))

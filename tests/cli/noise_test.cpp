@@ -134,7 +134,9 @@ TEST(Noise, WhatIsNoNoiseIsRefused) {
   };
   for (const char* text : {"0", "-1%", "101%", "2", "x", "", "%", "5 %", "nan", "0.0001%", "5%%"})
     refused({"--noise", text}, "from 0.001% to 100%, such as 5%");
-  refused({"--min-spp", "8"}, "--min-spp: goes with --noise");
+  refused({"--min-spp", "8"}, "--min-spp: goes with --noise or --time");
+  refused({"--noise-space", "display"}, "--noise-space: goes with --noise");
+  refused({"--noise", "5%", "--noise-space", "screen"}, "--noise-space");
   refused({"--noise", "5%", "--min-spp", "8", "--spp", "7"},
           "--min-spp: 8 is more than the most, 7");
   refused({"--noise", "5%", "--min-spp", "1"}, "--min-spp");
@@ -184,6 +186,64 @@ TEST(Noise, FilmsGoOn) {
       folder, {"--spp", all, "--variance", "--film", "two.film", "--resume", "-o", "two.exr"}));
   expect_done(render(folder, {"--spp", all, "--variance", "-o", "even.exr"}));
   test::expect_equal_pictures(folder / "two.exr", folder / "even.exr");
+}
+
+// Files of formats that say nothing of samples are rendered to 5 %; pbrt's have 16 samples.
+TEST(Noise, IsTheDefaultOfFilesWithoutSamples) {
+  const fs::path folder = folder_with_scene(lit);
+  test::write_file(folder / "a.swc", "1 1 0 0 0 4 -1\n2 3 0 20 0 1 1\n3 3 8 30 0 1 2\n");
+  const auto told = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), {"render", "a.swc", "--size", "24x16"});
+    const Result result = test::run_program(more, folder);
+    expect_done(result);
+    return result.err;
+  };
+  EXPECT_THAT(told({"-o", "a.exr"}), HasSubstr("noise 5 % on "));
+  EXPECT_TRUE(read_exr(folder / "a.exr").find("variance.G"));
+  told({"-o", "b.exr", "--noise", "5%"});
+  test::expect_equal_pictures(folder / "a.exr", folder / "b.exr");
+  EXPECT_THAT(told({"-o", "c.exr", "--spp", "5"}), HasSubstr("5 samples per pixel on "));
+  EXPECT_THAT(test::run_program({"render", "scene.pbrt", "-o", "d.exr"}, folder).err,
+              HasSubstr("16 samples per pixel on "));
+  const Result share =
+      test::run_program({"render", "a.swc", "--samples", "1/4", "--film", "a.film"}, folder);
+  EXPECT_EQ(share.code, 2);
+  EXPECT_THAT(share.err, HasSubstr("--samples: needs --spp: the scene is rendered to a noise"));
+  told({"--samples", "1/4", "--spp", "8", "--film", "a.film"});
+  EXPECT_EQ(load_film(folder / "a.film").film.mean_samples(), 2);
+}
+
+// A display's range is another measure: of this picture, whose noise lies in dark places, it takes
+// other samples. The noise that is stated is in the same measure.
+TEST(Noise, MayBeAShareOfADisplay) {
+  const fs::path folder = folder_with_scene(lit);
+  expect_done(render(
+      folder, {"--noise", "0.4%", "--noise-space", "display", "-o", "a.exr", "--stats", "a.json"}));
+  expect_done(render(folder, {"--noise", "2%", "-o", "b.exr"}));
+  EXPECT_NEAR(json_of(folder / "a.json").at("noise").get<double>(), 0.004, 0.0008);
+  EXPECT_NE(samples_of(read_exr(folder / "a.exr")), samples_of(read_exr(folder / "b.exr")));
+  test::write_file(
+      folder / "scene.pbrt",
+      "Sampler \"sobol\" \"float noise\" 0.004 \"string noisespace\" \"display\"\n" + lit);
+  expect_done(render(folder, {"-o", "c.exr"}));
+  test::expect_equal_pictures(folder / "a.exr", folder / "c.exr");
+}
+
+// A time that is over at once still leaves the samples that are asked for at least.
+TEST(Noise, TimesEndAfterTheLeastSamples) {
+  const fs::path folder = folder_with_scene(lit);
+  expect_done(render(folder, {"--time", "1e-6", "--min-spp", "6", "--spp", "4096", "-o", "a.exr",
+                              "--stats", "a.json"}));
+  EXPECT_EQ(json_of(folder / "a.json").at("samples_per_pixel"), 6);
+  expect_done(render(folder, {"--spp", "6", "-o", "b.exr"}));
+  const LayeredImage a = read_exr(folder / "a.exr"), b = read_exr(folder / "b.exr");
+  EXPECT_EQ(a.find("G")->floats, b.find("G")->floats);
+  expect_done(
+      render(folder, {"--time", "1e-6", "--min-spp", "24", "--noise", "0.1%", "--film", "c.film"}));
+  EXPECT_EQ(load_film(folder / "c.film").film.mean_samples(), 24);
+  expect_done(render(folder, {"--time", "1e-6", "--min-spp", "99", "--spp", "3", "-o", "d.exr",
+                              "--stats", "d.json"}));
+  EXPECT_EQ(json_of(folder / "d.json").at("samples_per_pixel"), 3) << "no more than the most";
 }
 
 // Frames and both eyes are each rendered to it.

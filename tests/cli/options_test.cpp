@@ -56,14 +56,21 @@ TEST_F(Options, HelpSaysWhatPicturesUsuallyHave) {
   std::string words;  // lines are broken anywhere between them
   for (const char c : help)
     if (c != '\n' && c != ' ') words += c;
-  EXPECT_THAT(words, HasSubstr("else16,64ofswc"));
+  EXPECT_THAT(words, HasSubstr("saynothingofit5%"));
   EXPECT_THAT(words, HasSubstr("else1280x720"));
   EXPECT_THAT(words, HasSubstr("unlessasked0,1.5ofswc"));
   test::write_file(folder_ / "n.swc", "1 1 0 0 0 1 -1\n2 3 0 5 0 0.5 1\n");
   test::write_file(folder_ / "m.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
-  EXPECT_EQ(json({"info", "n.swc", "--json"}).at("samples_per_pixel"), 64);
+  test::write_file(folder_ / "s.pbrt", "WorldBegin\nShape \"sphere\"\n");
+  for (const char* file : {"n.swc", "m.obj"}) {
+    const nlohmann::json info = json({"info", file, "--json"});
+    EXPECT_EQ(info.at("noise"), 0.05) << file;
+    EXPECT_EQ(info.at("samples_per_pixel"), 16384) << file;
+  }
+  const nlohmann::json of_pbrt = json({"info", "s.pbrt", "--json"});
+  EXPECT_FALSE(of_pbrt.contains("noise"));
+  EXPECT_EQ(of_pbrt.at("samples_per_pixel"), 16);
   const nlohmann::json mesh = json({"info", "m.obj", "--json"});
-  EXPECT_EQ(mesh.at("samples_per_pixel"), 16);
   EXPECT_EQ(mesh.at("image").at("width"), 1280);
 }
 

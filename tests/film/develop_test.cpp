@@ -184,8 +184,8 @@ TEST(Develop, MarginsAreNeighboursAlone) {
   PictureFlaws parts;
   caplet::develop(film.rows(0, 5), Scene{}.view.film, Layers::all(), parts, {0, 2});
   caplet::develop(film.rows(1, 5), Scene{}.view.film, Layers::all(), parts, {2, 0});
-  ASSERT_TRUE(all.noise.relative());
-  EXPECT_EQ(parts.noise.relative(), all.noise.relative());
+  ASSERT_TRUE(all.noise.in(NoiseSpace::relative));
+  EXPECT_EQ(parts.noise.in(NoiseSpace::relative), all.noise.in(NoiseSpace::relative));
   for (const Channel& channel : part.channels) {
     const Channel& of_whole = *whole.find(channel.name.c_str());
     for (std::size_t x = 0; x < 10; ++x) {

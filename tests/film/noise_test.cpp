@@ -45,6 +45,29 @@ TEST(PictureNoise, IsThereForPicturesWithLight) {
               1e-7);
 }
 
+// In the display's space the unit is one over the slope of what a grey is shown as. Expected slopes
+// are differences of the tone curve of docs/output.md, with sRGB's encoding.
+double shown(double grey) {
+  const double mapped = grey <= 0.5 ? grey : 1 - std::exp(-(2 * grey - 1)) / 2;
+  return mapped <= 0.0031308 ? 12.92 * mapped : 1.055 * std::pow(mapped, 1 / 2.4) - 0.055;
+}
+
+TEST(PictureNoise, OfADisplayIsAShareOfItsRange) {
+  for (const double grey : {0.001, 0.002, 0.01, 0.18, 0.45, 0.6, 1.0, 3.0}) {
+    const double step = 1e-5 * grey;
+    const double slope = (shown(grey + step) - shown(grey - step)) / (2 * step);
+    EXPECT_NEAR(1 / noise_unit(NoiseSpace::display, grey, 0.1), slope, 1e-6 * slope) << grey;
+    EXPECT_EQ(noise_unit(NoiseSpace::relative, grey, 0.1), grey + 0.1);
+  }
+  EXPECT_NEAR(noise_unit(NoiseSpace::display, -0.5, 0.1), 1 / 12.92, 1e-12);
+  EXPECT_EQ(noise_unit(NoiseSpace::relative, -0.5, 0.1), 0.1);
+  const double slope = 1.055 / 2.4 * std::pow(0.25, 1 / 2.4 - 1);
+  EXPECT_NEAR(noise_of(pixels_of(std::vector<float>(8, 0.25f), {0.01f, 0, 0, 0, 0, 0, 0, 0.03f}), 4,
+                       NoiseSpace::display)
+                  .value(),
+              slope * std::sqrt(0.04 / 8), 1e-7);
+}
+
 // What is not seen does not count, whatever its numbers are.
 TEST(PictureNoise, IsThatOfWhatIsSeen) {
   std::vector<NoisePixel> pixels = pixels_of({1, 1, 100, 100}, {0.25f, 0.25f, 7, 7});
@@ -76,21 +99,23 @@ TEST(PictureNoise, OfAFilmIsByEachPixelsOwnReplicates) {
   const Layers layers = Layers::none().with(Layer::variance);
   const Film film = film_of({48, 1, 1, 1, 1, 1, 0, 0}, {3, 0, 0, 0, 0, 0.5, 0, 0}, layers);
   PictureNoise noise;
-  EXPECT_FALSE(noise.relative());
+  EXPECT_FALSE(noise.in(NoiseSpace::relative));
   noise.add(film, 0, 4);
   // Rows 0 to 3 see each other: the luminance around all six is 53 / 6.
-  EXPECT_NEAR(noise.relative().value(), std::sqrt((9 + 0.25) / 6) / (1.25 * 53 / 6), 1e-7);
+  EXPECT_NEAR(noise.in(NoiseSpace::relative).value(), std::sqrt((9 + 0.25) / 6) / (1.25 * 53 / 6),
+              1e-7);
 
   PictureNoise in_parts;
   in_parts.add(film.rows(0, 3), 0, 2);  // with a row below, which is of the next part
   in_parts.add(film.rows(1, 3), 1, 2);
-  EXPECT_EQ(in_parts.relative(), noise.relative());
+  EXPECT_EQ(in_parts.in(NoiseSpace::relative), noise.in(NoiseSpace::relative));
   in_parts.add(film, 0, 4);
-  EXPECT_EQ(in_parts.relative(), noise.relative()) << "the same rows again";
+  EXPECT_EQ(in_parts.in(NoiseSpace::relative), noise.in(NoiseSpace::relative))
+      << "the same rows again";
 
   PictureNoise none;
   none.add(film_of({1, 1, 1, 1, 1, 1, 1, 1}, {}, Layers::none()), 0, 4);
-  EXPECT_FALSE(none.relative());
+  EXPECT_FALSE(none.in(NoiseSpace::relative));
 }
 
 }  // namespace

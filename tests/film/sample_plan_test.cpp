@@ -92,6 +92,25 @@ std::map<std::pair<uint, uint>, std::uint32_t> more_of(const SamplePlan& plan) {
   return out;
 }
 
+// Pixels of a luminance of 4 are shown as white, where noise is hardly seen: in the display's space
+// they get the fewest samples, and all of those that are asked for more are dark.
+TEST(SamplePlan, OfADisplayGivesDarkPixelsMore) {
+  std::vector<Pixel> pixels(200, noisy(0.5, 4));
+  for (std::size_t i = 0; i < 200; ++i)
+    if (i % 20 < 10) pixels[i] = noisy(0.02, 0.2);
+  const Film film = film_of(20, 10, pixels);
+  NoiseTarget target{0.01, 16, 4096};
+  target.space = NoiseSpace::display;
+  const SamplePlan plan = plan_samples(film, 0, target);
+  const auto more = more_of(plan);
+  EXPECT_EQ(more.count({0, 5}), 1u);
+  EXPECT_EQ(more.count({19, 5}), 0u);
+  // Three of ten dark columns see bright ones around them. Relative noise would be 0.031.
+  const double slope = 1.055 / 2.4 * std::pow(0.2, 1 / 2.4 - 1);
+  EXPECT_GT(plan.noise, std::sqrt(0.02 / 32 * slope * slope / 2) * 0.8);
+  EXPECT_LT(plan.noise, std::sqrt(0.02 / 32 * slope * slope / 2) * 1.2);
+}
+
 // Of a variance of 0.5 of a sample, noise is sqrt(0.5 / 32) / (1 + 1 / 4) = 0.1, and of 200 pixels
 // 0.5 / sqrt(200) more. Half of it takes 4 times the samples: one doubling now, two in all. The aim
 // is 0.99 of the target.

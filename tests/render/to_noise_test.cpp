@@ -124,7 +124,7 @@ TEST(ToNoise, PicturesHaveTheNoiseThatIsAskedFor) {
   const Film other = seeds.rendered(1, uniform).film;
   PictureNoise at_64;
   at_64.add(other, 0, other.layout().window.height);
-  const double needed = 64 * std::pow(at_64.relative().value() / noise, 2);
+  const double needed = 64 * std::pow(at_64.in(NoiseSpace::relative).value() / noise, 2);
   EXPECT_LT(samples, 0.7 * needed);
 }
 

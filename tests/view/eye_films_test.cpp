@@ -25,7 +25,7 @@ struct Ended {
 Ended ended(const ViewerOptions& options, double separation = 0, Scene scene = test::some_scene()) {
   LiveScene live(std::move(scene));
   const Editor editor(live);
-  EyeFilms films(live, editor, test::test_device(), options);
+  EyeFilms films(live, editor, test::test_device(), options, false);
   ShowView look = look_of_scene(live.scene());
   look.width = test::width;
   look.height = test::height;

@@ -12,6 +12,7 @@
 #include <cstdint>
 #include <cstring>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 
 #include "scene/scene.h"
@@ -35,6 +36,7 @@ struct Place {
 /// A picture's first words (docs/viewer.md).
 struct Shown {
   std::uint32_t view = 0, width = 0, scale = 0, samples = 0;
+  bool is_denoised = false, is_right = false;
 };
 
 class Guest {
@@ -72,15 +74,19 @@ class Guest {
         return got;
     }
   }
-  /// The first picture in full, of so many samples, of a view after `after`.
-  Shown until_samples(std::uint32_t samples, std::uint32_t after = 0) {
+  /// The first picture in full, of so many samples, of a view after `after`; denoised or not, if
+  /// that matters.
+  Shown until_samples(std::uint32_t samples, std::uint32_t after = 0,
+                      std::optional<bool> is_denoised = {}) {
     for (;;) {
       const std::string got = next();
       if (stream_.got_text() || got.compare(0, 4, "CPLF") != 0) continue;
       std::uint32_t words[10];
       std::memcpy(words, got.data(), sizeof words);
-      if (words[4] == 1 && words[5] >= samples && words[2] == width && words[1] > after)
-        return {words[1], words[2], words[4], words[5]};
+      const bool has_less = (words[7] & 8) != 0;
+      if (words[4] == 1 && words[5] >= samples && words[2] == width && words[1] > after &&
+          is_denoised.value_or(has_less) == has_less)
+        return {words[1], words[2], words[4], words[5], has_less, (words[7] & 4) != 0};
     }
   }
   boost::beast::websocket::stream<boost::beast::tcp_stream>& stream() { return stream_; }

@@ -24,7 +24,4 @@ namespace caplet {
 #undef IMPORTER
 #undef FULL_IMPORTER
 
-/// Sets the samples and the least width of the format's row.
-void set_usual_picture(Scene& scene, const std::string& name);
-
 }  // namespace caplet

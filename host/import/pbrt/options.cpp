@@ -23,7 +23,6 @@ namespace caplet::pbrt {
 namespace {
 
 /// The most samples of a pixel of a picture with a noise, unless the file says else.
-constexpr int most_noise_samples = 1 << 14;
 
 double positive(Parameters& parameters, std::string_view name, double fallback) {
   const double value = parameters.number(name, fallback);

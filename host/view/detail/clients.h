@@ -47,8 +47,8 @@ class Clients {
   /// Adds a page, and returns the message that greets it.
   Text join(ClientId id);
   void leave(ClientId id);
-  /// Stores what the page says. Returns the pages that have to be told of a new look. Throws
-  /// InputError.
+  /// Stores what the page says. Returns the pages that have to be told of a new look, or of whether
+  /// pictures are denoised. Throws InputError.
   std::vector<ClientId> take(ClientId id, const Message& message, const std::string& text);
   /// A picture that a page has not been shown, and the one of the same eye that it has.
   struct NextPicture {
@@ -64,6 +64,8 @@ class Clients {
   bool wait_for_work(bool has_more);
   /// Returns the look that the pages want, if it is new.
   std::optional<ShowView> take_look();
+  /// Returns whether the pages want pictures to be denoised, if that is new.
+  std::optional<bool> take_denoise();
   std::deque<Wish> take_wishes();
   /// A page's next question; without a question it waits for a snapshot.
   struct Asked {
@@ -83,6 +85,8 @@ class Clients {
   /// Changes members of the message that greets new pages.
   void greet_with(const nlohmann::ordered_json& members);
 
+  /// Ends wait_for_work. Any thread may call this.
+  void wake();
   /// Ends the session. Any thread may call this.
   void end();
 
@@ -99,6 +103,7 @@ class Clients {
 
   // These require the mutex:
   bool any(const std::function<bool(const Client&)>& is_so) const;
+  std::vector<ClientId> all_but(ClientId id) const;
   void wish(ClientId id, const Message& message, const std::string& text);
 
   bool read_only_;
@@ -110,7 +115,8 @@ class Clients {
   std::map<ClientId, Client> clients_;
   std::array<std::shared_ptr<const Picture>, 2> pictures_;
   nlohmann::ordered_json greeting_;
-  bool ended_ = false;
+  std::optional<bool> denoise_;
+  bool is_called_ = false, ended_ = false;
 };
 
 }  // namespace caplet::view

@@ -10,8 +10,10 @@
 #include <optional>
 #include <string>
 
+#include "base/clock.h"
 #include "lower/live_scene.h"
 #include "render/session.h"
+#include "view/detail/denoising.h"
 #include "view/editor.h"
 #include "view/messages.h"
 #include "view/picture.h"
@@ -23,9 +25,10 @@ namespace caplet::view {
 /// the other eye waits here. Only the renderer's thread calls it.
 class EyeFilms {
  public:
-  /// The scene and its editor must outlive this. Sends the scene to the device.
+  /// The scene and its editor must outlive this. Sends the scene to the device. `denoises`: films
+  /// have the layers that denoising needs.
   EyeFilms(LiveScene& live, const Editor& editor, const Device& device,
-           const ViewerOptions& options);
+           const ViewerOptions& options, bool denoises);
 
   /// Returns the scene on the device, for queries.
   DeviceScene& device_scene() const { return *session_.scene_on(0); }
@@ -40,6 +43,10 @@ class EyeFilms {
   }
   bool has_snapshot() const { return scale_ == 1 && samples_[0] > 0; }
   bool is_full() const { return scale_ == 1; }
+  /// Returns for how long the view and the scene have been as they are.
+  double seconds() const { return seconds_since(begun_); }
+  /// Returns the samples of an eye's picture at full scale; 0 if it is coarse.
+  std::uint32_t samples(std::size_t eye) const { return scale_ == 1 ? samples_.at(eye) : 0; }
 
   /// Starts the picture of another look, or of a changed scene. Throws InputError.
   void begin(const ShowView& look);
@@ -49,8 +56,12 @@ class EyeFilms {
   /// picture is coarse.
   void step(const std::function<void(bool is_coarse)>& between_batches);
 
-  /// Returns the picture of the eye that the last step rendered.
-  Picture picture();
+  /// Returns the picture of the eye that the last step rendered, or of another one that has
+  /// samples.
+  Picture picture() { return picture(eye_); }
+  Picture picture(std::size_t eye);
+  /// Returns the same to be denoised.
+  NoisyImage noisy(std::size_t eye);
   /// Returns the picture of the first eye as the bytes of an EXR file.
   std::string snapshot();
 
@@ -60,10 +71,12 @@ class EyeFilms {
   void change_eyes();
   std::uint32_t samples_of_step(std::size_t eye, double pixels) const;
   bool has_little_noise() const;
+  Film film(std::size_t eye);
 
   LiveScene& live_;
   const Editor& editor_;
   ViewerOptions options_;
+  SessionOptions session_options_;
   Session session_;
   ShowView look_;
   std::uint64_t version_ = 0;
@@ -74,6 +87,7 @@ class EyeFilms {
   std::size_t eye_ = 0;  // the eye whose film is in the session
   int scale_ = 0;        // of the film; 0: it is empty
   double paths_a_second_;
+  Clock::time_point begun_ = Clock::now();
 };
 
 }  // namespace caplet::view

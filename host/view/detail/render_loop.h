@@ -10,6 +10,7 @@
 #include <thread>
 
 #include "view/detail/clients.h"
+#include "view/detail/denoising.h"
 #include "view/detail/edit_desk.h"
 #include "view/detail/eye_films.h"
 #include "view/detail/keeping.h"
@@ -27,6 +28,7 @@ struct RenderTools {
   Picker& picker;
   EditDesk& desk;
   Keeping& keeping;
+  Denoising* denoising = nullptr;  // null: pictures stay as they are
 };
 
 /// Renders and answers on its own thread until the clients' session ends. The owner's thread calls
@@ -49,6 +51,8 @@ class RenderLoop {
   void begin(const ShowView& look);
   void step();
   void answer_all();
+  void show(Picture picture);
+  void denoise();
 
   RenderTools tools_;
   std::mutex mutex_;  // guards the failure

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 // Decodes the program's pictures (docs/viewer.md) and displays them.
-const TILE = 64, WHOLE = 1, IDS = 2;
+const TILE = 64, WHOLE = 1, IDS = 2, DENOISED = 8;
 
 const float_of_half = new Float32Array(65536);
 for (let h = 0; h < 65536; ++h) {
@@ -20,7 +20,7 @@ async function inflated(bytes) {
 }
 
 export class Picture {
-  constructor() { this.width = this.height = 0; this.color = null; this.objects = this.primitives = null; this.view = 0; this.scale = 1; this.samples = 0; this.noise = 0; }
+  constructor() { this.width = this.height = 0; this.color = null; this.objects = this.primitives = null; this.view = 0; this.scale = 1; this.samples = 0; this.noise = 0; this.is_denoised = false; }
 
   // Takes a message; messages must be passed in order, one at a time.
   async take(buffer) {
@@ -30,7 +30,7 @@ export class Picture {
     const data = await inflated(new Uint8Array(buffer, 40));
     if (flags & WHOLE) { this.width = width; this.height = height; this.color = new Uint16Array(3 * width * height); }
     if (view !== this.view || scale !== this.scale) this.objects = this.primitives = null;
-    Object.assign(this, { view, scale, samples, noise: head.getFloat32(24, true) });
+    Object.assign(this, { view, scale, samples, noise: head.getFloat32(24, true), is_denoised: (flags & DENOISED) > 0 });
     const tiles = new DataView(data.buffer, data.byteOffset, 4 * count), across = Math.ceil(width / TILE);
     const boxes = [];
     let pixels = 0;

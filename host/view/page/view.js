@@ -93,6 +93,7 @@ function connect() {
 
 function told(message) {
   if (message.type === "scene") return begin(message);
+  if (message.type === "denoise") return denoises(message.on);
   if (message.type === "looked") return void (camera && camera_of(message));
   if (message.type === "error") {
     keep.failed(message.text);
@@ -158,6 +159,7 @@ function begin(message) {
   }
   edits.read_only = scene.read_only;
   document.body.classList.toggle("read-only", scene.read_only);
+  denoises(scene.denoise);
   forms.begin(scene.lists);
   forms.told(scene.parts);
   forms.reset();
@@ -167,6 +169,12 @@ function begin(message) {
   fill_tree();
   look();
   draw();
+}
+
+// Absent: the program has no denoiser.
+function denoises(on) {
+  $("denoise").hidden = on === undefined;
+  $("denoise").setAttribute("aria-pressed", String(on === true));
 }
 
 // --- The camera ---
@@ -399,6 +407,7 @@ stage.addEventListener("keydown", (event) => {
   else if (event.key === "Delete") $("delete").click();
   else if (event.key === "s") { $("stereo").selectedIndex = ($("stereo").selectedIndex + 1) % LAYOUTS.length; $("stereo").dispatchEvent(new Event("change")); }
   else if (event.key === "o") $("parallel").click();
+  else if (event.key === "c" && !$("denoise").hidden) $("denoise").click();
   else if (event.key === "n") forms.add_shape(forms.last_shape ?? forms.lists.shape[0], under_hit);
   else if (event.key === "x") hide(false);
   else if (event.key === "i") hide(true);
@@ -425,6 +434,7 @@ $("axis").onchange = (event) => { along(event.target.value); event.target.value 
 $("help").onclick = () => $("keys").showModal();
 $("exposure").oninput = () => { $("stops").value = $("exposure").value; draw(); };
 $("curve").onchange = draw;
+$("denoise").onclick = () => { const on = $("denoise").getAttribute("aria-pressed") !== "true"; denoises(on); say({ type: "denoise", on }); };
 $("exr").onclick = () => say({ type: "snapshot" });
 $("png").onclick = () => picture_canvas.toBlob((blob) => save(blob, `${scene.name}.png`));
 const fill_kept = () => $("kept").replaceChildren(new Option(texts.kept, ""), ...kept.map((_, i) => new Option(String(i + 1), String(i))));

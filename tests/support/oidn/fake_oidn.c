@@ -18,6 +18,8 @@ typedef struct {
   float *color, *albedo, *normal, *output;
   size_t pixels;
   bool hdr, clean, is_ready;
+  bool (*ask)(void*, double);
+  void* user;
 } Filter;
 
 Device* oidnNewDevice(int type) {
@@ -66,8 +68,16 @@ void oidnSetFilterBool(Filter* filter, const char* name, bool value) {
   if (strcmp(name, "hdr") == 0) filter->hdr = value;
   if (strcmp(name, "cleanAux") == 0) filter->clean = value;
 }
+void oidnSetFilterProgressMonitorFunction(Filter* filter, bool (*ask)(void*, double), void* user) {
+  filter->ask = ask;
+  filter->user = user;
+}
 void oidnCommitFilter(Filter* filter) { filter->is_ready = true; }
 void oidnExecuteFilter(Filter* filter) {
+  if (filter->ask && !filter->ask(filter->user, 0.5)) {
+    filter->device->error = "cancelled";
+    return;
+  }
   if (getenv("FAKE_OIDN_FAILS")) filter->device->error = "as it was told to";
   const bool is_guided = filter->albedo && filter->normal;
   if (!filter->output || !filter->is_ready || filter->hdr != (filter->color != NULL) ||
