@@ -141,10 +141,12 @@ TEST(SeveralFiles, AreDrawnAsTheMostDemandingOfThemAsks) {
   for (const Paths& paths : {Paths{neuron_file, mesh}, Paths{mesh, neuron_file}}) {
     const Scene scene = several(paths);
     EXPECT_EQ(scene.view.film.least_width, 1.5) << paths[0];
-    EXPECT_EQ(scene.view.sampler.samples_per_pixel, 64) << paths[0];
+    EXPECT_EQ(scene.view.sampler.noise, 0.05) << paths[0];
+    EXPECT_EQ(scene.view.sampler.samples_per_pixel, 16384) << paths[0];
   }
   const Scene scene = several({neuron_file, write_file("scene.pbrt", pbrt_with_camera)});
   EXPECT_EQ(scene.view.film.least_width, 0);
+  EXPECT_EQ(scene.view.sampler.noise, 0);
   EXPECT_EQ(scene.view.sampler.samples_per_pixel, 16);
 }
 
