@@ -35,7 +35,7 @@ CapsulesShape random_capsules(std::size_t count, std::vector<double> times, unsi
   for (std::size_t key = 0; key < out.times.size(); ++key)
     for (std::size_t i = 0; i < count; ++i) {
       const vec3 p(3 * unit(random), 3 * unit(random), 3 * unit(random));
-      const bool is_sphere = i % 5 == 0, is_even = i % 5 < 3;
+      const bool is_sphere = i % 5 < 2, is_even = i % 5 == 0 || i % 5 == 2;
       out.p0.push_back(p);
       out.p1.push_back(is_sphere ? p : p + vec3(unit(random), unit(random), unit(random)));
       out.radius0.push_back(radius());
