@@ -20,7 +20,7 @@ namespace caplet {
 inline constexpr double noise_floor = 0.25;
 
 /// Returns what the standard deviation of a pixel's luminance is divided by: luminance and floor,
-/// or one over the slope of previews' tone curve (tone_mapped and sRGB's curve) for a grey of this
+/// or one over the slope of previews' tone curve (tone_map and sRGB's curve) for a grey of this
 /// luminance, so that noise is a share of the display's range. `luminance`: mean around the pixel;
 /// `floor`: noise_floor of the picture's mean.
 double noise_unit(NoiseSpace space, double luminance, double floor);

@@ -2,6 +2,7 @@
 // Copyright Caplet authors
 #include "view/detail/denoising.h"
 
+#include <exception>
 #include <utility>
 
 #include "base/error.h"
@@ -94,7 +95,7 @@ void Denoising::run() {
         put_under(image.image, image.backdrop);
         done = Cleaned{image.samples, shown_of(image.image, false).color};
       }
-    } catch (const RunError& problem) {
+    } catch (const std::exception& problem) {
       error = problem.what();
     }
     lock.lock();

@@ -35,8 +35,8 @@ std::vector<float> radii(Parameters& parameters, const char* name, std::size_t c
     parameters.error(name, "must not be negative");
     return {};
   }
-  while (out.size() < count * times)  // they stay the same
-    out.insert(out.end(), out.begin(), out.begin() + static_cast<std::ptrdiff_t>(count));
+  // Radii that are given once stay the same.
+  for (std::size_t i = 0; out.size() < count * times; ++i) out.push_back(out[i]);
   return out;
 }
 
@@ -118,7 +118,7 @@ CapsulesShape make_capsule_list(Parameters& parameters, const MaterialIndex& mat
   const std::size_t times = std::max<std::size_t>(1, capsules.times.size());
   if (capsules.p0.size() % times != 0) {
     parameters.error("p0", "has " + std::to_string(capsules.p0.size()) +
-                               " points, which are not as many" + " at each of " +
+                               " points, which are not as many at each of " +
                                std::to_string(times) + " times");
     return {};
   }
