@@ -389,6 +389,8 @@ TEST(Model, BadCsg) {
   auto two = solid();
   two->geometry = CapsulesShape{{{0, 0, 0}, {0, 0, 0}}, {{1, 0, 0}, {1, 0, 0}}, {1, 1}, {}, {}};
   expect_refused(CsgShape{set_union, {solid(), two}}, "one capsule");
+  std::get<CapsulesShape>(two->geometry).times = {0, 1};
+  expect_refused(CsgShape{set_union, {solid(), two}}, "one capsule that rests");
   auto light = solid();
   light->emission = AreaEmission{};
   expect_refused(CsgShape{set_union, {solid(), light}}, "area light");

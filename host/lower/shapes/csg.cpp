@@ -99,7 +99,7 @@ struct FlatOf {
   const SourceLocation& where;
 
   FlatPrimitive operator()(const CapsulesShape& capsules) const {
-    if (capsules.p0.size() != 1 || !capsules.times.empty())
+    if (capsules.p0.size() != 1)
       throw InputError(where, "a csg operand of capsules must hold exactly one that rests");
     return flat_capsule(capsules, 0, &m, similarity_scale(m));
   }

@@ -26,8 +26,8 @@ void check(const CsgShape& csg, ShapeCheck& report) {
   for (const auto& operand : csg.operands) {
     const auto* capsules = std::get_if<CapsulesShape>(&operand->geometry);
     if (!is_closed(*operand)) return report.error("the csg has an operand that is an open surface");
-    if (capsules && (capsules->p0.size() != 1 || !capsules->times.empty()))
-      return report.error("the csg has an operand of more or fewer than one capsule");
+    if (capsules && capsules->p0.size() != 1)
+      return report.error("the csg has an operand that is not one capsule that rests");
     if (operand->emission) return report.error("the csg has an operand that is an area light");
   }
   std::size_t solids = 0;
