@@ -217,6 +217,19 @@ std::vector<std::uint32_t> Editor::made_by(const Change& change) const {
     if (add->what == FormSubject::Kind::material) return last(scene.materials);
     return add->what == FormSubject::Kind::texture ? last(scene.textures) : last(scene.lights);
   }
+  if (const auto* copy = std::get_if<Duplicate>(&change)) {
+    // Copies follow the things of their kind, and instances are numbered behind all shapes.
+    const auto below = [copy](std::size_t end) {
+      return static_cast<std::size_t>(
+          std::count_if(copy->ids.begin(), copy->ids.end(), [end](auto id) { return id < end; }));
+    };
+    std::size_t shapes = 0;
+    while (below(scene.shapes.size() - shapes) != shapes) ++shapes;
+    std::vector<std::uint32_t> out = last(scene.shapes, shapes);
+    for (const std::uint32_t i : last(scene.instances, copy->ids.size() - shapes))
+      out.push_back(static_cast<std::uint32_t>(scene.shapes.size()) + i);
+    return out;
+  }
   if (const auto* hide = std::get_if<Hide>(&change); hide && hide->others) {
     std::vector<std::uint32_t> out(hide->ids.size());
     std::iota(out.begin(), out.end(), 0u);

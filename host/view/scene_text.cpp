@@ -47,6 +47,7 @@ Json scene_text(const Scene& scene, const std::string& device, std::uint32_t sam
   out["samples"] = samples;
   out["noise"] = noise;
   out["bounds"] = to_json(bounds_or_unit_of(scene));
+  out["unit"] = scene.unit;
   // Things are numbered as in the layer object.id (lower/identity.h).
   Json things = Json::array();
   for (const Shape& shape : scene.shapes) {
@@ -61,6 +62,7 @@ Json scene_text(const Scene& scene, const std::string& device, std::uint32_t sam
     things.push_back({{"name", scene.objects[instance.object].name}, {"instance", true}});
   }
   out["things"] = std::move(things);
+  out["shape_count"] = scene.shapes.size();
   out["thing_count"] = scene.shapes.size() + scene.instances.size();
   Json materials = Json::array();
   for (std::uint32_t i = 0; i < scene.materials.size(); ++i)

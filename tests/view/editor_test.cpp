@@ -119,6 +119,7 @@ TEST(Editor, DuplicatesAndDeletes) {
   editor.make(Duplicate{{1, 3, 5}, {0, 0, 1}});
   ASSERT_EQ(live.scene().shapes.size(), 7u);
   ASSERT_EQ(live.scene().instances.size(), 3u);
+  EXPECT_EQ(editor.made(), (std::vector<std::uint32_t>{5, 6, 9}));  // 7 and 8: the instances before
   EXPECT_TRUE(std::holds_alternative<SphereShape>(live.scene().shapes[5].geometry));
   EXPECT_TRUE(std::holds_alternative<CapsulesShape>(live.scene().shapes[6].geometry));
   EXPECT_EQ(live.scene().shapes[5].world_from_object[3].z, 1);

@@ -111,7 +111,7 @@ def forms(program, scenes, out):
         at.put("material", "reflectance", "0.1 0.6 0.2")
         at.changed("a colour")
         at.put("material", "reflectance", "0.1 1.6 0.2")
-        shown.until("a refusal at the field", lambda: "between" in shown.find("material-reflectance-error").text)
+        shown.until("a refusal at the field", lambda: "between" in shown.text("material-reflectance-error"))
         assert at.field("material", "reflectance").get_attribute("aria-invalid")
         assert mean_difference(at.before, shown.pixels()) == 0
         at.put("material", "kind", "conductor")
@@ -124,7 +124,10 @@ def forms(program, scenes, out):
         at.pick("new-material", "dielectric")
         at.changed("glass of one's own")
         at.put("material", "name", "my glass")
+        shown.tab("material")
         shown.until("its name", lambda: "my glass" in shown.words("#palette button"))
+        shown.picture(out / "materials.png")
+        shown.tab("object")
         at.choose("box")
         at.pick("surface", "5")
         shown.script("document.querySelector('#palette [data-material=\"0\"]').click()")
@@ -168,8 +171,7 @@ def shapes(program, scenes, out):
         width, height, _ = shown.pixels()
         shown.mouse(int(0.3 * width), int(0.8 * height)).perform()
         shown.until("what is under the cursor", lambda: "floor" in shown.find("under").text)
-        shown.script("document.getElementById('stage').focus()")
-        shown.find("stage").send_keys("n")
+        shown.press(Keys.SHIFT, "a")
         at.changed("one under the cursor")
         shown.picture(out / "shapes.png")
         at.undo_all()
@@ -209,7 +211,7 @@ def cameras(program, scenes, out):
         at.changed("parallel rays")
         assert shown.find("parallel").get_attribute("aria-pressed") == "true"
         shown.picture(out / "orthographic.png")
-        shown.find("stage").send_keys("z")
+        shown.press(",")
         shown.until("the first view", lambda: shown.apart(at.first, 2) == 0)
         at.pick("stereo", "sbs")
         shown.until("both eyes", lambda: int(shown.find("stage").get_attribute("data-right") or 0) >= 2)
@@ -291,6 +293,7 @@ def handles(program, scenes, out):
         at.undo_all()
 
 
+PAGES = ("object", "material", "light", "camera", "render")
 NAMES = """return [...document.querySelectorAll('button, input, select, summary, a[href], [tabindex="0"]')].filter((n) => n.checkVisibility())"""
 
 
@@ -304,51 +307,55 @@ def within_reach(program, scenes, out):
         at.pick("texture", "0")
         for form in ("material", "light", "texture", "camera", "film", "filter", "sampler", "integrator"):
             shown.until(f"the form {form}", lambda: shown.driver.find_elements(By.CSS_SELECTOR, f"#form-{form} [name]"))
-        controls = shown.script(NAMES)
-        assert len(controls) > 70, len(controls)
-        nameless = [n.get_attribute("outerHTML")[:120] for n in controls if not n.accessible_name.strip()]
-        assert not nameless, nameless
-        # All that Tab comes to, from the first to where it comes round.
-        enabled = shown.script(NAMES + ".filter((n) => !n.disabled && n.tabIndex >= 0).length")
-        shown.script("document.activeElement.blur()")
-        seen = set()
-        chain = ActionChains(shown.driver, duration=0)
-        for _ in range(enabled + 4):
-            chain.send_keys(Keys.TAB)
-        shown.script("window.visited = new Set(); document.addEventListener('focusin', (e) => window.visited.add(e.target))")
-        chain.perform()
-        missed = shown.script("return (" + NAMES.removeprefix("return ") + ").filter((n) => !n.disabled && n.tabIndex >= 0 && !window.visited.has(n)).map((n) => n.outerHTML.slice(0, 100))")
-        assert not missed, missed
+        for page_name in PAGES:
+            shown.tab(page_name)
+            controls = shown.script(NAMES)
+            assert len(controls) > 40, (page_name, len(controls))
+            nameless = [n.get_attribute("outerHTML")[:120] for n in controls if not n.accessible_name.strip()]
+            assert not nameless, nameless
+            # All that Tab comes to, from the first to where it comes round.
+            enabled = shown.script(NAMES + ".filter((n) => !n.disabled && n.tabIndex >= 0).length")
+            shown.script("document.activeElement.blur(); window.visited = new Set(); document.addEventListener('focusin', (e) => window.visited.add(e.target))")
+            chain = ActionChains(shown.driver, duration=0)
+            for _ in range(enabled + 4):
+                chain.send_keys(Keys.TAB)
+            chain.perform()
+            missed = shown.script("return (" + NAMES.removeprefix("return ") + ").filter((n) => !n.disabled && n.tabIndex >= 0 && !window.visited.has(n)).map((n) => n.outerHTML.slice(0, 100))")
+            assert not missed, missed
         for scheme in ("light", "dark"):
             shown.driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": [{"name": "prefers-color-scheme", "value": scheme}]})
             shown.driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", {"width": 640, "height": 512, "deviceScaleFactor": 2, "mobile": False})
-            time.sleep(0.3)
-            cut = shown.script("""return [...document.querySelectorAll('button, input, select, summary, h1, h2, label')].filter((n) => n.checkVisibility()).filter((n) => {
-                const b = n.getBoundingClientRect(); return b.width > 0 && (b.left < -1 || b.right > innerWidth + 1); }).map((n) => n.outerHTML.slice(0, 100))""")
-            assert not cut, cut
-            assert shown.script("return document.documentElement.scrollWidth <= innerWidth")
-            # Text against what is behind it (WCAG 2.1, 1.4.3).
-            low = shown.script("""const lum = (c) => { const [r, g, b] = c.match(/[\\d.]+/g).map((v) => v / 255).map((v) => v <= 0.03928 ? v / 12.92 : ((v + 0.055) / 1.055) ** 2.4); return 0.2126 * r + 0.7152 * g + 0.0722 * b; };
-                const behind = (n) => { for (; n; n = n.parentElement) { const c = getComputedStyle(n).backgroundColor; if (!/^rgba.*, 0\\)$/.test(c)) return c; } return 'rgb(255, 255, 255)'; };
-                return [...document.querySelectorAll('button, summary, h1, h2, label span, small, .field span, #tree li, footer output')].filter((n) => n.checkVisibility() && n.textContent.trim() && !n.disabled).map((n) => {
-                  const a = lum(getComputedStyle(n).color), b = lum(behind(n)); return [(Math.max(a, b) + 0.05) / (Math.min(a, b) + 0.05), n.outerHTML.slice(0, 80)]; }).filter(([ratio]) => ratio < 4.5)""")
-            assert not low, low
-            shown.picture(out / f"narrow_{scheme}.png")
-            shown.script("document.querySelector('#form-material').scrollIntoView()")
-            shown.picture(out / f"narrow_{scheme}_form.png")
+            shown.until("the panel's fold", lambda: not shown.find("panel").is_displayed())
+            for page_name in (None, *PAGES):  # first without the panel
+                if page_name:
+                    shown.script("document.body.classList.remove('folded'); document.getElementById('panel').dataset.height = 3")
+                    shown.tab(page_name)
+                cut = shown.script("""return [...document.querySelectorAll('button, input, select, summary, h1, h2, label')].filter((n) => n.checkVisibility()).filter((n) => {
+                    const b = n.getBoundingClientRect(); return b.width > 0 && (b.left < -1 || b.right > innerWidth + 1); }).map((n) => n.outerHTML.slice(0, 100))""")
+                assert not cut, cut
+                assert shown.script("return document.documentElement.scrollWidth <= innerWidth")
+                # Text against what is behind it (WCAG 2.1, 1.4.3).
+                low = shown.script("""const lum = (c) => { const [r, g, b] = c.match(/[\\d.]+/g).map((v) => v / 255).map((v) => v <= 0.03928 ? v / 12.92 : ((v + 0.055) / 1.055) ** 2.4); return 0.2126 * r + 0.7152 * g + 0.0722 * b; };
+                    const behind = (n) => { for (; n; n = n.parentElement) { const c = getComputedStyle(n).backgroundColor; if (!/^rgba.*, 0\\)$/.test(c)) return c; } return 'rgb(255, 255, 255)'; };
+                    return [...document.querySelectorAll('button, summary, h1, h2, label span, small, .field span, #tree li span, footer output')].filter((n) => n.checkVisibility() && n.textContent.trim() && !n.disabled).map((n) => {
+                      const a = lum(getComputedStyle(n).color), b = lum(behind(n)); return [(Math.max(a, b) + 0.05) / (Math.min(a, b) + 0.05), n.outerHTML.slice(0, 80)]; }).filter(([ratio]) => ratio < 4.5)""")
+                assert not low, low
+                shown.picture(out / f"narrow_{scheme}_{page_name}.png")
+            shown.driver.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
+            shown.until("the panel beside the picture", lambda: shown.find("panel").is_displayed())
 
 
 def figures(program, scenes, out):
     """The pictures of docs/viewer.md."""
-    with viewer(program, scenes / "gallery.pbrt", "--spp", "16") as served, page(served.address) as shown:
-        shown.driver.set_window_size(1280, 1000)
+    with viewer(program, page_test.editable(scenes / "gallery.pbrt", out), "--spp", "16") as served, page(served.address) as shown:
         at = Work(shown)
+        shown.resize(1280, 800)
         at.choose("capsule 7")
         at.put("material", "kind", "conductor")
         at.put("material", "alpha_u", "0.25")
         at.put("material", "alpha_v", "0.25")
         shown.until("16 samples", lambda: shown.samples() >= 16, 400)
-        shown.script("document.querySelector('#shapes').scrollIntoView()")
+        shown.tab("material")
         shown.picture(out / "viewer-forms.png")
 
 

@@ -30,7 +30,7 @@ import numpy as np
 
 try:
     from selenium import webdriver
-    from selenium.common.exceptions import NoAlertPresentException, StaleElementReferenceException
+    from selenium.common.exceptions import StaleElementReferenceException
     from selenium.webdriver.chrome.options import Options
     from selenium.webdriver.chrome.service import Service
     from selenium.webdriver.common.action_chains import ActionChains
@@ -82,7 +82,7 @@ def viewer(program, scene, *options):
             out.process.wait()
 
 
-SIZE = (1000, 640)
+SIZE = (1104, 600)  # just wide enough for the panel beside the picture
 RATIO = 0.5  # pixels of a picture to one of the page: most of a test's time would go into pictures of the full size
 idle = []  # browsers that no page has: to start one takes as long as many a test
 
@@ -117,6 +117,11 @@ class Page:
         self.driver.set_window_size(*SIZE)
         self.driver.get_log("browser")
         idle.append(self.driver)
+
+    def resize(self, width, height):
+        """A window with a pixel of the picture to each of its own."""
+        self.driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": False})
+        self.until("a picture of this size", lambda: self.script("return document.getElementById('picture').width === document.getElementById('stage').clientWidth"))
 
     def find(self, name):
         return self.driver.find_element(By.ID, name)
@@ -182,22 +187,40 @@ class Page:
     def edits(self):
         return int(self.find("stage").get_attribute("data-edits") or 0)
 
+    def tab(self, name):
+        """Opens a page of the panel."""
+        self.script("document.getElementById('tab-' + arguments[0]).click()", name)
+
+    def press(self, *keys):
+        """Keys on the picture, with those before the last held down."""
+        self.script("document.getElementById('stage').focus()")
+        chain = ActionChains(self.driver)
+        for key in keys[:-1]:
+            chain.key_down(key)
+        chain.send_keys(keys[-1])
+        for key in keys[:-1]:
+            chain.key_up(key)
+        chain.perform()
+
+    def text(self, name):
+        """The text of an element, shown or not."""
+        return self.script("return document.getElementById(arguments[0]).textContent", name)
+
+    def discard(self):
+        """Discards changes by the menu; the question is open then."""
+        self.find("menu-button").click()
+        self.find("discard").click()
+
     def is_unsaved(self):
         return self.driver.title.startswith("•")
 
     def answer(self, yes):
         """A question that the page asks; its words."""
-        alert = self.until("a question", lambda: self.alert())
-        text = alert.text
-        alert.accept() if yes else alert.dismiss()
-        ActionChains(self.driver).reset_actions()  # a question that came between two keys leaves Control down
+        self.until("a question", lambda: self.find("question").is_displayed())
+        text = self.text("question-text")
+        self.find("question-yes" if yes else "question-no").click()
+        self.until("no question more", lambda: not self.find("question").is_displayed())
         return text
-
-    def alert(self):
-        try:
-            return self.driver.switch_to.alert
-        except NoAlertPresentException:
-            return None
 
     def press_save(self):
         ActionChains(self.driver).key_down(Keys.CONTROL).send_keys("s").key_up(Keys.CONTROL).perform()
@@ -294,9 +317,9 @@ def camera(program, scenes, out):
         while shown.find("redo").is_enabled():
             shown.find("redo").click()
         shown.until("the third again", lambda: shown.apart(turned, 2) > 3)
-        for key in "12356":
-            shown.find("stage").send_keys(key)
-            shown.until(f"the view along axis {key}", lambda: shown.samples() >= 1)
+        for keys in ("1", "3", "7", (Keys.SHIFT, "3"), (Keys.SHIFT, "7"), (Keys.SHIFT, "1")):
+            shown.press(*keys)
+            shown.until(f"the view by {keys}", lambda: shown.samples() >= 1)
             _, _, pixels = shown.pixels()
             assert len(set(pixels)) > 20, f"nothing is seen along axis {key}"
         shown.find("fit").click()
@@ -311,8 +334,9 @@ def picks(program, scenes, out):
         shown.until_samples(2)
         width, height, _ = shown.pixels()
         named = 0
+        shown.press("i")
         for k in range(12):
-            x, y = int((0.06 + 0.08 * k) * width), int((0.35 + 0.05 * (k % 6)) * height)
+            x, y = int((0.09 + 0.077 * k) * width), int((0.35 + 0.05 * (k % 6)) * height)
             before = shown.find("table").get_attribute("data-pixel")
             shown.mouse(x, y).click().perform()
             shown.until("the crossings", lambda: shown.find("table").get_attribute("data-pixel") != before, 20)
@@ -331,10 +355,13 @@ def picks(program, scenes, out):
                 assert [row[2], row[3], row[4]] == [str(crossing["object"]), str(crossing["surface"]), str(crossing["material"])], (row, crossing)
                 assert abs(float(row[5].split()[0]) - crossing["t"]) <= 1e-5 * crossing["t"], (row, crossing)
             if theirs:
-                chosen = shown.script("return [...document.querySelectorAll('#tree [aria-selected=true]')].map((i) => i.firstChild.textContent)")
-                assert chosen == [str(wanted)], (chosen, wanted)
+                shown.until(f"{wanted} selected", lambda: shown.script("return [...document.querySelectorAll('#tree [aria-selected=true]')].map((i) => i.firstChild.textContent)") == [str(wanted)], 10)
                 named += wanted != "floor"
+            shown.picture(out / "inspected.png") if k == 6 else None
+            shown.press(Keys.ESCAPE)  # the inspector is where the next pixel may be
+            assert not shown.find("inspector").is_displayed()
         assert named >= 4, "too few of these pixels show more than the floor"
+        assert shown.find("tool-inspect").get_attribute("aria-pressed") == "true"
         marked = shown.script("const c = document.getElementById('marks'); return c.getContext('2d').getImageData(0, 0, c.width, c.height).data.some((v) => v)")
         assert marked, "what is selected has no outline"
         shown.picture(out / "picked.png")
@@ -461,7 +488,7 @@ def edits(program, scenes, out):
         changed("a capsule's radius")
         assert abs(float(shown.find("radius0").get_attribute("value")) - 0.6) < 1e-6
         typed("move", "0 nonsense 0")
-        assert shown.find("move").get_attribute("aria-invalid")
+        assert shown.find("move").get_attribute("aria-invalid") and "nonsense" in shown.text("move-error")
         shown.script("const s = document.getElementById('material'); s.selectedIndex = 3; s.dispatchEvent(new Event('change'))")
         changed("painted")
         handle = shown.driver.find_element(By.CSS_SELECTOR, "[data-handle=z]")
@@ -475,10 +502,9 @@ def edits(program, scenes, out):
         shown.until("a surface painted", lambda: shown.apart(before, 2) > 0)
         things = int(shown.find("more").text.split(" of ")[1])
         shown.find("duplicate").click()
-        shown.until("one more", lambda: shown.find("more").text.endswith(f" of {things + 1}"))
-        choose("cylinder")
+        shown.until("one more, selected", lambda: shown.find("more").text.endswith(f" of {things + 1}") and [t.split("\n")[0] for t in shown.words("#tree [aria-selected=true]")] == ["cylinder copy"])
         shown.find("delete").click()
-        shown.until("one less", lambda: shown.find("more").text.endswith(f" of {things}"))
+        shown.until("one less", lambda: shown.find("more").text.endswith(f" of {things}") and not shown.words("#tree [aria-selected=true]"))
         with page(served.address) as other:
             other.until("the same things", lambda: other.find("more").text.endswith(f" of {things}"))
             other.until_samples(2)
@@ -498,6 +524,8 @@ def read_only(program, scenes, out):
         shown.driver.find_elements(By.CSS_SELECTOR, "#tree li")[2].click()
         time.sleep(0.5)
         assert not shown.find("edit").is_displayed()
+        assert not any(e.is_displayed() for e in shown.driver.find_elements(By.CSS_SELECTOR, ".edits, #save"))
+        shown.press(Keys.DELETE)
         shown.script("""const s = new WebSocket(location.href.replace(/^http/, 'ws') + 'socket'); window.told = [];
             s.onmessage = (e) => { if (typeof e.data === 'string') window.told.push(e.data); };
             s.onopen = () => s.send(JSON.stringify({type: 'edit', what: 'delete', goes_on: false, ids: [2]}))""")
@@ -523,7 +551,7 @@ def saves(program, scenes, out):
     by_hand = scene.read_bytes()
     with viewer(program, scene, "--spp", "2") as served, page(served.address) as shown:
         shown.until_samples(2)
-        assert not shown.is_unsaved() and not shown.find("discard").is_enabled()
+        assert not shown.is_unsaved()
         shown.choose("capsule 5")
         before = shown.pixels()
         shown.move("0 -1 0.5")
@@ -533,29 +561,33 @@ def saves(program, scenes, out):
         shown.press_save()
         assert "comments" in shown.answer(False)
         assert scene.read_bytes() == by_hand and shown.is_unsaved()
+        shown.press(Keys.CONTROL, Keys.SHIFT, "s")
         field = shown.find("save_name")
         for name in ("../other", "/tmp/other", ".other"):
             field.clear()
             field.send_keys(name, Keys.ENTER)
             shown.until(f"a refusal of {name}", lambda: shown.find("save_name").get_attribute("aria-invalid"))
-            assert "plain name" in shown.find("save_said").text, shown.find("save_said").text
+            assert "plain name" in shown.text("save_said"), shown.text("save_said")
             shown.script("document.getElementById('save_name').dispatchEvent(new Event('input'))")
         assert sorted(f.name for f in scene.parent.iterdir()) == [".gallery.pbrt.unsaved", "gallery.pbrt"]
         field.clear()
         field.send_keys("moved", Keys.ENTER)
-        shown.until("what was written", lambda: shown.find("save_said").text.endswith("moved.pbrt"))
+        shown.until("what was written", lambda: shown.find("said").text.endswith("moved.pbrt") and not shown.find("keeping").is_displayed())
         shown.until("no mark", lambda: not shown.is_unsaved())
         assert sorted(f.name for f in scene.parent.iterdir()) == ["gallery.pbrt", "moved.pbrt"]
         shown.move("0 0 0.25")
+        shown.find("menu-button").click()
+        shown.find("menu-save").click()
         field = shown.find("save_name")
         field.clear()
         field.send_keys("gallery")
-        shown.find("save").click()
+        shown.picture(out / "saving.png")
+        shown.find("save_now").click()
+        shown.picture(out / "question.png")
         shown.answer(True)
-        shown.until("what was written", lambda: shown.find("save_said").text.endswith("gallery.pbrt"))
+        shown.until("what was written", lambda: shown.find("said").text.endswith("gallery.pbrt"))
         shown.until("another picture", lambda: shown.apart(before, 2) > 0)
         last = shown.pixels()
-        shown.script("document.querySelector('#keeping').scrollIntoView()")
         shown.picture(out / "saved.png")
         with page(served.address) as other:
             assert not other.is_unsaved()
@@ -609,7 +641,7 @@ def keeps(program, scenes, out):
                 shown.picture(out / "kept.png")
                 shown.find("close_note").click()
                 assert not shown.find("kept_note").is_displayed()
-            shown.find("stage").send_keys("z")
+            shown.press(",")
             shown.until("the view before", lambda: shown.apart(moved, 2) == 0)
             shown.driver.get_log("browser")  # that it could not connect
         shown.find("back").click()
@@ -619,7 +651,7 @@ def keeps(program, scenes, out):
         shown.until("no mark", lambda: not shown.is_unsaved())
         shown.find("again").click()
         shown.until("the mark again", shown.is_unsaved)
-        shown.find("discard").click()
+        shown.discard()
         shown.answer(True)
         shown.until("the first picture", lambda: shown.apart(first, 2) == 0)
         assert [f.name for f in scene.parent.iterdir()] == ["gallery.pbrt"]
@@ -661,11 +693,11 @@ def asks_before_changes_are_lost(program, scenes, out):
                 shown.choose("capsule 5")
                 shown.move("0 -1 0.5")
                 shown.until("the mark", shown.is_unsaved)
-                assert ("end with the program" in shown.find("save_said").text) != is_kept, shown.find("save_said").text
+                assert ("end with the program" in shown.text("save_said")) != is_kept, shown.text("save_said")
                 # WebDriver answers the question itself, so the page alone is asked.
                 asks = shown.script("const e = new Event('beforeunload', { cancelable: true }); window.dispatchEvent(e); return e.defaultPrevented")
                 assert asks != is_kept
-                shown.find("discard").click()
+                shown.discard()
                 shown.answer(True)
                 shown.until("no mark", lambda: not shown.is_unsaved())
                 assert not shown.script("const e = new Event('beforeunload', { cancelable: true }); window.dispatchEvent(e); return e.defaultPrevented")
@@ -678,25 +710,24 @@ def figures(program, scenes, out):
 
     def choose(name):
         shown.click("#tree li", name)
-        shown.until(f"what {name} is", lambda: shown.find("edit").is_displayed() and shown.find("material").get_attribute("value"))
+        shown.until(f"what {name} is", lambda: shown.find("edit").is_displayed() and shown.script("return document.getElementById('material').value"))
 
-    with viewer(program, scenes / "gallery.pbrt", "--spp", "64") as served, page(served.address) as shown:
-        shown.driver.set_window_size(1280, 860)
+    with viewer(program, editable(scenes / "gallery.pbrt", out), "--spp", "64") as served, page(served.address) as shown:
+        shown.resize(1280, 800)
         choose("capsule 7")
-        shown.until("64 samples", lambda: shown.samples() >= 64, 300)
-        shown.script("document.querySelector('aside').scrollTo(0, 250)")
+        shown.until("64 samples", lambda: shown.samples() >= 64, 600)
         shot("viewer")
         width, height, _ = shown.pixels()
-        shown.mouse(int(0.7 * width), int(0.62 * height)).click().perform()  # through the glass lens
+        shown.press("i")
+        ActionChains(shown.driver).move_to_element_with_offset(shown.find("stage"), int(0.2 * width), int(0.12 * height)).click().perform()  # through the glass lens
         shown.until("the crossings", lambda: len(shown.driver.find_elements(By.CSS_SELECTOR, "#table tbody tr")) > 2)
-        shown.script("document.querySelector('#inspector').scrollIntoView()")
         shot("viewer-inspector")
-        shown.find("help").click()
+        shown.press("?")
         shot("viewer-help")
     with viewer(program, scenes / "neuron.swc", "--spp", "64") as served, page(served.address) as shown:
-        shown.driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": [{"name": "prefers-color-scheme", "value": "dark"}]})
-        shown.driver.set_window_size(1280, 860)
-        shown.until("64 samples", lambda: shown.samples() >= 64 and shown.pixels()[0] > 700, 300)
+        shown.driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": [{"name": "prefers-color-scheme", "value": "light"}]})
+        shown.resize(1280, 800)
+        shown.until("64 samples", lambda: shown.samples() >= 64, 300)
         shot("viewer-neuron")
 
 

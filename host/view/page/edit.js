@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 // Changes the selected things with handles in the picture and numbers beside it. The program checks and makes all changes.
-import { add, cross, dot, length, mul, sub, unit } from "./camera.js";
+import { add, dot, length, mul, sub, unit } from "./camera.js";
+import { complain, scrubs, trouble_with, values_of } from "./numbers.js";
 import { texts } from "./texts.js";
 
 const NS = "http://www.w3.org/2000/svg", COLORS = ["#ff5a4d", "#5fd35f", "#5a9bff"], AXES = [[1, 0, 0], [0, 1, 0], [0, 0, 1]];
@@ -24,42 +25,121 @@ function about(center, axis, angle, scale) {
   const moved = [0, 1, 2].map((i) => center[i] - (m[3 * i] * center[0] + m[3 * i + 1] * center[1] + m[3 * i + 2] * center[2]));
   return [...m.slice(0, 3), moved[0], ...m.slice(3, 6), moved[1], ...m.slice(6, 9), moved[2], 0, 0, 0, 1];
 }
+const middle = ({ bounds: [low, high] }) => mul(add(low, high), 0.5);
+const extent = ({ bounds: [low, high] }) => length(sub(high, low)) / 2 || 1;
+// Returns the numbers that things have when these are gone.
+const without = (gone) => (id) => gone.includes(id) ? undefined : id - gone.filter((other) => other < id).length;
 const shift = (by) => { const m = [...identity]; [m[3], m[7], m[11]] = by; return m; };
 
 export class Edits {
-  // `say` sends a message, `ask` one with an answer, `view` returns the camera, `stage` is the element that the picture fills.
-  constructor({ say, describe, view, stage, find, shown, click }) {
-    Object.assign(this, { say, describe, view, stage, find, shown, click });
-    this.ids = [];
-    this.primitive = 0;
+  // `edit` makes a change and calls back with the program's answer, `describe` asks what a thing is, `view` returns the camera,
+  // `stage` is the element that the picture fills, `chose` receives a selection that an action
+  // made, `shape_count` returns how many shapes come before the instances.
+  constructor({ edit, describe, view, stage, find, shown, click, chose, shape_count }) {
+    Object.assign(this, { edit, describe, view, stage, find, shown, click, chose, shape_count });
+    this.boxes = new Set();
+    this.hold([], 0);
     this.thing = null;
     this.busy = false;
+    this.tool = "select";
+    this.reset();
     this.handles = stage.appendChild(make("svg", { id: "handles" }));
-    const numbers = (id) => find(id).value.trim().split(/[\s,]+/).map(Number);
     const apply = (id, count, work) => {
       find(id).addEventListener("change", () => {
-        const values = numbers(id);
-        if (values.length !== count || values.some((v) => !Number.isFinite(v))) { find(id).setAttribute("aria-invalid", "true"); return; }
-        find(id).removeAttribute("aria-invalid");
-        work(values);
+        const text = find(id).value, trouble = text.trim() ? trouble_with(text, count) : "";
+        complain(find(id), trouble);
+        if (text.trim() && !trouble) work(values_of(text, count), find(id).dataset.moving === "1");
       });
     };
-    apply("move", 3, (by) => { this.change({ what: "move", ids: this.ids, matrix: shift(by) }); find("move").value = ""; });
-    apply("turn", 4, ([x, y, z, degrees]) => { if (length([x, y, z])) this.change({ what: "move", ids: this.ids, matrix: about(this.center(), [x, y, z], degrees * Math.PI / 180, 1) }); find("turn").value = ""; });
-    apply("scale", 1, ([factor]) => { if (factor > 0) this.change({ what: "move", ids: this.ids, matrix: about(this.center(), [0, 0, 1], 0, factor) }); find("scale").value = ""; });
+    const place = (id, count, matrix) => apply(id, count, (values) => {
+      find(id).value = "";
+      this.act(async ({ ids }, thing) => { const m = matrix(values, middle(thing)); if (m) await this.make({ what: "move", ids, matrix: m }); });
+    });
+    place("move", 3, (by) => shift(by));
+    place("turn", 4, ([x, y, z, degrees], center) => length([x, y, z]) && about(center, [x, y, z], degrees * Math.PI / 180, 1));
+    place("scale", 1, ([factor], center) => factor > 0 && about(center, [0, 0, 1], 0, factor));
     for (const [name, count] of [["p0", 3], ["p1", 3], ["radius0", 1], ["radius1", 1]])
-      apply(name, count, (values) => this.reshape({ [name]: count === 1 ? values[0] : values }, false));
-    find("duplicate").onclick = () => this.change({ what: "duplicate", ids: this.ids, by: mul(unit(this.view().right), this.size() * 1.1) });
-    find("delete").onclick = () => this.change({ what: "delete", ids: this.ids });
+      apply(name, count, (values, goes_on) => this.reshape({ [name]: count === 1 ? values[0] : values }, goes_on));
+    for (const name of ["radius0", "radius1"]) { find(name).dataset.low = 0; scrubs(find(name).previousElementSibling, find(name)); }
+    find("duplicate").onclick = () => this.duplicate();
+    find("delete").onclick = () => this.remove();
     find("material").onchange = (event) => {
       if (event.target.value === "") return;
       const surface = find("surface").value;
-      this.change({ what: "paint", ids: this.ids, surface: surface === "" ? null : +surface, material: +event.target.value });
+      this.paint(surface === "" ? null : +surface, +event.target.value);
     };
     find("surface").onchange = () => this.fill();
   }
 
-  change(what, goes_on = false) { if (this.ids.length) this.say({ type: "edit", goes_on, ...what }); }
+  // --- Actions ---
+  // They run one after the other. Each is for the things that were selected when it was asked for, or for what the
+  // actions before it have made of these, and waits until it is known what they are. A selection is a box of ids, which
+  // the actions that wait share; when things get other numbers, all boxes do.
+
+  get ids() { return this.selection.ids; }
+  hold(ids, primitive) {
+    if (this.selection && !this.selection.waits) this.boxes.delete(this.selection);
+    this.selection = { ids, primitive, waits: 0 };
+    this.boxes.add(this.selection);
+  }
+  // A new connection begins a new line of actions.
+  reset() { this.queue = Promise.resolve(); this.busy = false; this.number_of = null; }
+  act(work) {
+    const { selection } = this;
+    ++selection.waits;
+    this.queue = this.queue.then(async () => {
+      --selection.waits;
+      if (selection !== this.selection && !selection.waits) this.boxes.delete(selection);
+      if (!selection.ids.length) return;
+      const thing = await new Promise((done) => this.describe(selection.ids.at(-1), selection.primitive, done));
+      if (thing?.bounds) await work(selection, thing);
+    }).catch((error) => console.error(error));
+  }
+  // Does something that needs no selection behind the actions that wait.
+  after(work) { this.queue = this.queue.then(work).catch((error) => console.error(error)); }
+  // Adds a thing, which is the selection from now on.
+  add(what) {
+    this.chose([]);
+    const { selection } = this;
+    this.after(async () => {
+      const shapes = this.shape_count(), made = await this.make(what, (id) => id < shapes ? id : id + 1);
+      if (!made.ids?.length) return;
+      selection.ids = made.ids;
+      if (selection === this.selection) this.show(selection);
+    });
+  }
+  // Makes a change; `number_of` says which number a thing has afterwards, undefined: none.
+  async make(what, number_of = null) {
+    this.number_of = number_of;
+    const made = await new Promise((done) => this.edit(what, false, done));
+    this.number_of = null;
+    return made;
+  }
+  // Things have other numbers: those that the present action knows, or else unknown ones.
+  renumber() {
+    for (const box of this.boxes) box.ids = this.number_of ? box.ids.map(this.number_of).filter((id) => id !== undefined) : [];
+    this.show(this.selection);
+  }
+  show(selection) { this.is_told = true; this.chose(selection.ids); this.is_told = false; }
+  duplicate() {
+    this.act(async (selection, thing) => {
+      const { ids } = selection, shapes = this.shape_count(), copies = ids.filter((id) => id < shapes).length;
+      const made = await this.make({ what: "duplicate", ids, by: mul(unit(this.view().right), extent(thing) * 1.1) }, (id) => id < shapes ? id : id + copies);
+      if (!made.ids?.length) return;
+      selection.ids = made.ids;
+      if (selection === this.selection) this.show(selection);
+    });
+  }
+  remove() { this.act(({ ids }) => this.make({ what: "delete", ids }, without(ids))); }
+  hide(others) {
+    this.act(({ ids }) => {
+      const kept = [...ids].sort((a, b) => a - b), place = (id) => { const at = kept.indexOf(id); return at < 0 ? undefined : at; };
+      return this.make({ what: "hide", ids, others }, others ? place : without(ids));
+    });
+  }
+  paint(surface, material) { this.act(({ ids }) => this.make({ what: "paint", ids, surface, material })); }
+
+  change(what, goes_on = false) { if (this.ids.length) this.edit(what, goes_on, () => {}); }
   reshape(what, goes_on) {
     const { number, ...capsule } = this.thing.capsule;
     this.change({ what: "reshape", id: this.ids[0], capsule: number, ...capsule, ...what }, goes_on);
@@ -67,27 +147,28 @@ export class Edits {
 
   // Sets the selection, and the primitive that was hit.
   select(ids, primitive) {
-    this.ids = ids;
-    this.primitive = primitive;
+    if (!this.is_told) this.hold(ids, primitive);
     this.thing = null;
     this.refresh();
   }
   // Asks for the present description of the selection.
   refresh() {
-    this.find("edit").hidden = !this.ids.length || this.read_only;
+    const is_shown = this.ids.length > 0 && !this.read_only;
+    this.find("edit").hidden = !is_shown;
+    this.find("nothing-chosen").hidden = is_shown || this.read_only;
     if (!this.ids.length) { this.shown(null, "", false); this.draw(); return; }
     if (this.busy) { this.again = true; return; }
     this.busy = true;
-    this.describe(this.ids[this.ids.length - 1], this.primitive, (thing) => {
+    this.describe(this.ids[this.ids.length - 1], this.selection.primitive, (thing) => {
       this.busy = false;
-      this.thing = thing;
+      this.thing = thing?.bounds ? thing : null;
       this.fill();
       this.draw();
       if (this.again) { this.again = false; this.refresh(); }
     });
   }
-  center() { const [low, high] = this.thing.bounds; return mul(add(low, high), 0.5); }
-  size() { const [low, high] = this.thing.bounds; return length(sub(high, low)) / 2 || 1; }
+  center() { return middle(this.thing); }
+  size() { return extent(this.thing); }
 
   fill() {
     const { thing, find } = this, capsule = thing?.capsule;
@@ -97,10 +178,10 @@ export class Edits {
     const now = surface === "" ? (new Set(materials).size === 1 ? materials[0] : "") : materials[+surface] ?? "";
     find("material").value = String(now);
     this.shown(this.ids.length === 1 ? this.ids[0] : null, now, materials.length > 0);
-    find("material").disabled = !materials.length;
+    find("material").disabled = find("surface").disabled = !materials.length;
     find("capsule").hidden = !capsule || this.ids.length !== 1;
     for (const name of ["p0", "p1", "radius0", "radius1"])
-      if (capsule && document.activeElement !== find(name)) find(name).value = [capsule[name]].flat().map((v) => +v.toPrecision(7)).join(" ");
+      if (capsule && document.activeElement !== find(name) && !find(name).dataset.moving) find(name).value = [capsule[name]].flat().map((v) => +v.toPrecision(7)).join(" ");
   }
 
   // --- Handles ---
@@ -121,23 +202,25 @@ export class Edits {
     const center = this.center(), at = this.project(center);
     if (!at) return;
     const camera = this.view(), reach = 70 * 2 * this.half(at[2]) / Math.min(this.stage.clientWidth, this.stage.clientHeight);
-    AXES.forEach((axis, i) => {
+    const shows = (tool) => this.tool === "select" || this.tool === tool;
+    if (!["select", "move", "turn", "scale"].includes(this.tool)) return;
+    if (shows("move")) AXES.forEach((axis, i) => {
       const end = this.project(add(center, mul(axis, reach)));
       if (!end) return;
       this.handles.append(make("line", { x1: at[0], y1: at[1], x2: end[0], y2: end[1], stroke: COLORS[i], "stroke-width": 3 }));
       this.handle("rect", { x: end[0] - 6, y: end[1] - 6, width: 12, height: 12, fill: COLORS[i], "data-handle": "xyz"[i] }, (start, move) => this.along(center, axis, start, move));
     });
-    this.draw_rings(center, reach);
-    this.draw_planes(center, reach);
+    if (shows("turn")) this.draw_rings(center, reach);
+    if (shows("move")) this.draw_planes(center, reach);
     const diagonal = this.project(add(center, mul(add(unit(camera.right), unit(camera.up)), 0.85 * reach)));
-    if (diagonal) this.grip("path", { d: `M${diagonal[0]} ${diagonal[1] - 8}l8 8l-8 8l-8 -8z`, fill: "#fff", stroke: "#333", "data-handle": "scale" }, 1, (start, move) => {
+    if (diagonal && shows("scale")) this.grip("path", { d: `M${diagonal[0]} ${diagonal[1] - 8}l8 8l-8 8l-8 -8z`, fill: "#fff", stroke: "#333", "data-handle": "scale" }, 1, (start, move) => {
       const box = this.stage.getBoundingClientRect(), far = (event) => Math.hypot(event.clientX - box.left - at[0], event.clientY - box.top - at[1]) || 1;
       const factor = Math.max(0.01, far(move) / far(start));
       return snaps(move) ? Math.max(0.1, Math.round(factor * 10) / 10) : factor;
     }, (now, gone) => about(center, [0, 0, 1], 0, now / gone));
-    this.handle("circle", { cx: at[0], cy: at[1], r: 7, fill: "#fff", stroke: "#333", "data-handle": "plane" }, (start, move) => this.in_plane(center, start, move));
+    if (shows("move")) this.handle("circle", { cx: at[0], cy: at[1], r: 7, fill: "#fff", stroke: "#333", "data-handle": "plane" }, (start, move) => this.in_plane(center, start, move));
     const capsule = this.thing.capsule;
-    if (!capsule || this.ids.length !== 1) return;
+    if (!capsule || this.ids.length !== 1 || !shows("move")) return;
     for (const name of ["p0", "p1"]) {
       const end = this.project(capsule[name]);
       if (end) this.handle("circle", { cx: end[0], cy: end[1], r: 6, fill: "#ffd24d", stroke: "#333", "data-handle": name }, (start, move) => this.in_plane(capsule[name], start, move), (by) => this.reshape({ [name]: add(this.held[name], by) }, this.moved++ > 0));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 // Forms of the scene's parts. The program lists each part's fields with kind and range, and checks new values.
+import { scrubs, value_of, values_of } from "./numbers.js";
 import { texts } from "./texts.js";
 
 const SETTINGS = ["camera", "film", "filter", "sampler", "integrator"];
@@ -9,8 +10,9 @@ const node = (name, attributes = {}, ...inside) => {
   out.append(...inside);
   return out;
 };
+// A text that is no number goes to the program as it is, which says why it cannot be.
+const number_or_text = (text) => { const value = value_of(text); return Number.isFinite(value) ? value : text; };
 const short = (v) => String(+v.toPrecision(7));
-const numbers = (text) => text.trim().split(/[\s,]+/).map(Number);
 // Convert linear values to sRGB (IEC 61966-2-1), and back.
 const encoded = (v) => Math.round(255 * (v <= 0.0031308 ? 12.92 * v : 1.055 * Math.max(0, Math.min(1, v)) ** (1 / 2.4) - 0.055));
 const decoded = (b) => { const v = b / 255; return v <= 0.04045 ? v / 12.92 : ((v + 0.055) / 1.055) ** 2.4; };
@@ -85,10 +87,12 @@ class Form {
       return input;
     };
     const put = (this[`row_${field.type}`] ?? this.row_file).call(this, field, holder, named);
+    const number = holder.querySelector("input[inputmode=decimal]");
+    if (number) scrubs(box.firstChild, number);
     return { box, error, put };
   }
-  // Sets an input, unless the user is typing there.
-  static put(input, value) { if (document.activeElement !== input || input.type === "range" || input.type === "checkbox") input.value = value; }
+  // Sets an input, unless the user is typing there or drags it.
+  static put(input, value) { if (input.dataset.moving) return; if (document.activeElement !== input || input.type === "range" || input.type === "checkbox") input.value = value; }
 
   textured(field, holder, named) {
     const list = this.forms.textures(field);
@@ -104,11 +108,16 @@ class Form {
   }
   plain(field) { const { samples, space, ...value } = field.value; return Object.keys(value).length ? value : { constant: 0.5 }; }
 
+  // A field for a number, with arithmetic; its name can be dragged.
+  number(field, named) {
+    const input = named(node("input", { type: "text", inputMode: "decimal", autocomplete: "off" }));
+    if (field.low !== undefined) input.dataset.low = field.low;
+    if (field.high !== undefined) input.dataset.high = field.high;
+    input.onchange = () => this.set(field.name, input.value.trim() === "" ? null : number_or_text(input.value), input.dataset.moving === "1");
+    return input;
+  }
   row_number(field, holder, named) {
-    const input = named(node("input", { type: "number", step: "any" })), puts = [];
-    if (field.low !== undefined) input.min = field.low;
-    if (field.high !== undefined) input.max = field.high;
-    input.onchange = () => this.set(field.name, input.value === "" ? null : +input.value);
+    const input = this.number(field, named), puts = [];
     if (field.texture === undefined || field.texture === null) {
       holder.append(input);
       puts.push((now) => Form.put(input, short(now.value)));
@@ -123,10 +132,10 @@ class Form {
     if (field.texture !== undefined) puts.push(this.textured(field, holder, named) ?? (() => {}));
     return (now) => puts.forEach((put) => put(now));
   }
-  row_whole(field, holder, named) { const put = this.row_number(field, holder, named); holder.querySelector("input").step = 1; return put; }
+  row_whole(field, holder, named) { const put = this.row_number(field, holder, named); holder.querySelector("input").dataset.whole = "1"; return put; }
   row_option(field, holder, named) {
-    const input = named(node("input", { type: "number", min: 0, step: "any", placeholder: texts.none }));
-    input.onchange = () => this.set(field.name, input.value === "" ? null : +input.value);
+    const input = this.number({ low: 0, ...field }, named);
+    input.placeholder = texts.none;
     holder.append(input);
     return (now) => Form.put(input, now.value === null ? "" : short(now.value));
   }
@@ -151,7 +160,7 @@ class Form {
   }
   row_point(field, holder, named) {
     const input = named(node("input", { type: "text", autocomplete: "off" }));
-    input.onchange = () => this.set(field.name, numbers(input.value));
+    input.onchange = () => this.set(field.name, values_of(input.value));
     holder.append(input);
     return (now) => Form.put(input, now.value.map(short).join(" "));
   }
@@ -182,12 +191,13 @@ class Form {
       const color = named(node("input", { type: "color" }), " colour"), text = named(node("input", { type: "text", autocomplete: "off" }));
       color.oninput = () => { this.set(field.name, { rgb: linear(color.value) }, color.dataset.moving === "1"); color.dataset.moving = "1"; };
       color.onchange = () => { color.dataset.moving = ""; };
-      text.onchange = () => this.set(field.name, { rgb: numbers(text.value) });
+      text.onchange = () => this.set(field.name, { rgb: values_of(text.value) });
       mode.after(color, text);
       own = (now) => { if (!color.dataset.moving) color.value = hex(now.value.rgb); Form.put(text, now.value.rgb.map((v) => +v.toPrecision(4)).join(" ")); };
     } else if (kind === "constant" || kind === "blackbody") {
-      const input = named(node("input", { type: "number", min: 0, step: "any" }));
-      input.onchange = () => this.set(field.name, { [kind]: +input.value });
+      const input = named(node("input", { type: "text", inputMode: "decimal", autocomplete: "off" }));
+      input.dataset.low = 0;
+      input.onchange = () => this.set(field.name, { [kind]: number_or_text(input.value) }, input.dataset.moving === "1");
       mode.after(input);
       own = (now) => Form.put(input, short(now.value[kind]));
     } else if (kind === "name") {
@@ -205,8 +215,8 @@ class Form {
 
 export class Forms {
   // `ask` requests a part's form, `edit` makes a change and receives the result, and `place` returns the place of new things.
-  constructor({ ask, edit, find, place, lamp, select, chosen }) {
-    Object.assign(this, { asks: ask, edit, find, place, lamp, select, chosen });
+  constructor({ ask, edit, find, place, lamp, adds_shape, chosen, paints, under }) {
+    Object.assign(this, { asks: ask, edit, find, place, lamp, adds_shape, chosen, paints, under });
     this.queue = new Map();
     this.waits = 0;
     this.parts = { materials: [], textures: [], lights: [], hidden: [] };
@@ -254,7 +264,7 @@ export class Forms {
   begin(lists) {
     this.lists = lists;
     const { find } = this;
-    find("shapes").replaceChildren(...lists.shape.map((kind) => node("button", { textContent: texts.shapes[kind] ?? kind, onclick: () => this.add_shape(kind, null) }, )));
+    find("shapes").replaceChildren(...lists.shape.map((kind) => node("button", { role: "menuitem", textContent: texts.shapes[kind] ?? kind, onclick: () => this.add_shape(kind, this.under()) })));
     for (const [i, button] of [...find("shapes").children].entries()) { button.dataset.shape = lists.shape[i]; button.setAttribute("aria-label", texts.add_shape(button.textContent)); }
     find("new-light").replaceChildren(new Option(texts.new_light, ""), ...options(lists.light.map((kind) => [kind, kind]), ""));
     find("new-texture").replaceChildren(new Option(texts.new_texture, ""), ...options(lists.texture.flatMap((kind) => [["f" + kind, `${kind}, ${texts.of_floats}`], ["s" + kind, `${kind}, ${texts.of_spectra}`]]), ""));
@@ -264,11 +274,14 @@ export class Forms {
   add_shape(kind, hit) {
     this.last_shape = kind;
     const place = this.place(hit), material = Math.max(0, this.forms.material.part ?? this.parts.materials.length - 1);
-    this.edit({ what: "add", of: "shape", kind, material, ...place }, false, (made) => { if (made.ids) this.select(made.ids); });
+    this.adds_shape({ what: "add", of: "shape", kind, material, ...place });
   }
+  // Paints what is selected; without a selection the material's form is shown.
   paint(material) {
     const surface = this.find("surface").value;
-    if (this.chosen().length) this.edit({ what: "paint", ids: this.chosen(), surface: surface === "" ? null : +surface, material }, false, () => {});
+    if (this.chosen().length) return this.paints(surface === "" ? null : +surface, material);
+    this.forms.material.show(material);
+    this.mark();
   }
 
   // Takes the present lists.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 // Saving and unsaved changes: the program keeps them; the page shows them, and asks before anything is lost.
+import { question, tell } from "./dialog.js";
 import { texts } from "./texts.js";
 
 const words = texts.keeping;
@@ -11,41 +12,40 @@ const make = (name, properties, ...children) => {
 };
 
 export class Keep {
-  // `say` sends a message; `title` shows the mark of unsaved changes.
-  constructor({ say, stage, tools, aside, title }) {
-    Object.assign(this, { say, title });
+  // `say` sends a message; `button` saves; `title` shows the mark of unsaved changes.
+  constructor({ say, button, banners, title }) {
+    Object.assign(this, { say, title, button });
     this.now = { unsaved: false, kept: true };
     this.read_only = true;
     this.asked = false;
-    this.button = make("button", { id: "save", textContent: words.save, title: words.keys, onclick: () => this.save() });
-    tools.prepend(this.button);
+    button.onclick = () => this.save();
     this.name = make("input", { id: "save_name", autocomplete: "off", maxLength: 200, oninput: () => this.name.removeAttribute("aria-invalid") });
-    this.name.addEventListener("keydown", (event) => { if (event.key === "Enter") this.save(); });
+    this.name.addEventListener("keydown", (event) => { if (event.key === "Enter") { event.preventDefault(); this.save(); } });
     this.camera = make("input", { id: "save_camera", type: "checkbox" });
     this.said = make("p", { id: "save_said" });
     this.said.setAttribute("role", "status");
-    this.discard = make("button", { id: "discard", textContent: words.discard, disabled: true, onclick: () => this.drop() });
-    this.section = make("section", { id: "keeping", hidden: true }, make("h2", { textContent: words.title }),
-      make("label", {}, make("span", { textContent: words.name }), " ", this.name),
-      make("label", {}, make("span", { textContent: words.camera }), " ", this.camera),
-      make("p", { className: "row" }, this.discard), this.said);
-    aside.append(this.section);
+    this.dialog = make("dialog", { id: "keeping" }, make("h2", { textContent: words.title }),
+      make("p", {}, make("label", {}, make("span", { textContent: words.name }), " ", this.name)),
+      make("p", {}, make("label", {}, this.camera, " ", make("span", { textContent: words.camera }))), this.said,
+      make("p", { className: "row" }, make("button", { textContent: texts.close, onclick: () => this.dialog.close() }), make("button", { id: "save_now", className: "main", textContent: words.save, onclick: () => this.save() })));
+    document.body.append(this.dialog);
     this.note = make("div", { id: "kept_note", hidden: true });
     this.note.setAttribute("role", "alert");
-    for (const type of ["pointerdown", "dblclick", "keydown", "wheel"]) this.note.addEventListener(type, (event) => event.stopPropagation());
-    stage.append(this.note);
+    banners.append(this.note);
     document.addEventListener("keydown", (event) => {
-      if (!(event.ctrlKey || event.metaKey) || event.altKey || event.shiftKey || event.key.toLowerCase() !== "s") return;
+      if (!(event.ctrlKey || event.metaKey) || event.altKey || event.key.toLowerCase() !== "s") return;
       event.preventDefault();
-      if (!this.read_only) this.save();
+      if (!this.read_only) event.shiftKey ? this.open() : this.save();
     });
     // Changes that are kept are not lost with the page.
     window.addEventListener("beforeunload", (event) => { if (this.now.unsaved && !this.now.kept) event.preventDefault(); });
   }
 
+  open() { if (!this.read_only && !this.dialog.open) this.dialog.showModal(); }
+
   begin(scene) {
     this.read_only = scene.read_only;
-    this.section.hidden = this.button.hidden = scene.read_only;
+    this.button.hidden = scene.read_only;
     this.asked = false;
     this.closed = null;
     if (scene.keep) this.told(scene.keep);
@@ -55,7 +55,6 @@ export class Keep {
     const before = this.now.name;
     this.now = keep;
     if (keep.name !== before) this.name.value = keep.name ?? "";  // an empty field is one that somebody is filling
-    this.discard.disabled = !keep.unsaved;
     this.title(keep.unsaved);
     const is = keep.unsaved ? keep.kept ? "unsaved" : "not kept" : "saved";
     if (is !== this.is) {  // otherwise the text may say why saving failed
@@ -75,7 +74,7 @@ export class Keep {
     this.note.dataset.what = what;
     const button = (id, text, onclick) => make("button", { id, textContent: text, onclick });
     if (old) this.note.replaceChildren(words.old(old), " ", button("restore_old", words.restore, () => this.say({ type: "kept", restore: true })), " ",
-      button("forget_old", words.forget, () => { if (window.confirm(words.forget_asks(old))) this.say({ type: "kept", restore: false }); }));
+      button("forget_old", words.forget, async () => { if (await question(words.forget_asks(old), words.forget, texts.cancel)) this.say({ type: "kept", restore: false }); }));
     else this.note.replaceChildren(words.restored(restored), " ", button("drop_restored", words.discard, () => this.drop()), " ",
       button("close_note", texts.close, () => { this.closed = what; this.notice(); }));
   }
@@ -85,24 +84,28 @@ export class Keep {
     this.asked = true;
     this.say({ type: "save", name: name || null, camera, replace });
   }
-  drop() { if (window.confirm(words.discard_asks)) this.say({ type: "discard" }); }
+  async drop() { if (this.now.unsaved && await question(words.discard_asks, words.discard, texts.cancel)) this.say({ type: "discard" }); }
 
-  asks({ name, camera, why }) {
+  async asks({ name, camera, why }) {
     this.asked = false;
-    if (window.confirm(words.replace_asks(name, why))) this.save(name, true, camera);
+    if (await question(words.replace_asks(name, why), words.replace, texts.cancel)) this.save(name, true, camera);
   }
   saved({ name, file }) {
     this.asked = false;
     this.said.textContent = words.saved(file);
+    tell(words.saved(file));
+    this.dialog.close();
     this.just_saved = true;
     this.name.value = name;
     this.name.removeAttribute("aria-invalid");
   }
-  // Shows why the program could not save.
+  // Shows why the program could not save; returns whether it was asked to.
   failed(text) {
-    if (!this.asked) return;
+    if (!this.asked) return false;
     this.asked = false;
     this.said.textContent = text;
+    if (!this.dialog.open) this.dialog.showModal();
     if (text.startsWith("name")) this.name.setAttribute("aria-invalid", "true");
+    return true;
   }
 }

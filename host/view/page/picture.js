@@ -14,6 +14,26 @@ for (let i = 0; i <= STEPS; ++i) {
   byte_of[i] = Math.round(255 * (v <= 0.0031308 ? 12.92 * v : 1.055 * v ** (1 / 2.4) - 0.055));
 }
 
+// Returns sums over 5 x 5 pixels (fewer at the edge) of one of three interleaved channels.
+function box_sums(values, width, height) {
+  const rows = new Float32Array(width * height), out = new Float32Array(width * height), reach = 2;
+  const pass = (from, to, count, step, lines, stride) => {
+    for (let line = 0; line < lines; ++line) {
+      let sum = 0;
+      const at = (i) => from[line * stride + i * step];
+      for (let i = 0; i < Math.min(reach, count); ++i) sum += at(i);
+      for (let i = 0; i < count; ++i) {
+        if (i + reach < count) sum += at(i + reach);
+        if (i > reach) sum -= at(i - reach - 1);
+        to[line * stride + i * step] = sum;
+      }
+    }
+  };
+  pass(values, rows, width, 1, height, width);
+  pass(rows, out, height, width, width, 1);
+  return out;
+}
+
 async function inflated(bytes) {
   const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("deflate"));
   return new Uint8Array(await new Response(stream).arrayBuffer());
@@ -65,11 +85,28 @@ export class Picture {
     return true;
   }
 
+  // Returns the colours (linear, three a pixel). One sample's hue is mostly noise, so each pixel has that of its 5 x 5
+  // neighbours at its own brightness.
+  linear() {
+    const n = this.width * this.height, out = new Float32Array(3 * n);
+    for (let i = 0; i < 3 * n; ++i) out[i] = float_of_half[this.color[i]];
+    if (this.samples > 1 || this.is_denoised) return out;
+    const channel = new Float32Array(n), sums = [0, 1, 2].map((c) => {
+      for (let i = 0; i < n; ++i) channel[i] = out[3 * i + c];
+      return box_sums(channel, this.width, this.height);
+    });
+    for (let i = 0; i < n; ++i) {
+      const own = 0.2126 * out[3 * i] + 0.7152 * out[3 * i + 1] + 0.0722 * out[3 * i + 2], near = 0.2126 * sums[0][i] + 0.7152 * sums[1][i] + 0.0722 * sums[2][i];
+      for (let c = 0; c < 3; ++c) out[3 * i + c] = near > 0 ? own * Math.max(0, sums[c][i]) / near : own;
+    }
+    return out;
+  }
+
   // Returns R G B A bytes for the screen. "film": as in the program's previews (docs/output.md).
   shown(exposure, curve) {
-    const n = this.width * this.height, out = new Uint8ClampedArray(4 * n), gain = 2 ** exposure, color = this.color;
+    const n = this.width * this.height, out = new Uint8ClampedArray(4 * n), gain = 2 ** exposure, color = this.linear();
     for (let i = 0; i < n; ++i) {
-      let r = gain * float_of_half[color[3 * i]], g = gain * float_of_half[color[3 * i + 1]], b = gain * float_of_half[color[3 * i + 2]];
+      let r = gain * color[3 * i], g = gain * color[3 * i + 1], b = gain * color[3 * i + 2];
       if (curve === "film") {
         const m = Math.max(r, g, b);
         if (m > 0.5) {
@@ -88,18 +125,19 @@ export class Picture {
     return out;
   }
 
-  // Marks where things of `chosen` (object ids) end: their pixels next to others.
-  outline(chosen) {
+  // Marks where things of `chosen` (object ids) end: their pixels next to others; in white the thing that is hovered over.
+  outline(chosen, hovered = null) {
     const { width, height, objects } = this, out = new Uint8ClampedArray(4 * width * height);
     if (!objects) return out;
-    const is = (x, y) => x >= 0 && y >= 0 && x < width && y < height && chosen.has(objects[y * width + x]);
+    const is = (x, y) => x >= 0 && y >= 0 && x < width && y < height;
     for (let y = 0; y < height; ++y)
       for (let x = 0; x < width; ++x) {
         const i = y * width + x;
-        if (!chosen.has(objects[i])) continue;
+        const is_chosen = chosen.has(objects[i]);
+        if (!is_chosen && objects[i] !== hovered) continue;
         const o = objects[i], near = (dx, dy) => is(x + dx, y + dy) && objects[(y + dy) * width + x + dx] === o;
         if (near(1, 0) && near(-1, 0) && near(0, 1) && near(0, -1)) continue;
-        out.set([255, 140, 60, 255], 4 * i);
+        out.set(is_chosen ? [255, 157, 59, 255] : [255, 255, 255, 150], 4 * i);
       }
     return out;
   }

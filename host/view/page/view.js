@@ -1,35 +1,43 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 import { Camera, add, dot, length, mul, sub, unit } from "./camera.js";
+import { tell } from "./dialog.js";
+import { Panel, dress, menu } from "./dock.js";
 import { Edits } from "./edit.js";
 import { Forms } from "./forms.js";
-import { inspect } from "./inspector.js";
+import { Gizmo } from "./gizmo.js";
+import { icon } from "./icons.js";
+import { Inspector } from "./inspector.js";
 import { Keep } from "./keep.js";
+import { KEYS, action_of, is_taken } from "./keys.js";
+import { complain, scrubs, trouble_with, value_of } from "./numbers.js";
 import { Picture } from "./picture.js";
+import { Progress } from "./progress.js";
 import { LAYOUTS, arranged, share, view_pixel } from "./stereo.js";
 import { texts } from "./texts.js";
+import { Notes, Tools } from "./tools.js";
 
 const $ = (id) => document.getElementById(id);
 const stage = $("stage"), picture_canvas = $("picture"), marks = $("marks");
-const picture = new Picture(), right_picture = new Picture(), chosen = new Set(), waiting = new Map();
+const picture = new Picture(), right_picture = new Picture(), chosen = new Set(), waiting = new Map(), progress = new Progress();
 let scene = null, camera = null, world_up = [0, 0, 1], center = [0, 0, 0], radius = 1;
-let socket = null, number = 0, past = [], future = [], kept = [], under_asked = false, under_next = null, under_hit = null;
+let socket = null, number = 0, past = [], future = [], kept = [], under_asked = false, under_next = null, under_hit = null, hovered = null;
 
 // --- Words ---
 
-for (const node of document.querySelectorAll("[data-text]")) node.textContent = texts[node.dataset.text];
+dress();
 stage.setAttribute("aria-label", texts.picture);
+for (const [id, text] of [["search", "search"], ["tree", "things"], ["light", "light"], ["texture", "texture"], ["new-light", "new_light"], ["new-texture", "new_texture"], ["new-material", "new_material"], ["palette", "palette"], ["hidden", "hide"], ["file-tools", "menu"], ["view-tools", "lens"], ["done", "samples_done"], ["compass", "axis"]])
+  $(id).setAttribute("aria-label", texts[text]);
 $("search").placeholder = texts.search;
-$("search").setAttribute("aria-label", texts.search);
-$("axis").setAttribute("aria-label", texts.axis);
-$("kept").setAttribute("aria-label", texts.kept);
-$("tree").setAttribute("aria-label", texts.things);
-for (const [id, text] of [["light", "light"], ["texture", "texture"], ["new-light", "new_light"], ["new-texture", "new_texture"], ["new-material", "new_material"], ["palette", "palette"], ["hidden", "hide"]]) $(id).setAttribute("aria-label", texts[text]);
 $("palette").setAttribute("role", "group");
-for (const [value, text] of Object.entries(texts.axes)) $("axis").add(new Option(text, value));
 for (const value of LAYOUTS) $("stereo").add(new Option(texts.stereos[value], value));
 for (const [value, text] of Object.entries(texts.curves)) $("curve").add(new Option(text, value));
-for (const [key, what] of texts.list) $("list").append(Object.assign(document.createElement("dt"), { textContent: key }), Object.assign(document.createElement("dd"), { textContent: what }));
+for (const [key, what] of [...texts.mouse, ...KEYS.map(([action, ...keys]) => [keys.join(", "), texts.actions[action]])])
+  $("list").append(Object.assign(document.createElement("dt"), { textContent: key }), Object.assign(document.createElement("dd"), { textContent: what }));
+
+const panel = new Panel();
+const gizmo = new Gizmo($("gizmo"), (name) => along(name));
 
 // --- The program ---
 
@@ -40,13 +48,14 @@ function ask(pixel, all, reference, done) {
   say({ type: "ask", number, x: pixel[0], y: pixel[1], eye: pixel[2] ?? 0, all, reference });
 }
 
+// The answer to a change that is refused is its error, which is said; `done` receives it too.
 function edit(what, goes_on = false, done = () => {}) {
   waiting.set(++number, done);
   say({ type: "edit", number, goes_on, ...what });
 }
 
 const forms = new Forms({
-  edit, find: $, chosen: () => [...chosen], select: (ids) => choose_all(ids),
+  edit, find: $, chosen: () => [...chosen], adds_shape: (what) => edits.add(what), paints: (surface, material) => edits.paint(surface, material), under: () => under_hit,
   ask: (part, done) => { waiting.set(++number, done); say({ type: "form", number, ...part }); },
   // New things appear on the surface under the cursor, or where the camera looks.
   place: (hit) => {
@@ -62,13 +71,23 @@ const forms = new Forms({
 });
 
 const edits = new Edits({
-  shown: (...what) => forms.thing(...what), click: (event) => click(event),
-  say, view: () => camera, stage, find: $,
+  edit, shown: (...what) => forms.thing(...what), click: (event) => click(event), chose: (ids) => choose_all(ids),
+  view: () => camera, stage, find: $, shape_count: () => scene.shape_count,
   describe: (id, primitive, done) => { waiting.set(++number, done); say({ type: "describe", number, id, primitive }); },
+});
+const notes = new Notes(stage, (p) => edits.project(p), $("hint"), $("forget-measures"));
+const draw_notes = () => notes.draw(camera && !camera.separation);
+const inspector = new Inspector((ray) => { notes.ray = ray; draw_notes(); });
+const tools = new Tools($("rail"), (name) => {
+  edits.tool = name;
+  $("hint").hidden = !texts.hints[name];
+  $("hint").firstChild.textContent = texts.hints[name] ?? "";
+  $("forget-measures").hidden = name !== "measure" || !notes.measures.length;
+  if (camera) edits.draw();
 });
 
 const keep = new Keep({
-  say, stage, tools: $("tools"), aside: document.querySelector("aside"),
+  say, button: $("save"), banners: $("banners"),
   title: (unsaved) => { if (scene) document.title = `${unsaved ? "• " : ""}${scene.name} - Caplet`; $("name").textContent = `${unsaved ? "• " : ""}${scene?.name ?? ""}`; },
 });
 
@@ -77,7 +96,7 @@ function connect() {
   const opened = new WebSocket(location.href.replace(/^http/, "ws").replace(/[^/]*$/, "") + "socket");
   opened.binaryType = "arraybuffer";
   let turn = Promise.resolve(), came = false;
-  opened.onopen = () => { socket = opened; came = true; $("lost").hidden = true; lost_since = 0; waiting.clear(); under_asked = edits.busy = false; say({ type: "seen", seen: !document.hidden }); };
+  opened.onopen = () => { socket = opened; came = true; $("lost").hidden = true; lost_since = 0; waiting.clear(); under_asked = false; edits.reset(); say({ type: "seen", seen: !document.hidden }); };
   opened.onmessage = ({ data }) => {
     turn = turn.then(() => typeof data === "string" ? told(JSON.parse(data)) : binary(data)).catch((error) => console.error(error));
   };
@@ -96,8 +115,7 @@ function told(message) {
   if (message.type === "denoise") return denoises(message.on);
   if (message.type === "looked") return void (camera && camera_of(message));
   if (message.type === "error") {
-    keep.failed(message.text);
-    $("state").textContent = message.text;
+    if (!keep.failed(message.text)) tell(message.text);
     waiting.get(message.number)?.({ error: message.text });
     return void waiting.delete(message.number);
   }
@@ -128,7 +146,10 @@ function edited(message) {
   if (message.scene) {
     const { camera: _, ...now } = message.scene;
     Object.assign(scene, now);
-    if (message.renumbered) choose(null, false);
+    if (message.renumbered) {
+      picture.objects = right_picture.objects = hovered = null;  // they have the old numbers
+      edits.renumber();
+    }
     fill_tree();
   }
   scene.samples = message.samples;
@@ -156,7 +177,9 @@ function begin(message) {
     const along = dot(sub(center, camera.eye), unit(camera.forward));
     if (!camera.parallel) camera.target = add(camera.eye, mul(unit(camera.forward), along > 0 ? along : radius));
     past = []; future = []; chosen.clear();
+    view_of_link();
   }
+  notes.unit = scene.unit ?? "";
   edits.read_only = scene.read_only;
   document.body.classList.toggle("read-only", scene.read_only);
   denoises(scene.denoise);
@@ -185,6 +208,7 @@ function camera_of(message) {
   if (!now.parallel) now.target = add(now.eye, mul(unit(now.forward), camera.distance()));
   camera = now;
   edits.draw();
+  draw_notes();
   show_lens();
 }
 
@@ -192,12 +216,15 @@ function show_lens() {
   if (!camera.separation && $("stereo").value !== "off") $("stereo").value = "off";
   if (camera.separation && $("stereo").value === "off") $("stereo").value = "sbs";
   $("pair").hidden = !camera.separation;
-  $("separation").value = +camera.separation.toPrecision(6);
-  $("convergence").value = +camera.convergence.toPrecision(6);
+  // A number that is typed stays as it is.
+  const put = (id, text) => { if (document.activeElement !== $(id) && !$(id).dataset.moving) $(id).value = text; };
+  put("separation", +camera.separation.toPrecision(6));
+  put("convergence", +camera.convergence.toPrecision(6));
   $("parallel").setAttribute("aria-pressed", String(camera.parallel));
-  $("fov").value = (camera.fov * 180 / Math.PI).toFixed(1);
-  $("radius").value = +camera.lens_radius.toPrecision(6);
-  $("focus").value = +camera.focal_distance.toPrecision(6);
+  gizmo.draw(camera);
+  put("fov", (camera.fov * 180 / Math.PI).toFixed(1));
+  put("radius", +camera.lens_radius.toPrecision(6));
+  put("focus", +camera.focal_distance.toPrecision(6));
 }
 
 let looked = "";
@@ -209,6 +236,7 @@ function look() {
   const message = { type: "look", width, height, world_from_camera: camera.matrix(), fov: camera.fov, lens_radius: camera.lens_radius, focal_distance: camera.focal_distance, orthographic: camera.parallel ? camera.half() : 0, separation: camera.separation, convergence: camera.convergence };
   const text = JSON.stringify(message);
   edits.draw();
+  draw_notes();
   show_lens();
   $("undo").disabled = !past.length;
   $("redo").disabled = !future.length;
@@ -223,12 +251,32 @@ function change(what) { remember(); what(); look(); }
 function undo(from, to) { if (!from.length) return; to.push(camera.copy()); camera = from.pop(); look(); }
 const home = () => change(() => { const target = camera.target; camera = new Camera(scene.home); if (!camera.parallel) camera.target = target; });
 const fit = () => change(() => camera.fit(center, radius));
+// Frames what is selected, or everything.
+function frame() {
+  if (!edits.thing || !chosen.size) return fit();
+  change(() => camera.fit(edits.center(), edits.size() * 1.2));
+}
 function along(name) {
-  if (!name) return;
+  if (!camera) return;
   const axis = "xyz".indexOf(name[1]), from = [0, 0, 0];
   from[axis] = name[0] === "+" ? -1 : 1;
   const up = Math.abs(dot(from, world_up)) > 0.5 ? [0, 1, 0, 0].slice(axis === 1 ? 1 : 0).slice(0, 3) : world_up;
   change(() => camera.look(from, up, center, radius));
+}
+// Looks from a side that depends on which way is up: where z is, the front is -y; where y is, it is +z.
+function side(name) {
+  const up = "xyz"[world_up.map(Math.abs).indexOf(1)], opposite = (axis) => (axis[0] === "+" ? "-" : "+") + axis[1];
+  const top = (world_up["xyz".indexOf(up)] > 0 ? "+" : "-") + up, front = { x: "+z", y: "+z", z: "-y" }[up], right = up === "x" ? "+y" : "+x";
+  along({ top, below: opposite(top), front, rear: opposite(front), right, left: opposite(right) }[name]);
+}
+// A link's view is in its part behind #, which no server sees.
+function view_of_link() {
+  if (!location.hash.startsWith("#view=")) return;
+  try { camera_of(JSON.parse(decodeURIComponent(location.hash.slice(6)))); } catch { tell(texts.bad_link); }
+}
+function copy_link() {
+  const view = { world_from_camera: camera.matrix(), fov: camera.fov, lens_radius: camera.lens_radius, focal_distance: camera.focal_distance, orthographic: camera.parallel ? camera.half() : 0 };
+  navigator.clipboard?.writeText(`${location.href.replace(/#.*/, "")}#view=${encodeURIComponent(JSON.stringify(view))}`).then(() => tell(texts.copied), (error) => tell(String(error)));
 }
 
 // --- The picture ---
@@ -245,7 +293,10 @@ function draw() {
   picture_canvas.height = down;
   picture_canvas.getContext("2d").putImageData(new ImageData(bytes, across, down), 0, 0);
   mark();
-  $("state").textContent = picture.scale > 1 ? texts.coarse(picture, scene.device) : texts.state(picture, `${width} × ${height}`, scene.samples, scene.noise, scene.device);
+  const { share: done, seconds } = progress.sees(picture, scene.samples, scene.noise, performance.now() / 1000);
+  $("state").textContent = picture.scale > 1 ? texts.coarse(picture, scene.device) : texts.state(picture, `${width} × ${height}`, scene.samples, scene.noise, seconds, scene.device);
+  $("done").value = done;
+  $("done").hidden = done >= 1;
   stage.dataset.samples = picture.scale > 1 ? 0 : picture.samples;
   stage.dataset.view = picture.view;
   stage.dataset.right = has_right() && right_picture.scale === 1 ? right_picture.samples : 0;
@@ -254,9 +305,9 @@ function draw() {
 function mark() {
   if (picture.scale !== 1 && picture.width) { marks.getContext("2d").clearRect(0, 0, marks.width, marks.height); return; }
   if (!picture.width) return;
-  const is_on = chosen.size && picture.objects;
-  const [width, height, bytes] = arranged(layout() === "anaglyph" ? "off" : layout(), picture.width, picture.height, is_on ? picture.outline(chosen) : new Uint8ClampedArray(4 * picture.width * picture.height),
-    is_on && has_right() && right_picture.objects ? right_picture.outline(chosen) : null);
+  const is_on = (chosen.size || hovered !== null) && picture.objects, shown = (of) => of.outline(chosen, hovered);
+  const [width, height, bytes] = arranged(layout() === "anaglyph" ? "off" : layout(), picture.width, picture.height, is_on ? shown(picture) : new Uint8ClampedArray(4 * picture.width * picture.height),
+    is_on && has_right() && right_picture.objects ? shown(right_picture) : null);
   marks.width = width;
   marks.height = height;
   if (is_on) marks.getContext("2d").putImageData(new ImageData(bytes, width, height), 0, 0);
@@ -269,8 +320,18 @@ function pixel_at(event) {
   return view_pixel(layout(), picture.width, picture.height, [Math.floor((event.clientX - box.left) * scale), Math.floor((event.clientY - box.top) * scale)].map((v) => Math.max(0, v)));
 }
 
+// Returns what the picture's ids say is at a pixel, [object, primitive], where no object is null; null if it has no ids.
+function known_at([x, y, eye]) {
+  const of = eye ? right_picture : picture;
+  if (!of.objects || of.scale !== 1 || x >= of.width || y >= of.height) return null;
+  const i = y * of.width + x;
+  return of.objects[i] < scene.thing_count ? [of.objects[i], of.primitives[i]] : [null, 0];
+}
+
 // Only one query runs at a time: the next one starts after the last answer.
 function hover(pixel) {
+  const over = known_at(pixel)?.[0] ?? null;
+  if (over !== hovered) { hovered = over; mark(); }
   under_next = pixel;
   if (under_asked || !under_next) return;
   under_asked = true;
@@ -284,33 +345,46 @@ function hover(pixel) {
   });
 }
 
-function choose_all(ids) {
+function choose_all(ids, primitive = 0) {
   chosen.clear();
   for (const id of ids) chosen.add(id);
-  for (const item of $("tree").children) item.setAttribute("aria-selected", chosen.has(+item.dataset.id));
-  edits.select([...chosen].sort((a, b) => a - b), 0);
-  mark();
-}
-
-function choose(id, more, primitive = 0) {
-  if (!more) chosen.clear();
-  if (id !== null) chosen.has(id) && more ? chosen.delete(id) : chosen.add(id);
-  for (const item of $("tree").children) item.setAttribute("aria-selected", chosen.has(+item.dataset.id));
+  let first = null;
+  for (const item of $("tree").children) {
+    const is_chosen = chosen.has(+item.dataset.id);
+    item.setAttribute("aria-selected", is_chosen);
+    if (is_chosen) first ??= item;
+  }
+  first?.scrollIntoView({ block: "nearest" });
+  $("chosen-name").textContent = texts.chosen([...chosen].map((id) => scene.things[id]?.name ?? `#${id}`));
   edits.select([...chosen].sort((a, b) => a - b), primitive);
   mark();
 }
 
+function choose(id, more, primitive = 0) {
+  const ids = new Set(more ? chosen : []);
+  if (id !== null) ids.has(id) && more ? ids.delete(id) : ids.add(id);
+  choose_all([...ids], primitive);
+}
+
+// The picture's ids answer at once. The program's answer is for the pixel's middle, and may differ at edges.
 function click(event) {
-  const pixel = pixel_at(event);
+  const pixel = pixel_at(event), more = event.shiftKey, { clientX, clientY } = event;
+  if (tools.now === "inspect") inspect_at(pixel, clientX, clientY);
+  const known = event.altKey || tools.now === "measure" ? null : known_at(pixel);
+  if (known) choose(known[0], more, known[1]);
+  const { selection } = edits;
   ask(pixel, false, false, (told_of) => {
-    const hit = told_of.crossings[0];
-    if (event.altKey && hit) return change(() => { camera.focal_distance = Math.max(1e-6, dot(sub(hit.point, camera.eye), unit(camera.forward))); });
-    choose(hit ? hit.object_id : null, event.shiftKey, hit ? hit.primitive : 0);
+    const hit = told_of.crossings?.[0];
+    if (event.altKey) return hit && change(() => { camera.focal_distance = Math.max(1e-6, dot(sub(hit.point, camera.eye), unit(camera.forward))); });
+    if (tools.now === "measure") return hit && notes.measure(hit.point, more);
+    const id = hit?.object_id ?? null, primitive = hit?.primitive ?? 0;
+    if (!known) return choose(id, more, primitive);
+    if ((known[0] !== id || known[1] !== primitive) && selection === edits.selection && !more) choose(id, false, primitive);
   });
-  ask(pixel, true, true, (told_of) => {
-    inspect(told_of, $("asked"), $("intervals"), $("table"));
-    $("table").dataset.pixel = pixel.slice(0, 2).join();
-  });
+}
+
+function inspect_at(pixel, x, y) {
+  ask(pixel, true, true, (told_of) => { if (told_of.crossings) inspector.show(told_of, x, y); });
 }
 
 // --- The scene's tree ---
@@ -326,7 +400,8 @@ function fill_tree() {
     item.dataset.id = id;
     item.setAttribute("aria-selected", chosen.has(id));
     small.textContent = thing.material ? ` ${thing.material}${thing.primitives > 1 ? `, ${thing.primitives}` : ""}` : "";
-    item.append(thing.name, small);
+    const name = Object.assign(document.createElement("span"), { textContent: thing.name });
+    item.append(name, small);
     rows.push(item);
   });
   $("tree").replaceChildren(...rows);
@@ -336,7 +411,7 @@ function fill_tree() {
 // --- Mouse, touch and keys ---
 
 const pointers = new Map();
-let moved = 0, spread = 0;
+let moved = 0, spread = 0, pressed = 0;
 const pixel_length = () => 2 * camera.distance() * Math.tan(camera.fov / 2) / Math.min(stage.clientWidth, stage.clientHeight);
 
 stage.addEventListener("pointerdown", (event) => {
@@ -345,6 +420,8 @@ stage.addEventListener("pointerdown", (event) => {
   pointers.set(event.pointerId, event);
   if (pointers.size === 1) { moved = 0; remember(); }
   spread = 0;
+  clearTimeout(pressed);
+  if (event.pointerType === "touch" && pointers.size === 1) pressed = setTimeout(() => { if (moved < 4) { moved = Infinity; past.pop(); inspect_at(pixel_at(event), event.clientX, event.clientY); } }, 500);
 });
 stage.addEventListener("pointermove", (event) => {
   if (!camera) return;
@@ -368,6 +445,7 @@ stage.addEventListener("pointermove", (event) => {
 });
 const ended = (event) => {
   if (!pointers.delete(event.pointerId) || pointers.size) return;
+  clearTimeout(pressed);
   if (moved < 4) { past.pop(); if (event.type === "pointerup" && event.button === 0) click(event); }
   look();
 };
@@ -390,58 +468,83 @@ stage.addEventListener("wheel", (event) => {
   look();
 }, { passive: false });
 
-const axes = { 1: "+x", 2: "-x", 3: "+y", 4: "-y", 5: "+z", 6: "-z" };
-stage.addEventListener("keydown", (event) => {
-  if (!camera || event.ctrlKey || event.metaKey) return;
-  const step = 0.08, way = { ArrowLeft: [1, 0], ArrowRight: [-1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] }[event.key];
-  if (way) change(() => event.shiftKey ? camera.pan(...mul(way, -40 * pixel_length())) : camera.orbit(way[0] * step, way[1] * step, world_up));
-  else if (event.key === "+" || event.key === "=") change(() => camera.dolly(0.9));
-  else if (event.key === "-") change(() => camera.dolly(1 / 0.9));
-  else if (event.key === "f") fit();
-  else if (event.key === "h") home();
-  else if (event.key === "z") undo(past, future);
-  else if (event.key === "y") undo(future, past);
-  else if (event.key === "u") $("back").click();
-  else if (event.key === "r") $("again").click();
-  else if (event.key === "d") $("duplicate").click();
-  else if (event.key === "Delete") $("delete").click();
-  else if (event.key === "s") { $("stereo").selectedIndex = ($("stereo").selectedIndex + 1) % LAYOUTS.length; $("stereo").dispatchEvent(new Event("change")); }
-  else if (event.key === "o") $("parallel").click();
-  else if (event.key === "c" && !$("denoise").hidden) $("denoise").click();
-  else if (event.key === "n") forms.add_shape(forms.last_shape ?? forms.lists.shape[0], under_hit);
-  else if (event.key === "x") hide(false);
-  else if (event.key === "i") hide(true);
-  else if (event.key === "a") $("show-all").click();
-  else if (event.key === "Escape") choose(null, false);
-  else if (event.key === "?") $("keys").showModal();
-  else if (axes[event.key]) along(axes[event.key]);
+const arrows = { ArrowLeft: [1, 0], ArrowRight: [-1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
+const press = (id) => () => { if (!$(id).hidden && !$(id).disabled) $(id).click(); };
+const actions = {
+  select: () => tools.take("select"), move: () => tools.take("move"), turn: () => tools.take("turn"), scale: () => tools.take("scale"), measure: () => tools.take("measure"), inspect: () => tools.take("inspect"),
+  frame, all: fit, scene_camera: home, parallel: press("parallel"), ...Object.fromEntries(["front", "right", "top", "rear", "left", "below"].map((name) => [name, () => side(name)])),
+  nearer: () => change(() => camera.dolly(0.9)), farther: () => change(() => camera.dolly(1 / 0.9)), last_view: () => undo(past, future), next_view: () => undo(future, past),
+  undo: () => undo_edit(false), redo: () => undo_edit(true), add: () => forms.add_shape(forms.last_shape ?? forms.lists.shape[0], under_hit), duplicate: () => edits.duplicate(), delete: () => edits.remove(),
+  hide: () => edits.hide(false), isolate: () => edits.hide(true), show_all: () => $("show-all").click(), denoise: press("denoise"), panel: () => panel.toggle(),
+  nothing: () => { if (inspector.is_open) inspector.close(); else { choose(null, false); tools.take("select"); } }, help: () => $("keys").showModal(),
+};
+const changes = ["undo", "redo", "add", "duplicate", "delete", "hide", "isolate", "show_all", "move", "turn", "scale"];
+document.addEventListener("keydown", (event) => {
+  if (!camera || is_taken(event)) return;
+  const way = arrows[event.key], action = action_of(event), is_free = event.target === stage || event.target === document.body;
+  if (way && is_free && !event.ctrlKey && !event.altKey && !event.metaKey)
+    change(() => event.shiftKey ? camera.pan(...mul(way, -40 * pixel_length())) : camera.orbit(0.08 * way[0], 0.08 * way[1], world_up));
+  else if (action && !(scene.read_only && changes.includes(action))) actions[action]();
   else return;
   event.preventDefault();
 });
 
-const hide = (others) => { if (chosen.size) edit({ what: "hide", ids: [...chosen], others }, false, (made) => { if (others && made.ids) choose_all(made.ids); }); };
 $("parallel").onclick = () => { if (camera) change(() => { camera.parallel = !camera.parallel; }); };
-$("hide").onclick = () => hide(false);
-$("isolate").onclick = () => hide(true);
+$("hide").onclick = () => edits.hide(false);
+$("isolate").onclick = () => edits.hide(true);
 $("show-all").onclick = () => { if (!$("hidden-box").hidden) edit({ what: "show", hidden: null }); };
-$("back").onclick = () => say({ type: "undo", again: false });
-$("again").onclick = () => say({ type: "undo", again: true });
+// Undone is what was asked for before, also if it waits.
+const undo_edit = (again) => edits.after(() => say({ type: "undo", again }));
+$("back").onclick = () => undo_edit(false);
+$("again").onclick = () => undo_edit(true);
 $("fit").onclick = fit;
 $("home").onclick = home;
 $("undo").onclick = () => undo(past, future);
 $("redo").onclick = () => undo(future, past);
-$("axis").onchange = (event) => { along(event.target.value); event.target.value = ""; };
-$("help").onclick = () => $("keys").showModal();
 $("exposure").oninput = () => { $("stops").value = $("exposure").value; draw(); };
 $("curve").onchange = draw;
 $("denoise").onclick = () => { const on = $("denoise").getAttribute("aria-pressed") !== "true"; denoises(on); say({ type: "denoise", on }); };
 $("exr").onclick = () => say({ type: "snapshot" });
 $("png").onclick = () => picture_canvas.toBlob((blob) => save(blob, `${scene.name}.png`));
-const fill_kept = () => $("kept").replaceChildren(new Option(texts.kept, ""), ...kept.map((_, i) => new Option(String(i + 1), String(i))));
+$("panel-button").onclick = () => panel.toggle();
+for (const [id, text, keys, work] of [
+  ["menu-save", "save_as", "Ctrl Shift S", () => keep.open()], ["discard", "discard", "", () => keep.drop()], ["menu-fit", "fit", "Home", fit], ["menu-home", "home", "0", home],
+  ["menu-parallel", "parallel", "5", () => $("parallel").click()], ["menu-link", "link", "", copy_link], ["help", "keys", "?", () => $("keys").showModal()],
+]) {
+  const item = Object.assign(document.createElement("button"), { id, role: "menuitem", onclick: () => { if (camera) work(); } });
+  item.append(texts[text], Object.assign(document.createElement("kbd"), { textContent: keys }));
+  if (id === "menu-save" || id === "discard") item.classList.add("edits");
+  $("menu").append(item);
+}
+menu($("menu-button"), $("menu"));
+menu($("add-button"), $("add-menu"));
+menu($("export-button"), $("export-menu"));
+function fill_kept() {
+  $("kept").replaceChildren(...kept.map((view, i) => {
+    const row = document.createElement("li"), go = document.createElement("button"), forget = document.createElement("button");
+    Object.assign(go, { textContent: texts.saved_view(i + 1), onclick: () => change(() => { camera = view.copy(); }) });
+    Object.assign(forget, { className: "icon", title: texts.forget_view(i + 1), onclick: () => { kept = kept.filter((other) => other !== view); fill_kept(); } });
+    forget.setAttribute("aria-label", texts.forget_view(i + 1));
+    forget.append(icon("close"));
+    row.append(go, forget);
+    return row;
+  }));
+}
 $("keep").onclick = () => { if (camera) { kept.push(camera.copy()); fill_kept(); } };
-$("kept").onchange = (event) => { const view = kept[+event.target.value]; if (event.target.value !== "" && view) change(() => { camera = view.copy(); }); event.target.value = ""; };
-fill_kept();
-const bounded = (id, least, most, set) => { $(id).onchange = (event) => { const value = +event.target.value; if (camera && value >= least && value <= most) change(() => set(value)); else look(); }; };
+function bounded(id, low, high, set) {
+  const input = $(id);
+  Object.assign(input.dataset, { low, high });
+  input.onchange = () => {
+    if (!camera) return;
+    const trouble = trouble_with(input.value, 1), value = value_of(input.value);
+    complain(input, trouble || (value < low || value > high ? texts.between(low, high) : ""));
+    if (trouble || value < low || value > high) return;
+    if (input.dataset.moving !== "1") remember();
+    set(value);
+    look();
+  };
+  scrubs(input.previousElementSibling, input);
+}
 bounded("fov", 1, 170, (value) => { camera.fov = value * Math.PI / 180; });
 bounded("radius", 0, 1e9, (value) => { camera.lens_radius = value; });
 bounded("separation", 1e-9, 1e9, (value) => { camera.separation = value; });

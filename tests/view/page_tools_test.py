@@ -1,0 +1,279 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+# Copyright Caplet authors
+"""Tools, keys, the panel and actions that do not wait in the page of `caplet view`, in a real browser.
+
+usage: page_tools_test.py PROGRAM SCENES FOLDER [NAME...]   as page_test.py
+"""
+import json
+import math
+import pathlib
+import random
+import subprocess
+import sys
+
+import page_test
+from page_forms_test import PAGES, work
+from page_test import RATIO, ActionChains, By, Keys, page
+
+HANDLES = "return [...document.querySelectorAll('#handles [data-handle]')].map((n) => n.dataset.handle)"
+KINDS = {"move": {"x", "y", "z", "plane", "plane-x", "plane-y", "plane-z"}, "turn": {"turn-x", "turn-y", "turn-z"}, "scale": {"scale"}}
+
+
+def tools(program, scenes, out):
+    """Each tool has its key and shows its own handles; Escape selects nothing and takes the first tool."""
+    with work(program, out) as at:
+        shown = at.shown
+        at.choose("box")
+        for key, name in (("g", "move"), ("r", "turn"), ("s", "scale"), ("v", "select"), ("m", "measure"), ("i", "inspect")):
+            shown.press(key)
+            pressed = shown.script("return [...document.querySelectorAll('#rail [aria-pressed=true]')].map((b) => b.id)")
+            assert pressed == [f"tool-{name}"], (key, pressed)
+            wanted = KINDS.get(name, set().union(*KINDS.values()) if name == "select" else set())
+            assert set(shown.script(HANDLES)) == wanted, (name, shown.script(HANDLES))
+            assert shown.find("hint").is_displayed() == (name in ("measure", "inspect"))
+        shown.press(Keys.ESCAPE)
+        assert not shown.find("edit").is_displayed() and shown.find("nothing-chosen").is_displayed()
+        assert shown.find("tool-select").get_attribute("aria-pressed") == "true"
+        # Letters that are typed in a field are no keys of tools.
+        shown.find("search").send_keys("ri")
+        assert shown.find("tool-select").get_attribute("aria-pressed") == "true"
+        assert shown.words("#tree li") == [], shown.words("#tree li")
+
+
+def measures(program, scenes, out):
+    """A distance and an angle between points of surfaces, which `caplet pick` gives for the same pixels."""
+    with work(program, out) as at:
+        shown = at.shown
+        width, height, _ = shown.pixels()
+        pixels = [(int(x * width), int(y * height)) for x, y in ((0.3, 0.8), (0.5, 0.5), (0.6, 0.75))]
+        points = []
+        for x, y in pixels:
+            said = subprocess.run([program, "pick", out / "forms.pbrt", "--pixel", f"{x},{y}", "--size", f"{width}x{height}", "--all", "--json"], check=True, capture_output=True, text=True).stdout
+            points.append(json.loads(said)["crossings"][0]["point"])
+        shown.press("m")
+        for x, y in pixels[:2]:
+            shown.mouse(x, y).click().perform()
+        number = shown.until("a distance", lambda: shown.script("return document.querySelector('#notes text')?.textContent"))
+        assert abs(float(number) - math.dist(*points[:2])) <= 6e-4 * float(number), (number, points)
+        assert not shown.words("#tree [aria-selected=true]"), "a measure selects nothing"
+        shown.mouse(*pixels[2]).key_down(Keys.SHIFT).click().key_up(Keys.SHIFT).perform()
+        angle = shown.until("an angle", lambda: (t := shown.script("return document.querySelector('#notes text')?.textContent")) and t.endswith("°") and t)
+        a, b = ([p - q for p, q in zip(points[i], points[1])] for i in (0, 2))
+        wanted = math.degrees(math.acos(sum(p * q for p, q in zip(a, b)) / math.hypot(*a) / math.hypot(*b)))
+        assert abs(float(angle[:-1]) - wanted) < 0.06, (angle, wanted)
+        shown.picture(out / "measured.png")
+        # Notes stay at their points when the camera moves.
+        before = shown.script("const c = document.querySelector('#notes circle'); return [c.getAttribute('cx'), c.getAttribute('cy')]")
+        shown.press(Keys.ARROW_LEFT)
+        after = shown.script("const c = document.querySelector('#notes circle'); return [c.getAttribute('cx'), c.getAttribute('cy')]")
+        assert math.dist([float(v) for v in before], [float(v) for v in after]) > 5
+        shown.find("forget-measures").click()
+        assert not shown.script("return document.querySelectorAll('#notes circle').length")
+
+
+def inspects(program, scenes, out):
+    """The inspector opens beside the cursor, stays where it is dragged to, and leaves its ray in the picture."""
+    with work(program, out) as at:
+        shown = at.shown
+        width, height, _ = shown.pixels()
+        shown.press("i")
+        shown.mouse(width // 2, height // 2).click().perform()
+        box = shown.until("the inspector", lambda: shown.find("inspector").is_displayed() and shown.find("inspector").rect)
+        assert box["x"] > width / 2 / RATIO and box["x"] < width / 2 / RATIO + 80, box
+        assert len(shown.script("return [...document.querySelectorAll('#notes circle.ray-in')]")) == len(shown.words("#table tbody tr")) > 2
+        shown.press(Keys.ARROW_LEFT)  # along the ray itself it is a point
+        ends = shown.script("const l = document.querySelector('#notes line.ray'); return ['x1', 'x2', 'y1', 'y2'].map((n) => +l.getAttribute(n))")
+        assert math.hypot(ends[0] - ends[1], ends[2] - ends[3]) > 10, ends
+        shown.picture(out / "ray.png")
+        ActionChains(shown.driver, duration=20).click_and_hold(shown.driver.find_element(By.CSS_SELECTOR, "#inspector h2")).move_by_offset(-80, -40).release().perform()
+        moved = shown.find("inspector").rect
+        assert abs(moved["x"] - box["x"] + 80) < 3 and abs(moved["y"] - box["y"] + 40) < 3, (box, moved)
+        shown.script("Object.defineProperty(navigator, 'clipboard', { value: { writeText: async (text) => { window.copied = text; } } })")
+        shown.find("copy-ray").click()
+        copied = json.loads(shown.until("the copy", lambda: shown.script("return window.copied")))
+        assert [c["object"] for c in copied["crossings"]][:2] == ["ball", "ball"]
+        shown.press(Keys.ESCAPE)
+        assert not shown.find("inspector").is_displayed() and not shown.script("return document.querySelectorAll('#notes line').length")
+
+
+def numbers(program, scenes, out):
+    """Numbers take arithmetic, say in words what is wrong, and change when their name is dragged; Escape takes the drag back."""
+    with work(program, out) as at:
+        shown = at.shown
+        at.choose("pill")
+
+        def typed(name, words):
+            field = shown.find(name)
+            field.clear()
+            field.send_keys(words, Keys.TAB)
+
+        def radius():
+            return float(shown.find("radius0").get_attribute("value"))
+
+        typed("radius0", "2 * 0.175")
+        at.changed("a radius by arithmetic")
+        assert abs(radius() - 0.35) < 1e-6
+        for words, why in (("0.3.1", "0.3.1"), ("(1", "(1"), ("", "")):
+            typed("radius0", words)
+            assert bool(shown.find("radius0").get_attribute("aria-invalid")) == bool(why)
+            assert not why or why in shown.text("radius0-error"), shown.text("radius0-error")
+        shown.press(Keys.ESCAPE)
+        at.choose("pill")
+        shown.until("the radius", lambda: shown.find("radius0").get_attribute("value") == "0.35")
+        label, edits = shown.driver.find_element(By.CSS_SELECTOR, "#capsule .scrubs"), at.edits()
+        ActionChains(shown.driver, duration=20).click_and_hold(label).move_by_offset(20, 0).move_by_offset(20, 0).release().perform()
+        shown.until("the program's word", lambda: at.edits() > edits)
+        at.changed("a radius by dragging its name")
+        shown.until("40 steps of a 200th", lambda: abs(radius() - 0.35 * 1.2) < 1e-5, 5)
+        ActionChains(shown.driver, duration=20).click_and_hold(label).move_by_offset(30, 0).send_keys(Keys.ESCAPE).release().perform()
+        shown.until("the radius before", lambda: abs(radius() - 0.42) < 1e-5)
+        assert shown.find("edit").is_displayed(), "Escape ended the drag, not the selection"
+        shown.tab("camera")
+        typed("fov", "500")
+        assert "170" in shown.text("fov-error"), shown.text("fov-error")
+        typed("fov", "40/2")
+        at.changed("half the field of view")
+        shown.press(",")  # the view before
+        at.undo_all()
+
+
+def never_waits(program, scenes, out):
+    """Fifty actions at once, and fifty with pauses of some milliseconds: each does what it was asked to, to what was selected."""
+    for seed, pause in ((3, 0), (4, 0), (5, 12)):
+        draw = random.Random(seed)
+        with work(program, out) as at:
+            shown = at.shown
+            things, selected, steps, copies = ["floor", "ball", "box", "pill"], None, [], 0
+            for _ in range(50):
+                what = draw.choice(["select", "select", "duplicate", "duplicate", "delete", "hide", "add", "move"])
+                if what == "delete" and draw.random() < 0.5:
+                    what = "duplicate"
+                name = draw.choice(["floor", "ball", "box", "pill"])
+                steps.append([what, name])
+                # The same on the list of names; things are known by their place in a list of lists.
+                if what == "select":
+                    selected = next((t for t in things if t is name or t == name), None)
+                elif what == "add":
+                    things.append(selected := f"sphere {len(steps)}")
+                elif selected is not None and what == "duplicate":
+                    copies += 1
+                    things.append(selected := f"{selected.split('#')[0]} copy#{copies}" if not selected.startswith("sphere ") else f"sphere copy#{copies}")
+                elif selected is not None and what in ("delete", "hide"):
+                    things = [t for t in things if t is not selected]
+                    selected = None
+            wanted = sorted(t.split("#")[0] for t in things if not t.startswith("sphere"))
+            spheres = sum(t.startswith("sphere") for t in things)
+            shown.driver.set_script_timeout(60)
+            shown.driver.execute_async_script("""const [steps, pause, done] = arguments, $ = (id) => document.getElementById(id);
+                const key = (key, more = {}) => document.getElementById('stage').dispatchEvent(new KeyboardEvent('keydown', { key, code: '', bubbles: true, ...more }));
+                (async () => {
+                  for (const [what, name] of steps) {
+                    if (what === 'select') {
+                      const item = [...$('tree').children].find((i) => i.firstChild.textContent === name);
+                      item ? item.click() : key('Escape');
+                    } else if (what === 'duplicate') key('d', { ctrlKey: true });
+                    else if (what === 'delete') key('Delete');
+                    else if (what === 'hide') key('h');
+                    else if (what === 'add') document.querySelector('[data-shape=sphere]').click();
+                    else { $('move').value = '0 0 0.01'; $('move').dispatchEvent(new Event('change')); }
+                    if (pause) await new Promise((r) => setTimeout(r, pause));
+                  }
+                  done();
+                })();""", steps, pause)
+
+            def names():
+                return shown.script("return [...document.querySelectorAll('#tree li')].map((i) => i.firstChild.textContent)")
+
+            def is_right():
+                now = names()
+                known = sorted(n for n in now if not n.startswith("sphere"))
+                return known == wanted and len(now) - len(known) == spheres
+            try:
+                shown.until("what fifty actions make", is_right, 30)
+            except AssertionError as error:
+                raise AssertionError(f"{error}; seed {seed}: {sorted(names())}, wanted {wanted} and {spheres} spheres; {steps}") from error
+            chosen = shown.words("#tree [aria-selected=true] > :first-child")
+            assert len(chosen) == (selected is not None), (chosen, selected)
+            at.undo_all()
+
+
+def links(program, scenes, out):
+    """A link holds a view: another page that opens it shows it."""
+    with work(program, out) as at:
+        shown = at.shown
+        shown.script("Object.defineProperty(navigator, 'clipboard', { value: { writeText: async (text) => { window.copied = text; } } })")
+        shown.press(Keys.ARROW_LEFT)
+        shown.press("5")
+        at.changed("another view")
+        turned = at.before
+        shown.find("menu-button").click()
+        shown.find("menu-link").click()
+        link = shown.until("the link", lambda: shown.script("return window.copied"))
+        shown.press("0")
+        shown.until("the scene's camera", lambda: shown.apart(at.first, 2) == 0)
+        with page(link) as other:
+            other.until("the link's view", lambda: other.pixels()[:2] == turned[:2] and other.apart(turned, 2) == 0)
+        shown.tab("camera")
+        shown.find("keep").click()
+        shown.press("7")
+        shown.until("from above", lambda: shown.apart(turned, 2) > 5)
+        shown.driver.find_element(By.CSS_SELECTOR, "#kept button").click()
+        shown.until("the view that was saved", lambda: shown.apart(turned, 2) == 0)
+
+
+LAYOUT = """const box = (id) => document.getElementById(id).getBoundingClientRect(), tops = [...document.querySelectorAll('#bar button')].filter((b) => b.checkVisibility()).map((b) => b.getBoundingClientRect().top);
+    const stage = box('stage'), covered = ['file-tools', 'view-tools', 'rail', 'line', 'under', 'hint'].map(box).reduce((sum, b) => sum + b.width * b.height, 0);
+    return { rows: new Set(tops.map(Math.round)).size, share: covered / stage.width / stage.height, panel: document.getElementById('panel').checkVisibility(), stage: stage.width, tops: tops.length };"""
+
+
+def screens(program, scenes, out):
+    """Wide, middle and phone, dark and light: one row of buttons, the panel beside, over or below the picture; axe-core finds nothing."""
+    found = sorted(pathlib.Path(program).resolve().parents[2].glob("python-env/lib/*/site-packages/axe_core_python/axe.min.js"))
+    if not found:
+        print("SKIPPED: axe-core (PyPI: axe-core-python) is not in python-env")
+    with work(program, out) as at:
+        shown = at.shown
+        at.choose("pill")
+        for scheme in ("dark", "light"):
+            shown.driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": [{"name": "prefers-color-scheme", "value": scheme}]})
+            for width, height in ((1440, 900), (1008, 700), (390, 844)):
+                shown.driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": width < 700})
+                shown.until("a picture of this width", lambda: shown.script("return document.getElementById('picture').width === Math.round(document.getElementById('stage').clientWidth)"))
+                shown.until_samples(1)
+                shown.picture(out / f"{width}_{scheme}.png")
+                now = shown.script(LAYOUT)
+                assert now["rows"] == 1 and now["tops"] >= 8, now
+                assert now["panel"] == (width >= 1100) and now["share"] < 0.15, now
+                assert now["stage"] == (width - 320 if width >= 1100 else width), now
+                if width < 1100:
+                    shown.press("n")
+                    assert shown.script(LAYOUT)["panel"] and shown.script(LAYOUT)["stage"] == width
+                    shown.picture(out / f"{width}_{scheme}_panel.png")
+                for name in PAGES if found else ():
+                    shown.tab(name)
+                    shown.script(found[0].read_text(encoding="utf-8"))
+                    wrong = shown.driver.execute_async_script("const done = arguments[0]; axe.run(document, { resultTypes: ['violations'] }).then((r) => done(r.violations.map((v) => [v.id, v.nodes.slice(0, 3).map((n) => n.html.slice(0, 160))])))")
+                    assert not wrong, (width, scheme, name, wrong)
+                shown.tab("object")
+                if width < 700:
+                    for part in (1 / 3, 2 / 3, (height - 52) / height):
+                        shown.until(f"a sheet of {part}", lambda: abs(shown.find("panel").rect["height"] / height - part) < 0.01, 5)
+                        shown.find("grip").send_keys(Keys.ENTER)
+                if width < 1100:
+                    shown.press("n")
+        shown.driver.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
+        shown.until("the panel", lambda: shown.find("panel").is_displayed())
+        edge = shown.find("edge")
+        for _ in range(3):
+            edge.send_keys(Keys.ARROW_LEFT)
+        assert shown.find("panel").rect["width"] == 368, shown.find("panel").rect
+        shown.press("n")
+        assert not shown.find("panel").is_displayed()
+
+
+CASES = [tools, measures, inspects, numbers, never_waits, links, screens]
+
+
+if __name__ == "__main__":
+    sys.exit(page_test.main(sys.argv[1:], __doc__, CASES))
