@@ -272,7 +272,74 @@ def screens(program, scenes, out):
         assert not shown.find("panel").is_displayed()
 
 
-CASES = [tools, measures, inspects, numbers, never_waits, links, screens]
+MODULES = """const done = arguments[0], out = {};
+(async () => {
+  const [{ value_of }, { Progress }, { Picture }, { KEYS, action_of }, { texts }] = await Promise.all(['numbers', 'progress', 'picture', 'keys', 'texts'].map((name) => import(`./${name}.js`)));
+  out.values = ['2*0.35', '-(1+2)/4', '1-2-3', '12/4/3', '2+3*4', '(2+3)*4', '1e-3', '.5', '--1', '', '1 2', '3-', '(1', 'x', '2**3'].map((text) => String(value_of(text)));
+  // 64 samples wanted: 4 at the time 10, 20 at 14 are 16 in 4 seconds, so that 44 more take 11.
+  const progress = new Progress(), seen = (view, samples, now, noise = 0, wanted = 0, scale = 1) => progress.sees({ view, samples, noise, scale }, 64, wanted, now);
+  out.times = [seen(1, 4, 10), seen(1, 20, 14), seen(1, 64, 30), seen(2, 1, 31), seen(2, 1, 31, 0, 0, 4)];
+  // A noise of 1 % wanted: 4 % are a sixteenth, 2 % a quarter.
+  out.noises = [seen(3, 1, 0, 0.04, 0.01), seen(3, 4, 3, 0.02, 0.01)];
+  const picture = new Picture(), half = { 0.5: 0x3800, 1: 0x3c00, 0: 0 };
+  Object.assign(picture, { width: 9, height: 7, samples: 1, color: new Uint16Array(3 * 63) });
+  for (let i = 0; i < 63; ++i) picture.color.set([half[1], half[i % 2 ? 1 : 0], half[0]], 3 * i);
+  out.soft = [...picture.linear()];
+  picture.samples = 2;
+  out.hard = [...picture.linear()];
+  const all = KEYS.flatMap(([, ...keys]) => keys);
+  out.twice = all.filter((key, i) => all.indexOf(key) !== i);
+  out.unnamed = KEYS.map(([action]) => action).filter((action) => !texts.actions[action]);
+  out.wrong = KEYS.flatMap(([action, ...keys]) => keys.map((name) => [action, name])).filter(([action, name]) => {
+    const parts = name.split(' '), key = parts.pop(), is = (held) => parts.includes(held), letter = /^[A-Z]$/.test(key);
+    const event = { key: letter && !is('Shift') ? key.toLowerCase() : key, code: /^[0-9]$/.test(key) ? `Numpad${key}` : '', ctrlKey: is('Ctrl'), altKey: is('Alt'), shiftKey: is('Shift') || key === '?', metaKey: false };
+    return action_of(event) !== action;
+  });
+  out.free = [{ key: 'v', ctrlKey: true }, { key: 'c', ctrlKey: true }, { key: 'q' }, { key: 'F5' }].map((event) => action_of(event) ?? null);
+  done(out);
+})();"""
+
+
+def modules(program, scenes, out):
+    """Arithmetic, time left, keys and the hues of one sample by closed forms; the corner's axes by the camera of the file."""
+    with work(program, out) as at:
+        shown = at.shown
+        got = shown.driver.execute_async_script(MODULES)
+        assert got["values"] == ["0.7", "-0.75", "-4", "1", "14", "20", "0.001", "0.5", "1"] + 6 * ["NaN"], got["values"]
+        assert [t["seconds"] for t in got["times"]] == [None, 11, None, None, None], got["times"]
+        assert [t["share"] for t in got["times"]] == [4 / 64, 20 / 64, 1, 1 / 64, 0], got["times"]
+        # A sixteenth, and 3 seconds later a quarter: 3 / (3 / 16) seconds for one, three quarters of it left.
+        assert got["noises"] == [{"share": 1 / 16, "seconds": None}, {"share": 1 / 4, "seconds": 12}], got["noises"]
+        hard, soft = got["hard"], got["soft"]
+        assert hard == [v for i in range(63) for v in (1, i % 2, 0)], hard[:12]
+        for i in range(63):
+            pixels = [9 * y + x for y in range(max(0, i // 9 - 2), min(7, i // 9 + 3)) for x in range(max(0, i % 9 - 2), min(9, i % 9 + 3))]
+            near = [sum(hard[3 * k + c] for k in pixels) for c in range(3)]
+            own, sums = (0.2126 * v[0] + 0.7152 * v[1] + 0.0722 * v[2] for v in (hard[3 * i:3 * i + 3], near))
+            assert all(abs(soft[3 * i + c] - own * near[c] / sums) < 1e-6 for c in range(3)), (i, soft[3 * i:3 * i + 3])
+        assert not got["twice"] and not got["unnamed"] and not got["wrong"], got
+        assert got["free"] == [None, None, None, None], got["free"]
+        # The file's camera: LookAt 4 -5 3  0 0 0.3  0 0 1, mirrored along x as pbrt's are.
+        forward = [v / math.hypot(4, 5, 2.7) for v in (-4, 5, -2.7)]
+        right = [v / math.hypot(forward[0], forward[1]) for v in (forward[1], -forward[0], 0)]
+        up = [right[1] * forward[2] - right[2] * forward[1], right[2] * forward[0] - right[0] * forward[2], right[0] * forward[1] - right[1] * forward[0]]
+        for i, name in enumerate("xyz"):
+            x, y = shown.script("const c = document.querySelector(`#gizmo [aria-label='from +${arguments[0]}'] circle`); return [+c.getAttribute('cx'), +c.getAttribute('cy')]", name)
+            assert abs(x + 28 * right[i]) < 1e-3 and abs(y + 28 * up[i]) < 1e-3, (name, x, y, right, up)
+        shown.press("7")
+        at.changed("from above by its key")
+        above = at.before
+        shown.press("0")
+        shown.until("the scene's camera", lambda: shown.apart(at.first, 2) == 0)
+        shown.driver.find_element(By.CSS_SELECTOR, "#gizmo [aria-label='from +z']").click()
+        shown.until("from above by the corner's axis", lambda: shown.apart(above, 2) == 0)
+        at.choose("pill")
+        shown.press("f")
+        box, (x, y) = shown.find("stage").rect, shown.until("the pill in the middle", lambda: shown.script("const c = document.querySelector('[data-handle=plane]'); return c && [+c.getAttribute('cx'), +c.getAttribute('cy')]"))
+        assert abs(x - box["width"] / 2) < 1 and abs(y - box["height"] / 2) < 1, (x, y, box)
+
+
+CASES = [modules, tools, measures, inspects, numbers, never_waits, links, screens]
 
 
 if __name__ == "__main__":

@@ -572,4 +572,8 @@ $("tree").onkeydown = (event) => {
 };
 document.addEventListener("visibilitychange", () => say({ type: "seen", seen: !document.hidden }));
 new ResizeObserver(look).observe(stage);
+// A window that moves to another screen may have other pixels, and the same size.
+(function watch_pixels() {
+  window.matchMedia(`(resolution: ${window.devicePixelRatio}dppx)`).addEventListener("change", () => { look(); watch_pixels(); }, { once: true });
+})();
 connect();
