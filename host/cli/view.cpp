@@ -42,7 +42,7 @@ struct ViewFlags {
   std::uint16_t port = 0;
   int samples = 0;
   std::optional<double> noise;
-  bool no_browser = false, read_only = false, no_denoise = false, quiet = false;
+  bool no_browser = false, read_only = false, embed = false, no_denoise = false, quiet = false;
 };
 
 /// Opens the desktop's browser, if there is a desktop, and leaves errors to it.
@@ -113,6 +113,7 @@ void run_view(const ViewFlags& options) {
   viewer_options.server.port = options.port;
   viewer_options.server.token =
       options.port ? view::kept_token(options.host, options.port, name) : view::random_token();
+  viewer_options.server.is_embedded = options.embed;
   viewer_options.read_only = options.read_only;
   viewer_options.denoises = !options.no_denoise && has_denoiser();
   viewer_options.samples = options.samples;
@@ -156,6 +157,8 @@ void add_view(CLI::App& app) {
       ->type_name("N");
   command->add_flag("--no-browser", o->no_browser, "Print the address, and open no browser");
   command->add_flag("--read-only", o->read_only, "Let nobody change the scene");
+  command->add_flag("--embed", o->embed,
+                    "Let pages of this machine, as notebooks are, show the viewer in a frame");
   command->option_defaults()->group("Picture");
   command
       ->add_option("--spp", o->samples,

@@ -376,14 +376,18 @@ class Server::State::Connection : public std::enable_shared_from_this<Connection
                                                   : "text/plain; charset=utf-8");
     response_->set(http::field::cache_control, "no-store");
     response_->set("X-Content-Type-Options", "nosniff");
-    response_->set("X-Frame-Options", "DENY");
+    if (!server_.options().is_embedded) response_->set("X-Frame-Options", "DENY");
     response_->set("Referrer-Policy", "no-referrer");
     response_->set("Cross-Origin-Resource-Policy", "same-origin");
-    response_->set("Content-Security-Policy",
-                   "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data: "
-                   "blob:; connect-src 'self'; "
-                   "base-uri 'none'; "
-                   "form-action 'none'; frame-ancestors 'none'");
+    // Notebooks are pages of this machine, or of an editor on it.
+    response_->set(
+        "Content-Security-Policy",
+        fmt::format("default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data: "
+                    "blob:; connect-src 'self'; base-uri 'none'; form-action 'none'; "
+                    "frame-ancestors {}",
+                    server_.options().is_embedded
+                        ? "http://localhost:* http://127.0.0.1:* vscode-webview:"
+                        : "'none'"));
     response_->body() = status == http::status::ok
                             ? std::string(file.text)
                             : std::string(view_of(http::obsolete_reason(status))) + "\n";

@@ -22,6 +22,7 @@ struct ServerOptions {
   std::string host = "127.0.0.1";  // an address of this machine
   std::uint16_t port = 0;          // 0: any free port
   std::string token;               // first part of every path; requests without it are refused
+  bool is_embedded = false;        // pages of this machine may show the page in a frame
   std::size_t most_clients = 16,
               most_connections = 64;  // limits for clients that have sent the token
   std::size_t most_strangers_an_address =

@@ -90,9 +90,9 @@ class Work:
 
 
 @contextlib.contextmanager
-def work(program, out, *options):
+def work(program, out, *options, text=SCENE):
     scene = out / "forms.pbrt"
-    scene.write_text(SCENE)
+    scene.write_text(text)
     for left in out.glob(".forms.*"):  # unsaved changes of a case that failed
         left.unlink()
     with viewer(program, scene, "--spp", "2", *options) as served, page(served.address) as shown:

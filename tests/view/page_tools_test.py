@@ -13,7 +13,7 @@ import subprocess
 import sys
 
 import page_test
-from page_forms_test import PAGES, work
+from page_forms_test import PAGES, SCENE, work
 from page_test import RATIO, ActionChains, By, Keys, page
 
 HANDLES = "return [...document.querySelectorAll('#handles [data-handle]')].map((n) => n.dataset.handle)"
@@ -35,7 +35,12 @@ def tools(program, scenes, out):
         shown.press(Keys.ESCAPE)
         assert not shown.find("edit").is_displayed() and shown.find("nothing-chosen").is_displayed()
         assert shown.find("tool-select").get_attribute("aria-pressed") == "true"
-        # Letters that are typed in a field are no keys of tools.
+        # Letters that are typed in a field or a dialog are no keys of tools.
+        shown.press("?")
+        shown.until("the help", lambda: shown.find("keys").is_displayed())
+        ActionChains(shown.driver).send_keys("g", Keys.ESCAPE).perform()
+        shown.until("no help", lambda: not shown.find("keys").is_displayed())
+        assert shown.find("tool-select").get_attribute("aria-pressed") == "true"
         shown.find("search").send_keys("ri")
         assert shown.find("tool-select").get_attribute("aria-pressed") == "true"
         assert shown.words("#tree li") == [], shown.words("#tree li")
@@ -89,10 +94,15 @@ def inspects(program, scenes, out):
         ActionChains(shown.driver, duration=20).click_and_hold(shown.driver.find_element(By.CSS_SELECTOR, "#inspector h2")).move_by_offset(-80, -40).release().perform()
         moved = shown.find("inspector").rect
         assert abs(moved["x"] - box["x"] + 80) < 3 and abs(moved["y"] - box["y"] + 40) < 3, (box, moved)
+        told = shown.text("asked")
+        shown.mouse(int(0.3 * width), int(0.8 * height)).click().perform()
+        shown.until("another ray", lambda: shown.text("asked") != told)
+        assert shown.find("inspector").rect["x"] == moved["x"], "it stays where it was put"
         shown.script("Object.defineProperty(navigator, 'clipboard', { value: { writeText: async (text) => { window.copied = text; } } })")
         shown.find("copy-ray").click()
         copied = json.loads(shown.until("the copy", lambda: shown.script("return window.copied")))
-        assert [c["object"] for c in copied["crossings"]][:2] == ["ball", "ball"]
+        rows = shown.script("return [...document.querySelectorAll('#table tbody tr')].map((r) => [r.cells[1].textContent, r.cells[2].textContent])")
+        assert [["enters" if c["entering"] else "leaves", c["object"]] for c in copied["crossings"]] == rows and rows, (copied, rows)
         shown.press(Keys.ESCAPE)
         assert not shown.find("inspector").is_displayed() and not shown.script("return document.querySelectorAll('#notes line').length")
 
@@ -138,27 +148,39 @@ def numbers(program, scenes, out):
         at.undo_all()
 
 
+# An instance has a number behind those of all shapes, also of new ones.
+WITH_INSTANCE = SCENE + """
+ObjectBegin "cone"
+Shape "sphere" "float radius" [ 0.4 ]
+ObjectEnd
+Translate 1.5 -1.5 -0.8
+ObjectInstance "cone"
+"""
+
+
 def never_waits(program, scenes, out):
     """Fifty actions at once, and fifty with pauses of some milliseconds: each does what it was asked to, to what was selected."""
     for seed, pause in ((3, 0), (4, 0), (5, 12)):
         draw = random.Random(seed)
-        with work(program, out) as at:
+        with work(program, out, text=WITH_INSTANCE) as at:
             shown = at.shown
-            things, selected, steps, copies = ["floor", "ball", "box", "pill"], None, [], 0
+            known = ["floor", "ball", "box", "pill", "cone"]
+            things, selected, steps, copies = [*known], None, [], 0
             for _ in range(50):
                 what = draw.choice(["select", "select", "duplicate", "duplicate", "delete", "hide", "add", "move"])
                 if what == "delete" and draw.random() < 0.5:
                     what = "duplicate"
-                name = draw.choice(["floor", "ball", "box", "pill"])
+                name = draw.choice(known)
                 steps.append([what, name])
                 # The same on the list of names; things are known by their place in a list of lists.
                 if what == "select":
                     selected = next((t for t in things if t is name or t == name), None)
                 elif what == "add":
-                    things.append(selected := f"sphere {len(steps)}")
+                    things.append(selected := f"sphere#add {len(steps)}")
                 elif selected is not None and what == "duplicate":
                     copies += 1
-                    things.append(selected := f"{selected.split('#')[0]} copy#{copies}" if not selected.startswith("sphere ") else f"sphere copy#{copies}")
+                    name = selected.split("#")[0]  # a new shape has no name, and copies of instances are of the same object
+                    things.append(selected := f"{name}#{copies}" if name in ("cone", "sphere") else f"{name} copy#{copies}")
                 elif selected is not None and what in ("delete", "hide"):
                     things = [t for t in things if t is not selected]
                     selected = None
@@ -270,6 +292,12 @@ def screens(program, scenes, out):
         assert shown.find("panel").rect["width"] == 368, shown.find("panel").rect
         shown.press("n")
         assert not shown.find("panel").is_displayed()
+        shown.driver.refresh()
+        shown.until("the page again", lambda: shown.samples() >= 1)
+        assert not shown.find("panel").is_displayed(), "the fold is remembered"
+        shown.press("n")
+        assert shown.find("panel").rect["width"] == 368, "so is the width"
+        shown.script("localStorage.clear()")
 
 
 MODULES = """const done = arguments[0], out = {};
@@ -333,6 +361,17 @@ def modules(program, scenes, out):
         shown.until("the scene's camera", lambda: shown.apart(at.first, 2) == 0)
         shown.driver.find_element(By.CSS_SELECTOR, "#gizmo [aria-label='from +z']").click()
         shown.until("from above by the corner's axis", lambda: shown.apart(above, 2) == 0)
+        for keys, tip in ((("1",), "−y"), (("3",), "+x"), ((Keys.SHIFT, "1"), "+y"), ((Keys.SHIFT, "3"), "−x"), ((Keys.SHIFT, "7"), "−z")):
+            at.before = above
+            shown.press(*keys)
+            at.changed(f"the view by {keys}")
+            seen = at.before
+            shown.press("7")
+            shown.until("from above", lambda: shown.apart(above, 2) == 0)
+            shown.script("document.querySelector(`#gizmo [aria-label='from ${arguments[0]}']`).dispatchEvent(new MouseEvent('click'))", tip)
+            shown.until(f"the same from {tip}", lambda: shown.apart(seen, 2) == 0)
+            shown.press("7")
+            shown.until("from above", lambda: shown.apart(above, 2) == 0)
         at.choose("pill")
         shown.press("f")
         box, (x, y) = shown.find("stage").rect, shown.until("the pill in the middle", lambda: shown.script("const c = document.querySelector('[data-handle=plane]'); return c && [+c.getAttribute('cx'), +c.getAttribute('cy')]"))

@@ -32,6 +32,7 @@ namespace websocket = beast::websocket;
 using tcp = asio::ip::tcp;
 using std::chrono::milliseconds;
 using testing::HasSubstr;
+using testing::Not;
 using testing::StartsWith;
 
 constexpr const char* token = "0123456789abcdef0123456789abcdef";
@@ -160,6 +161,23 @@ TEST(Server, GivesItsPageToWhoeverHasTheToken) {
   EXPECT_THAT(
       get(served, fmt::format("/{}/", token), fmt::format("localhost:{}", served.server->port())),
       StartsWith("HTTP/1.1 200"));
+}
+
+// A frame could be laid under another page's buttons, so only pages of this machine have it, when
+// asked.
+TEST(Server, IsInNobodysFrameUnlessItIsEmbedded) {
+  ServerOptions options;
+  options.is_embedded = true;
+  const Served served, embedded(options);
+  const std::string page = get(served, fmt::format("/{}/", token), served.authority()),
+                    framed = get(embedded, fmt::format("/{}/", token), embedded.authority());
+  EXPECT_THAT(page, HasSubstr("X-Frame-Options: DENY\r\n"));
+  EXPECT_THAT(page, HasSubstr("frame-ancestors 'none'\r\n"));
+  EXPECT_THAT(framed, StartsWith("HTTP/1.1 200"));
+  EXPECT_THAT(framed, Not(HasSubstr("X-Frame-Options")));
+  EXPECT_THAT(framed,
+              HasSubstr("frame-ancestors http://localhost:* http://127.0.0.1:* vscode-webview:"));
+  EXPECT_THAT(get(embedded, "/", embedded.authority()), StartsWith("HTTP/1.1 403"));
 }
 
 TEST(Server, RefusesOtherTokensHostsAndPaths) {
