@@ -7,7 +7,7 @@ import { texts } from "./texts.js";
 const $ = (id) => document.getElementById(id);
 export const PAGES = ["object", "material", "light", "camera", "render"];
 const narrow = window.matchMedia("(max-width: 699px)"), wide = window.matchMedia("(min-width: 1100px)");
-// What is remembered may be refused (private windows), and is then what it is at first.
+// A browser may refuse to remember (private windows); the page then begins as a new one.
 const recall = (name) => { try { return localStorage.getItem(`caplet.${name}`); } catch { return null; } };
 const remember = (name, value) => { try { localStorage.setItem(`caplet.${name}`, value); } catch { /* nothing is lost */ } };
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
-// What each key does. The list of the help is made from this table.
+// This table says what each key does; the help lists it.
 export const KEYS = [
   ["select", "V"], ["move", "G"], ["turn", "R"], ["scale", "S"], ["measure", "M"], ["inspect", "I"],
   ["frame", "F"], ["all", "Home"], ["scene_camera", "0"], ["parallel", "5"],
