@@ -12,7 +12,8 @@ import sys
 import tempfile
 import weakref
 
-from .errors import InputError, RunError
+from .errors import RunError
+from .rendering import _count, _scene
 
 _PATIENCE = 60  # seconds that the program has to end
 
@@ -71,6 +72,20 @@ def _close_all():
         viewer.close()
 
 
+def _started(command):
+    """The running program, and the address that it prints."""
+    with tempfile.TemporaryFile() as said:
+        # A session of its own: Ctrl-C in a notebook interrupts a cell and not the viewer.
+        process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=said, stdin=subprocess.DEVNULL, text=True, start_new_session=True)
+        address = process.stdout.readline().strip()
+        if address:
+            return process, address
+        process.wait()
+        process.stdout.close()
+        said.seek(0)
+        raise RunError(said.read().decode(errors="replace").strip() or f"{command[0]} ended with {process.returncode}")
+
+
 def view(scene, *, width=960, height=600, spp=None, noise=None, device=None, read_only=False, browser=False):
     """Shows a scene live: in a notebook as the value of a cell, with browser=True in a browser.
 
@@ -78,32 +93,24 @@ def view(scene, *, width=960, height=600, spp=None, noise=None, device=None, rea
     width, height: of the frame in a notebook, pixels. spp, noise: when a picture is finished, as of the program. device: part of a
     device's name, or its number. Returns a Viewer. Raises RunError if the program is missing or ends, with what it says.
     """
-    for name, value in (("width", width), ("height", height)):
-        if not 1 <= value <= 16384:
-            raise InputError(f"{name}: {value} is not between 1 and 16384")
-    program, folder = _program(), None
-    if isinstance(scene, (str, os.PathLike)):
-        path = os.fspath(scene)
-    else:
-        folder = tempfile.TemporaryDirectory(prefix="caplet-", ignore_cleanup_errors=True)
-        path = os.path.join(folder.name, "scene.pbrt")
-        scene.save(path)
-    command = [program, "view", path, "--embed", "-q"]
-    command += [] if browser else ["--no-browser"]
-    command += ["--read-only"] if read_only else []
+    width, height = _count(width, "width", 16384), _count(height, "height", 16384)
+    is_file = isinstance(scene, (str, os.PathLike))
+    if not is_file:
+        _scene(scene)
+    options = ["--embed", "-q"] + ([] if browser else ["--no-browser"]) + (["--read-only"] if read_only else [])
     for name, value in (("--spp", spp), ("--noise", noise), ("--device", device)):
-        command += [] if value is None else [name, str(value)]
-    with tempfile.TemporaryFile() as said:
-        # A session of its own: Ctrl-C in a notebook interrupts a cell and not the viewer.
-        process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=said, stdin=subprocess.DEVNULL, text=True, start_new_session=True)
-        address = process.stdout.readline().strip()
-        if not address:
-            process.wait()
-            process.stdout.close()
-            said.seek(0)
-            if folder:
-                folder.cleanup()
-            raise RunError(said.read().decode(errors="replace").strip() or f"{program} ended with {process.returncode}")
+        options += [] if value is None else [name, str(value)]
+    program = _program()
+    folder = None if is_file else tempfile.TemporaryDirectory(prefix="caplet-", ignore_cleanup_errors=True)
+    path = os.fspath(scene) if is_file else os.path.join(folder.name, "scene.pbrt")
+    try:
+        if folder:
+            scene.save(path)
+        process, address = _started([program, "view", path, *options])
+    except BaseException:
+        if folder:
+            folder.cleanup()
+        raise
     out = Viewer(process, address, width, height, folder)
     _open.add(out)
     return out

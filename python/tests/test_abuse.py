@@ -17,7 +17,7 @@ from caplet import cameras, lights, materials, media, textures
 TOLD = (TypeError, ValueError)  # InputError is a ValueError
 # What takes objects of other packages, and has tests with these; what takes none of what is tried here.
 OTHERS = {"from_gemmi", "from_meshio", "from_morphio", "from_mujoco", "from_pyvista", "from_trimesh", "to_xarray", "denoise",
-          "formats", "shape_types", "devices", "set_log_level", "load_film"}
+          "formats", "shape_types", "devices", "set_log_level", "load_film", "view"}
 PACKAGES = {"from_neuroml": ("neuroml",), "from_sonata": ("libsonata", "morphio", "h5py")}  # of entries that take files
 RECORDS = np.zeros(4, dtype=[("tag", "u1"), ("at", "f8", (3,))])
 

@@ -68,8 +68,20 @@ def test_errors_are_those_of_the_program(ball, tmp_path, monkeypatch):
         caplet.view(ball, device="nonesuch")
     with pytest.raises(caplet.RunError, match="missing.pbrt"):
         caplet.view(tmp_path / "missing.pbrt")
-    with pytest.raises(caplet.InputError, match="width: 0"):
-        caplet.view(ball, width=0)
+    for scene in (None, 5, b"scene.pbrt", [ball], object()):
+        with pytest.raises(caplet.InputError, match="a caplet.Scene is needed"):
+            caplet.view(scene)
+    for width in (0, 2**70, -1, 3.5):
+        with pytest.raises(caplet.InputError, match="width: a whole number from 1 to 16384"):
+            caplet.view(ball, width=width)
+    for width in (None, "wide", [1]):
+        with pytest.raises((TypeError, ValueError)):
+            caplet.view(ball, width=width)
+    for scene in ("a\0b", "\ud800"):
+        with pytest.raises(ValueError):
+            caplet.view(scene)
+    with pytest.raises(caplet.RunError, match="--spp"):
+        caplet.view(ball, spp="many")
     monkeypatch.delenv("CAPLET_PROGRAM")
     monkeypatch.setattr(sys, "executable", str(tmp_path / "python"))
     monkeypatch.setenv("PATH", str(tmp_path))
