@@ -46,6 +46,15 @@ def test_projections_are_those_of_opencv():
     assert count == 80
 
 
+def test_derivatives_of_a_distortion():
+    camera = Pinhole(64, 48, fx=50, distortion=(-0.2, 0.1, 0.003, -0.002, 0.05, 0.08, -0.03, 0.02))
+    x, y, h = np.array([0.3, -0.4]), np.array([-0.2, 0.5]), 1e-6
+    _, (xx, xy, yy) = camera._distorted(x, y)
+    ends = [camera._distorted(x + dx, y + dy)[0] for dx, dy in ((h, 0), (-h, 0), (0, h), (0, -h))]
+    for got, wanted in ((xx, ends[0][0] - ends[1][0]), (xy, ends[0][1] - ends[1][1]), (xy, ends[2][0] - ends[3][0]), (yy, ends[2][1] - ends[3][1])):
+        assert np.abs(got - wanted / (2 * h)).max() < 1e-9  # h^2 of the third derivative, and rounding / h
+
+
 def test_pixels_that_nobody_sees_have_no_direction():
     camera = Pinhole(200, 100, fx=60, distortion=(-0.4, 0, 0, 0))  # x (1 - 0.4 x^2) is at most 0.61
     ways = camera.unproject([[99.5 + 60 * 0.6, 49.5], [99.5 + 60 * 0.62, 49.5], [99.5, 49.5]])
@@ -171,6 +180,8 @@ def test_coco_masks_are_read_back(balls, tmp_path):
         flat = np.concatenate([np.full(n, i % 2) for i, n in enumerate(counts)])
         assert (flat.reshape(size, order="F") == one["mask"]).all() and row["area"] == sum(counts[1::2]) == one["area"] and row["bbox"] == one["box"]
         assert row["amodal_bbox"] == one["amodal_box"]
+    balls.add_spheres((0, 0, 4), 0.2, name="within")
+    assert len(sensors.coco([("d.png", CAMERA, sensors.segment(balls, CAMERA, np.eye(4)))])["annotations"]) == 2, "what is hidden wholly has no mask"
     full = dict(segments[0], mask=np.ones((48, 64), bool), area=48 * 64)
     assert sensors.coco([("c.png", CAMERA, [full])])["annotations"][0]["segmentation"]["counts"] == [0, 48 * 64]
 
@@ -211,6 +222,10 @@ def test_events_of_light_that_grows_and_falls():
     # Half as many pictures say the same of a light that is linear between them; colours count by luminance.
     rgb = np.repeat(pictures[::2, ..., None], 3, axis=3)
     assert np.abs(sensors.events(rgb, times[::2], threshold=0.25, floor=floor)["t"] - made["t"]).max() < 1e-6
+    # Luminances of single precision reach a threshold a little early or late, and are no event more or less.
+    for scale in (0.1, 1, 7):
+        single = (scale * np.exp(log) - floor).astype(np.float32).reshape(-1, 1, 1)
+        assert len(sensors.events(single, times, threshold=0.25, floor=floor)) == 8
     jump = sensors.events(np.stack([np.full((1, 1), 1.0), np.full((1, 1), np.exp(1.1))]), [0, 1], threshold=0.5, floor=1e-9)
     assert np.abs(jump["t"] - [0.5 / 1.1, 1 / 1.1]).max() < 1e-6
 

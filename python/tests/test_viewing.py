@@ -40,6 +40,7 @@ def test_a_scene_is_served_and_ends(ball):
         with urllib.request.urlopen(viewer.address, timeout=60) as page:
             assert page.status == 200 and "X-Frame-Options" not in page.headers
             assert b"view.js" in page.read()
+        assert os.getsid(viewer.process.pid) != os.getsid(0), "Ctrl-C in a cell does not end it"
         folder = pathlib.Path(viewer.process.args[2]).parent
         assert "ball" in (folder / "scene.pbrt").read_text() and "ended" not in repr(viewer)
     assert viewer.process.returncode == 0 and not folder.exists() and "ended" in repr(viewer)
