@@ -57,6 +57,8 @@ class Served {
     };
     server.emplace(options, std::move(events));
   }
+  /// Ends the server's thread first: its events use what is declared behind it.
+  ~Served() { server.reset(); }
   /// Waits until it holds, at most ten seconds.
   template <class What>
   bool becomes(const What& what) {
