@@ -10,10 +10,10 @@ import zlib
 
 import numpy as np
 
+from .bridges.lidar import NOTHING
 from .errors import InputError
 from .rendering import trace
 
-NOTHING = 2**32 - 1  # the id where a ray hits nothing
 EVENT = np.dtype([("t", np.float64), ("x", np.uint16), ("y", np.uint16), ("polarity", np.int8)])
 _MOST_SIDE = 65535
 

@@ -205,7 +205,7 @@ def test_flow_of_a_plane_and_of_what_moves():
     points = frame.points[is_ball].astype(float)
     then = CAMERA.project(points + [0.3, 0, 1])
     assert np.abs(CAMERA.project(points) + optical[is_ball] - then).max() < 1e-3 and is_ball.sum() > 50
-    # What goes behind the camera is seen nowhere.
+    # A camera that has passed the wall does not see it.
     assert np.isnan(sensors.flow(scene, CAMERA, np.eye(4), turned(0, at=(0, 0, 20)))[0]).all()
 
 

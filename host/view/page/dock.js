@@ -6,7 +6,7 @@ import { texts } from "./texts.js";
 
 const $ = (id) => document.getElementById(id);
 export const PAGES = ["object", "material", "light", "camera", "render"];
-const narrow = window.matchMedia("(max-width: 699px)"), wide = window.matchMedia("(min-width: 1100px)");
+const wide = window.matchMedia("(min-width: 1100px)");
 // A browser may refuse to remember (private windows); the page then begins as a new one.
 const recall = (name) => { try { return localStorage.getItem(`caplet.${name}`); } catch { return null; } };
 const remember = (name, value) => { try { localStorage.setItem(`caplet.${name}`, value); } catch { /* nothing is lost */ } };
@@ -96,7 +96,6 @@ export class Panel {
     });
     grip.addEventListener("keydown", (event) => { if (event.key === "Enter" || event.key === " ") { event.preventDefault(); to(+(this.box.dataset.height ?? 1) % 3 + 1); } });
   }
-  static get is_phone() { return narrow.matches; }
 }
 
 /// Makes a button open a menu, whose items are buttons. Escape and clicks elsewhere close it.
