@@ -152,6 +152,17 @@ def test_files_of_depth_and_points(balls, tmp_path):
     assert np.abs(cloud.vertices - points).max() < 1e-6
 
 
+def test_a_file_that_cannot_be_replaced_stays_alone(balls, tmp_path, monkeypatch):
+    (tmp_path / "depth.png").write_bytes(b"before")
+
+    def refuse(*_):
+        raise OSError(28, "No space left on device")
+    monkeypatch.setattr(os, "replace", refuse)
+    with pytest.raises(caplet.InputError, match="depth.png: No space left on device"):
+        sensors.depth_camera(balls, CAMERA, np.eye(4)).save_png(tmp_path / "depth.png")
+    assert [f.name for f in tmp_path.iterdir()] == ["depth.png"] and (tmp_path / "depth.png").read_bytes() == b"before"
+
+
 def test_segments_know_what_is_hidden(balls):
     pose = np.eye(4)
     near, far = (np.isfinite(depth_of_ball(CAMERA, pose, *ball)) for ball in (((0, 0, 4), 1), ((0.8, 0.3, 7), 1.5)))
