@@ -84,7 +84,7 @@ void DeviceTracer::run(cl::Kernel& kernel) {
   if (shares_)
     launch_shares(device_, kernel, count);
   else
-    launch(device_, kernel, count, 64);
+    launch_items(device_, kernel, count, 64);
   device_.finish();
 }
 

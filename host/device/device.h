@@ -108,8 +108,8 @@ class Device {
   /// Returns wide or single.
   Encoding encoding() const { return encoding_; }
   Profile profile() const { return profile_; }
-  /// PoCL compiles a kernel when it is first launched, again for each local size and each class of
-  /// global size, and keeps the results on disk itself.
+  /// PoCL compiles a kernel when it is first launched, again for each local size and for wide grids
+  /// (launch_items), and keeps the results on disk itself.
   bool is_pocl() const { return is_pocl(info_); }
   const cl::Context& context() const { return context_; }
   const cl::Device& handle() const { return device_; }
@@ -210,12 +210,11 @@ class Program {
                              const std::string& source, const std::string& options,
                              BinaryCache cache = BinaryCache::automatic);
   cl::Kernel kernel(const std::string& name) const;
-  /// Makes PoCL compile the kernel for this local size now rather than at its first launch, by
-  /// launches with null buffers and zero scalars: the kernel must do nothing when its count is 0.
-  /// PoCL compiles a kernel once for fewer than 65536 work-items and again for more: this does
-  /// both, unless `most`, the largest count it will be launched with, needs only the first. Does
-  /// nothing on other platforms. Returns the seconds it took, which build_seconds() then includes.
-  double prepare(const std::string& kernel_name, std::size_t local, std::size_t most);
+  /// Makes PoCL compile the kernel for launches in groups of `local` (launch_items) now rather than
+  /// at its first launch, by one with null buffers and zero scalars: the kernel must do nothing
+  /// when its count is 0. Does nothing on other platforms. Returns the seconds it took, which
+  /// build_seconds() then includes.
+  double prepare(const std::string& kernel_name, std::size_t local);
   double build_seconds() const { return build_seconds_; }
   /// Returns whether it came from Caplet's own cache.
   bool from_cache() const { return from_cache_; }
@@ -256,10 +255,15 @@ void set_arguments(const Device& device, cl::Kernel& kernel, const Values&... va
   (detail::set_argument(device, kernel, index++, values), ...);
 }
 
-/// Enqueues `kernel` over work-items `first` to `first` + `count` (which is rounded up to `local`;
-/// the kernel checks its index). Throws RunError naming the kernel.
-void launch(const Device& device, const cl::Kernel& kernel, std::size_t count, std::size_t local,
-            std::size_t first = 0);
+/// Enqueues `kernel` over `count` work-items (rounded up to `local`; the kernel checks its index).
+/// Throws RunError naming the kernel.
+void launch(const Device& device, const cl::Kernel& kernel, std::size_t count, std::size_t local);
+
+/// Enqueues a kernel of kernels/stages/items.cl over work-items `first` to `first` + `count`, a few
+/// more than asked for. PoCL gets them in rows, so that it compiles a kernel once for all counts.
+/// Throws RunError naming the kernel.
+void launch_items(const Device& device, const cl::Kernel& kernel, std::size_t count,
+                  std::size_t local, std::size_t first = 0);
 
 /// Returns the most work-items of a group, up to `wanted`, in halves of it, with which the device
 /// can run the kernel.
@@ -269,8 +273,6 @@ std::size_t local_size_for(const Device& device, const cl::Kernel& kernel, std::
 /// groups of one: as many as keep the device's units busy to the end. Throws RunError naming the
 /// kernel.
 void launch_shares(const Device& device, const cl::Kernel& kernel, std::size_t count);
-/// Returns the number of these work-items.
-std::size_t share_count(const Device& device, std::size_t count);
 
 /// Compiles and runs a small kernel that checks arithmetic, vload8, clz, atomics and the record
 /// layout on this device; once per device and driver (remembered in the cache). The environment

@@ -193,7 +193,7 @@ bool Kernels::takes_shares(Stage stage) const {
   return row_of(stage).launch == Launch::shares && device_.encoding() == Encoding::wide;
 }
 
-void Kernels::compile(std::span<const Stage> stages, std::size_t most) {
+void Kernels::compile(std::span<const Stage> stages) {
   for (const Stage stage : stages) {
     auto& compiled = compiled_[static_cast<std::size_t>(stage)];
     if (compiled) continue;
@@ -207,10 +207,7 @@ void Kernels::compile(std::span<const Stage> stages, std::size_t most) {
                         (launch == Launch::one_on_cpus && device_.profile() == Profile::cpu);
     const std::size_t local =
         is_one || takes_shares(stage) ? 1 : local_size_for(device_, kernel, local_size_);
-    program.prepare(name, local,
-                    is_one                ? 1
-                    : takes_shares(stage) ? share_count(device_, most)
-                                          : most);
+    program.prepare(name, local);
     compile_seconds_ += program.build_seconds();
     compile_seconds_by_stage_.emplace_back(name, program.build_seconds());
     compiled = Compiled{std::move(program), std::move(kernel), local};
@@ -224,15 +221,20 @@ void Kernels::run(Stage stage, const Bindings& bindings, std::size_t count, std:
   CHECK_EQ_(compiled.has_value(), true);
   CHECK_EQ_(counter == CAPLET_NONE || is_counted(stage), true);
   const cl_uint index = set_buffers(stage, bindings, compiled->kernel);
-  compiled->kernel.setArg(index, narrow<cl_uint>(first + count));
+  const std::size_t end = first + count;
+  compiled->kernel.setArg(index, narrow<cl_uint>(end));
   compiled->kernel.setArg(index + 1, counter);
   const auto start = std::chrono::steady_clock::now();
-  if (takes_shares(stage))
+  if (takes_shares(stage)) {
     launch_shares(device_, compiled->kernel, count);
-  else
-    for (const std::size_t end = first + count, most = chunk_ > 0 ? chunk_ : count; first < end;
-         first += most)
-      launch(device_, compiled->kernel, std::min(most, end - first), compiled->local_size, first);
+  } else {
+    const std::size_t most = chunk_ > 0 ? chunk_ : count;
+    for (; first < end; first += most) {
+      const std::size_t chunk_end = std::min(first + most, end);
+      compiled->kernel.setArg(index, narrow<cl_uint>(chunk_end));
+      launch_items(device_, compiled->kernel, chunk_end - first, compiled->local_size, first);
+    }
+  }
   if (!timed_) return;
   device_.finish();
   compiled->seconds +=

@@ -70,9 +70,8 @@ class Kernels {
   /// Takes `options` as stage_options returns them.
   Kernels(const Device& device, StageOptions options);
 
-  /// Compiles the stages that are not compiled yet, for launches of at most `most` work-items.
-  /// Throws RunError.
-  void compile(std::span<const Stage> stages, std::size_t most);
+  /// Compiles the stages that are not compiled yet. Throws RunError.
+  void compile(std::span<const Stage> stages);
   /// Enqueues a stage, which is compiled, over items `first` to `first` + `count`; if `counter` is
   /// the number of a counter (limits.h), only over as many of these as it says. With timing on,
   /// waits for it and adds its seconds.

@@ -142,7 +142,7 @@ TracedPaths trace(DeviceScene& scene, std::span<const RayRecord> rays,
   const std::size_t paths = std::max(rays.size(), shadows.size());
   std::vector<Stage> stages{Stage::extend, Stage::connect};
   if (scene.has_camera_stage()) stages.push_back(Stage::extend_camera);
-  scene.kernels().compile(stages, paths);
+  scene.kernels().compile(stages);
   PathBuffers buffers(scene.device(), paths, 1,
                       PathNeeds{.layers = Layers::none(), .times = scene.moves()});
   std::vector<uint> all(paths);

@@ -70,7 +70,7 @@ std::vector<PickRecord> Query::closest(std::span<const RayRecord> rays,
                                        std::span<const float> times) {
   if (!times.empty()) CHECK_EQ_(times.size(), rays.size());
   const std::size_t batch = std::min(batch_rays_, rays.size());
-  scene_->kernels().compile(std::array{Stage::pick}, batch_rays_);
+  scene_->kernels().compile(std::array{Stage::pick});
   reserve(batch, 0, batch);
   std::vector<PickRecord> out(rays.size());
   for (std::size_t first = 0; first < rays.size(); first += batch) {
@@ -89,7 +89,7 @@ HitLists Query::all(std::span<const RayRecord> rays, std::size_t capacity,
   CHECK_LE_(capacity, max_query_capacity);
   const std::size_t batch =
       std::min(std::clamp<std::size_t>(batch_hits_ / capacity, 1, batch_rays_), rays.size());
-  scene_->kernels().compile(std::array{Stage::pick_all, Stage::pick_list}, batch_rays_);
+  scene_->kernels().compile(std::array{Stage::pick_all, Stage::pick_list});
   QueryRecord record{};
   record.capacity = narrow<uint>(capacity);
   query_.query.write({&record, 1});

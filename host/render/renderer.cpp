@@ -17,7 +17,7 @@ namespace caplet {
 namespace {
 
 // A tree of fewer nodes (224 bytes each) and their leaves stays in a CPU's cache however rays are
-// ordered.
+// ordered: sorting gains a third on a million capsules, and loses a tenth on 36 triangles.
 constexpr std::uint64_t sorting_pays_from_nodes = 1024;
 
 /// Returns Morton bits per axis so that a bin holds a few rays on average.
@@ -172,7 +172,7 @@ void Renderer::reset(const FlatView& view) {
              first_needed({Stage::extend_alpha, Stage::extend}, needs),
              first_needed({Stage::shade, Stage::shade_media}, needs),
              first_needed({Stage::connect, Stage::connect_alpha, Stage::connect_media}, needs)};
-  scene_.kernels().compile(render_stages(needs), batch_paths_);
+  scene_.kernels().compile(render_stages(needs));
 }
 
 // Clearing takes megabytes: it is left to the first pass if that covers the whole film.

@@ -11,7 +11,7 @@
 #include <numeric>
 
 #include "device/device.h"
-#include "environment.h"
+#include "support/environment.h"
 #include "support/test_device.h"
 
 namespace caplet {

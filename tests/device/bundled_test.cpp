@@ -11,8 +11,8 @@
 #include <map>
 
 #include "device/select.h"
-#include "environment.h"
 #include "support/data.h"
+#include "support/environment.h"
 
 namespace caplet {
 namespace {

@@ -11,8 +11,8 @@
 #include <iterator>
 
 #include "base/content_hash.h"
-#include "environment.h"
 #include "support/data.h"
+#include "support/environment.h"
 #include "support/log_of.h"
 
 namespace caplet {

@@ -11,8 +11,8 @@
 #include <filesystem>
 
 #include "device/device.h"
-#include "environment.h"
 #include "support/data.h"
+#include "support/environment.h"
 
 namespace caplet {
 namespace {

@@ -7,12 +7,15 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <chrono>
+#include <cstdlib>
 #include <fstream>
 #include <iterator>
 
 #include "device/device.h"
-#include "environment.h"
+#include "device/pocl_needs.h"
 #include "support/data.h"
+#include "support/environment.h"
 #include "support/test_device.h"
 
 namespace caplet {
@@ -76,6 +79,82 @@ TEST_F(ProgramTest, LaunchesRoundUpAndKernelsCheckTheirIndex) {
 TEST_F(ProgramTest, AGroupOfNothingIsRefused) {
   cl::Kernel kernel = build().kernel("count_up");
   EXPECT_THROW(launch(device_, kernel, 1, 0), std::logic_error);
+  EXPECT_THROW(launch_items(device_, kernel, 1, 0), std::logic_error);
+}
+
+/// Returns a program whose kernel counts how often each item is done, as stages do their items.
+Program items_program(const Device& device, const std::string& kernel, const std::string& defines) {
+  return Program::from_source(
+      device, kernel,
+      defines +
+          flatten_kernels("typedef struct { __global uint* x; } Stage;\n"
+                          "void stage_item(const Stage* s, uint item) { s->x[item] += 1u; }\n"
+                          "void stage_share(const Stage* s, uint first, uint end) {\n"
+                          "  for (uint item = first; item < end; ++item) stage_item(s, item);\n"
+                          "}\n"
+                          "__kernel void " +
+                          kernel +
+                          "(__global uint* x, uint item_count) {\n"
+                          "const Stage stage = {x};\n"
+                          "#include \"stages/items.cl\"\n}\n"),
+      "");
+}
+
+TEST_F(ProgramTest, ItemsAreDoneOnce) {
+  const Program program = items_program(device_, "do_items", "");
+  for (const std::size_t local : {1u, 24u, 64u})
+    for (const std::size_t first : {0u, 5u})
+      for (const std::size_t count : {1u, 64u, 32767u, 32768u, 32769u, 65536u, 65537u, 200001u}) {
+        SCOPED_TRACE(fmt::format("{} items from {} in groups of {}", count, first, local));
+        std::vector<cl_uint> expected(first + count + 5000, 0);
+        Buffer<cl_uint> done(device_, expected.size());
+        done.write(expected);
+        std::fill_n(expected.begin() + static_cast<std::ptrdiff_t>(first), count, 1);
+        cl::Kernel kernel = program.kernel("do_items");
+        set_arguments(device_, kernel, done, static_cast<cl_uint>(first + count));
+        launch_items(device_, kernel, count, local, first);
+        EXPECT_EQ(done.read() == expected, true);
+      }
+}
+
+TEST_F(ProgramTest, SharesHoldEachItemOnce) {
+  const Program program = items_program(device_, "do_shares", "#define STAGE_TAKES_SHARES\n");
+  // The last of these makes more shares than fit into a row.
+  for (const std::size_t count : {1u, 127u, 128u, 100000u, 40000u * 1024u}) {
+    Buffer<cl_uint> done(device_, count + 1);
+    std::vector<cl_uint> expected(count + 1, 0);
+    done.write(expected);
+    std::fill_n(expected.begin(), count, 1);
+    cl::Kernel kernel = program.kernel("do_shares");
+    set_arguments(device_, kernel, done, static_cast<cl_uint>(count));
+    launch_shares(device_, kernel, count);
+    EXPECT_EQ(done.read() == expected, true) << count;
+  }
+}
+
+TEST_F(ProgramTest, PoclCompilesAKernelOnceForAllCounts) {
+  if (!device_.is_pocl()) GTEST_SKIP() << "the device is not of PoCL";
+  const fs::path cache = pocl_cache_folder([](const std::string& name) {
+    const char* value = std::getenv(name.c_str());
+    return std::string(value ? value : "");
+  });
+  if (!fs::exists(cache)) GTEST_SKIP() << "PoCL keeps no kernels in '" << cache.string() << "'";
+  // PoCL keeps a kernel as PROGRAM/KERNEL/GROUP-SIZE-AND-GRID/KERNEL.so.
+  const std::string name =
+      fmt::format("do_{}", std::chrono::steady_clock::now().time_since_epoch().count());
+  Program program = items_program(device_, name, "");
+  program.prepare(name, 64);
+  for (const std::size_t count : {64u, 70000u, 300000u}) {
+    Buffer<cl_uint> done(device_, count);
+    cl::Kernel kernel = program.kernel(name);
+    set_arguments(device_, kernel, done, static_cast<cl_uint>(count));
+    launch_items(device_, kernel, count, 64);
+    device_.finish();
+  }
+  const auto kept = std::ranges::count_if(
+      fs::recursive_directory_iterator(cache),
+      [&](const fs::directory_entry& entry) { return entry.path().filename() == name + ".so"; });
+  EXPECT_EQ(kept, 1);
 }
 
 TEST_F(ProgramTest, OptionsAreDefinitions) {
@@ -85,7 +164,7 @@ TEST_F(ProgramTest, OptionsAreDefinitions) {
 TEST_F(ProgramTest, PrepareChangesNothing) {
   Program program = build();
   const double before = program.build_seconds();
-  const double seconds = program.prepare("count_up", 4, 1 << 20);
+  const double seconds = program.prepare("count_up", 4);
   EXPECT_EQ(program.build_seconds(), before + seconds);
   EXPECT_EQ(seconds > 0, device_.is_pocl());
   EXPECT_EQ(run(device_, program, 2, 3, 4), (std::vector<cl_uint>{10, 11, 0}));

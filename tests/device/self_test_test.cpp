@@ -10,8 +10,8 @@
 #include <filesystem>
 #include <fstream>
 
-#include "environment.h"
 #include "support/data.h"
+#include "support/environment.h"
 #include "support/test_device.h"
 
 namespace caplet {

@@ -87,6 +87,17 @@ TEST(Profile, OfGpusMakesThePicturesOfProcessors) {
   expect_same(made(scene, device_of("gpu", Encoding::wide), 9), expected, "wide");
 }
 
+// A chunk is launched with a few work-items more, in groups of 64 and, by PoCL, in rows.
+TEST(Profile, ChunksOfAnySizeHoldEachPathOnce) {
+  const Device gpu = device_of("gpu");
+  const Scene scene = scene_named("scenes/capsules.pbrt", 40, 30, 3);
+  const Made expected = made(scene, gpu, 9);
+  ::setenv("CAPLET_LAUNCH", "chunk=1037", 1);
+  const Made in_chunks = made(scene, gpu, 9);
+  ::unsetenv("CAPLET_LAUNCH");
+  expect_same(in_chunks, expected, "chunks of 1037 paths");
+}
+
 Made made_for(const char* rows, const Scene& scene) {
   ::setenv("CAPLET_ROWS", rows, 1);
   const Made out = made(scene, device_of("cpu"), 3);
@@ -136,7 +147,7 @@ TEST(Profile, OfGpusSortsAndLaunchesInChunks) {
 TEST(Profile, PrefixSumsAreThoseOfALoop) {
   const Device gpu = device_of("gpu");
   Kernels kernels(gpu, {"-DCAPLET_REAL_WIDTH=1", {}});
-  kernels.compile(std::array{Stage::sort_sums, Stage::sort_prefix}, 1 << 12);
+  kernels.compile(std::array{Stage::sort_sums, Stage::sort_prefix});
   std::mt19937 random(3);
   for (const std::uint32_t fan : {64u, 8u, 5u, 1u << 31})
     for (const std::uint32_t bits : {0u, 1u, 4u, 5u}) {
@@ -168,7 +179,7 @@ TEST(Profile, PrefixSumsAreThoseOfALoop) {
 TEST(Profile, ChunksAreParts) {
   const Device gpu = device_of("gpu");
   Kernels kernels(gpu, {"-DCAPLET_REAL_WIDTH=1", {}});
-  kernels.compile(std::array{Stage::sort_scatter}, 1 << 12);
+  kernels.compile(std::array{Stage::sort_scatter});
   constexpr std::size_t paths = 5000;
   PathBuffers buffers(gpu, paths, 2, PathNeeds{.layers = Layers::none()});
   std::vector<uint> queue(paths);

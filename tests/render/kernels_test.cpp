@@ -94,7 +94,7 @@ TEST(Kernels, HaveTheOptionsThatTheyName) {
 TEST(Kernels, WantTheBuffersOfTheirGroups) {
   Kernels kernels(test_device(), {"-DCAPLET_REAL_WIDTH=1", {}});
   EXPECT_THROW(kernels.run(Stage::sort_prefix, {}, 1), std::logic_error);  // not compiled
-  kernels.compile(std::array{Stage::sort_prefix}, 1);
+  kernels.compile(std::array{Stage::sort_prefix});
   EXPECT_THROW(kernels.run(Stage::sort_prefix, {}, 1), std::logic_error);  // no groups
 }
 
