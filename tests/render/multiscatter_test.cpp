@@ -5,11 +5,10 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include <cstdlib>
-
 #include "lower/lower.h"
 #include "render/kernels.h"
 #include "render_scene.h"
+#include "support/environment.h"
 
 namespace caplet::test {
 namespace {
@@ -46,7 +45,8 @@ TEST(Multiscatter, FurnacesOfMetalAndGlass) {
 
 // Kernels of a scene know of it only where a material has it.
 TEST(Multiscatter, CostsNothingWhereItIsOff) {
-  ::setenv("CAPLET_ROWS", "scene", 1);
+  // Without the end of this scope all later tests would compile kernels of their own.
+  const ScopedVariable rows("CAPLET_ROWS", "scene");
   const auto knows = [](const std::string& material) {
     const FlatScene flat = lower(ball_under_a_sky(material));
     return stage_options(flat, test_device()).compiler.find("CAPLET_MULTISCATTER") !=

@@ -80,6 +80,7 @@ TEST(Threads, CompileTheSameKernelsAtTheSameTime) {
   fs::create_directories(folder);
   const auto work = [&folder] {
     for (const char* name : {"POCL_CACHE_DIR", "CAPLET_CACHE"}) ::setenv(name, folder.c_str(), 1);
+    ::setenv("CAPLET_ROWS", "scene", 1);  // nothing else finds these kernels: few are enough
     render_for_the_first_time();
   };
   EXPECT_EQ(apart(work, 500), "");
