@@ -204,16 +204,16 @@ void add_import_options(CLI::App& command, ImportOptions& options) {
     for (const Format& format : formats())
       if (std::ranges::find(format.options, row.name) != format.options.end())
         formats_of_it += (formats_of_it.empty() ? "" : ", ") + format.name;
-    command
-        .add_option_function<std::string>(
-            "--" + row.name,
-            [&options, name = row.name](const std::string& value) { options.set(name, value); },
-            row.help + (row.of == Of::picture ? "" : " (" + formats_of_it + ")") +
-                (row.name == "least-width" ? fmt::format("; at most {}; unless asked {}",
-                                                         widest_least_width, usual_least_width())
-                                           : ""))
-        ->type_name(row.values)
+    CLI::Option& option = *command.add_option_function<std::string>(
+        "--" + row.name,
+        [&options, name = row.name](const std::string& value) { options.set(name, value); },
+        row.help + (row.of == Of::picture ? "" : " (" + formats_of_it + ")") +
+            (row.name == "least-width" ? fmt::format("; at most {}; unless asked {}",
+                                                     widest_least_width, usual_least_width())
+                                       : ""));
+    option.type_name(row.values)
         ->group(row.of == Of::picture ? "The picture" : "Files of other fields");
+    if (row.is_list) option.multi_option_policy(CLI::MultiOptionPolicy::Join);
   }
   command
       .add_flag_callback(

@@ -24,6 +24,10 @@ const std::vector<ImportOptionRow>& import_option_rows() {
        "file, scalar or scalar:NAME of "
        "fibres; type, file, order, depth or a FILE of values of neurons",
        Of::format},
+      {"show", "ATOMS: STYLE [by COLOR] [opacity X]",
+       "Parts of a molecule, each in its own style, between semicolons or by repetition, such as "
+       "'polymer: cartoon; ligand: sticks by element'; see docs/formats/molecules.md",
+       Of::format, true},
       {"range", "LOW,HIGH", "Values at the ends of the colour map", Of::format},
       {"select", "ATOMS",
        "Part of a molecule, as gemmi and mmdb write it: //A,B/10-20/CA; see "

@@ -24,6 +24,7 @@ struct ImportOptionRow {
   /// picture: of any file's picture (docs/pictures.md). reading: how files of any format are read;
   /// the command line has yes|no as --name alone, for yes.
   enum class Of { format, picture, reading } of = Of::format;
+  bool is_list = false;  // several values may be given, as lines of one text
 };
 
 const std::vector<ImportOptionRow>& import_option_rows();

@@ -151,7 +151,9 @@ class LightLowering {
       record.kind = light_constant;
       emit(record, light.radiance, light_->illuminance ? replaced(light_->illuminance, pi) : power);
       brightest_ = std::max(brightest_, luminance(light.radiance, record));
-      return 0;  // found by BSDF sampling
+      // BSDF sampling finds it as well. In a room under such a sky light samples took 1.4 times the
+      // time for 1.15 times the variance.
+      return 0;
     }
     const LoweredPicture picture = images_.sky(light.image, out_);
     const EnvironmentIntegrals& of = picture.integrals;

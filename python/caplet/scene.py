@@ -738,6 +738,8 @@ def _distinct(colors):
 def _option(value):
     if isinstance(value, (bool, np.bool_)):
         return "yes" if value else "no"
+    if isinstance(value, (list, tuple)) and value and all(isinstance(one, str) for one in value):
+        return "\n".join(value)
     return value if isinstance(value, str) else ",".join(repr(float(v)) for v in value) if np.ndim(value) else str(value)
 
 
@@ -745,8 +747,8 @@ def load(path, **options):
     """Reads a scene of any of `caplet.formats()`. Every mistake is told with its file, line and column (InputError).
 
     options: what the program takes as --NAME VALUE of a file and its picture, with _ for -: view="top" or a direction, up="z",
-    projection="orthographic", light="flat", background="white", least_width=1.5, style="sticks"... no_outside=True, for scenes of
-    strangers: the file may name others in its own folder and below it alone.
+    projection="orthographic", light="flat", background="white", least_width=1.5, style="sticks",
+    show=["polymer: cartoon", "ligand: sticks"]... no_outside=True, for scenes of strangers: the file may name others in its own folder and below it alone.
     """
     try:
         return Scene(_caplet.load(os.fspath(path), {name.replace("_", "-"): _option(value) for name, value in options.items()}))

@@ -454,6 +454,10 @@ def test_files_are_read_as_options_say(tmp_path):
     file.write_text("3\nwater\nO 0 0 0\nH 0.96 0 0\nH -0.24 0.93 0\n")
     assert caplet.load(file, style="spheres").primitives != caplet.load(file, style="sticks").primitives
     assert not np.array_equal(caplet.load(file, style="spheres", hydrogens=False).bounds, caplet.load(file, style="spheres").bounds)
+    assert caplet.load(file, show=["element O: spheres", "hydrogen: sticks opacity 0.5"]).primitives == {"capsule": 3}
+    assert caplet.load(file, show="element O: spheres").primitives == {"capsule": 1}
+    with pytest.raises(caplet.InputError, match="--show.*'oxygen'"):
+        caplet.load(file, show=["oxygen: spheres"])
     with pytest.raises(caplet.InputError, match="--radius"):
         caplet.load(file, radius=1)
     with pytest.raises(caplet.InputError, match="--style"):

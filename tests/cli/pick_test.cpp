@@ -419,6 +419,26 @@ TEST(Pick, TellsTheResidueOfACartoon) {
   EXPECT_EQ(at("5.8"), "chain A ALA 33A");
 }
 
+// Two of three atoms in line are drawn, each by a --show of its own.
+TEST(Pick, SeesWhatEachShowDraws) {
+  const std::filesystem::path folder = test::temporary_folder();
+  std::ofstream(folder / "m.xyz") << "3\n\nO 0 0 0\nC 9 0 0\nN 18 0 0\n";
+  for (const std::vector<std::string>& show :
+       {std::vector<std::string>{"--show", "element O: spheres", "--show", "element N: sticks"},
+        std::vector<std::string>{"--show=element O: spheres; element N: sticks"}}) {
+    const auto at = [&](const std::string& x) {
+      std::vector<std::string> words = {"pick", "m.xyz", "--json", "--ray", x + ",0,5,0,0,-1"};
+      words.insert(words.end(), show.begin(), show.end());
+      const Result result = test::run_program(words, folder);
+      EXPECT_EQ(result.code, 0) << result.err;
+      return nlohmann::json::parse(result.out);
+    };
+    EXPECT_NEAR(at("0").at("t").get<double>(), 5 - 1.52, 1e-5);  // Bondi's radius of oxygen
+    EXPECT_EQ(at("9").at("hit"), false);
+    EXPECT_NEAR(at("18").at("t").get<double>(), 5 - 0.2, 1e-5);
+  }
+}
+
 TEST(Pick, PixelsOfTheImage) {
   const auto folder = folder_with_scene();
   const auto pick = [&](std::vector<std::string> more) {

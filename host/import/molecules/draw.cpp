@@ -12,9 +12,11 @@
 #include <map>
 #include <optional>
 #include <set>
+#include <tuple>
 
 #include "base/check.h"
 #include "base/error.h"
+#include "base/log.h"
 #include "base/reading.h"
 #include "import/color_map.h"
 #include "import/detail/cartoon.h"
@@ -23,7 +25,9 @@
 #include "import/detail/mesh_file.h"
 #include "import/detail/molecule.h"
 #include "import/detail/option_files.h"
+#include "import/detail/representation.h"
 #include "import/detail/secondary.h"
+#include "import/detail/selection.h"
 #include "import/detail/text_file.h"
 #include "import/detail/value_colors.h"
 #include "present/present.h"
@@ -32,9 +36,6 @@
 namespace caplet {
 
 namespace {
-
-enum class Style { ball_and_stick, spheres, sticks, trace, cartoon };
-enum class MoleculeColor { element, chain, residue, bfactor, secondary };
 
 constexpr std::size_t kMostInDetail =
     2000;                       // atoms; larger molecules are drawn as spheres by default
@@ -45,10 +46,11 @@ constexpr int kTraceSteps = 6;                           // capsules between two
 
 class Painter {
  public:
-  /// `secondary`: a value for each residue where colours or the style need it, else none.
+  /// `secondary`: a value for each residue where `by` needs it, else none. `color`: that of all
+  /// atoms for MoleculeColor::fixed.
   Painter(Scene& scene, const Molecule& molecule, const std::vector<Secondary>& secondary,
-          MoleculeColor by)
-      : scene_(scene), molecule_(molecule), secondary_(secondary), by_(by) {
+          MoleculeColor by, const glm::dvec3& color = {})
+      : scene_(scene), molecule_(molecule), secondary_(secondary), by_(by), color_(color) {
     if (by == MoleculeColor::bfactor) {
       low_ = high_ = molecule.atoms.front().b_factor;
       for (const Atom& atom : molecule.atoms) {
@@ -80,6 +82,8 @@ class Painter {
         return b_factors_.of(static_cast<double>(atom.b_factor));
       case MoleculeColor::secondary:
         return of_secondary(atom);
+      case MoleculeColor::fixed:
+        return named("molecule", [&] { return color_; });
     }
     return 0;
   }
@@ -133,6 +137,7 @@ class Painter {
   const Molecule& molecule_;
   const std::vector<Secondary>& secondary_;
   MoleculeColor by_;
+  glm::dvec3 color_;
   float low_ = 0, high_ = 0;
   ValueColors b_factors_;
   std::map<std::string, std::uint32_t> index_;
@@ -160,30 +165,36 @@ struct DrawnPart {
 
 class MoleculeDrawing {
  public:
+  /// `chosen` marks the atoms to draw.
   MoleculeDrawing(const Molecule& molecule, const std::vector<Bond>& bonds,
-                  const std::vector<Secondary>& secondary, Style style, Painter& painter)
+                  const std::vector<Secondary>& secondary, std::vector<bool> chosen,
+                  const Representation& as, Painter& painter)
       : molecule_(molecule),
         bonds_(bonds),
         secondary_(secondary),
-        style_(style),
+        chosen_(std::move(chosen)),
+        style_(as.style),
+        opacity_(as.opacity),
         painter_(painter) {}
 
   /// Makes the shapes of the residues that `kept` marks, which are placed `copies` times.
   std::vector<Shape> shapes(const Scene& scene, const std::vector<bool>& kept,
                             std::size_t copies = 1) {
     parts_.clear();
-    for (std::uint32_t i = 0; i < molecule_.atoms.size(); ++i) {
+    const auto is_drawn = [&](std::uint32_t i) {
       const Atom& atom = molecule_.atoms[i];
-      if (!kept[atom.residue] || !in_detail(atom)) continue;
+      return chosen_[i] && kept[atom.residue] && in_detail(atom);
+    };
+    for (std::uint32_t i = 0; i < molecule_.atoms.size(); ++i) {
+      if (!is_drawn(i)) continue;
+      const Atom& atom = molecule_.atoms[i];
       const float radius = ball_radius(atom);
       part(atom, " atoms").add(atom.position, atom.position, radius, radius, color_of(atom));
     }
-    if (style_ != Style::spheres)
-      for (const auto& [i, j] : bonds_) {
-        const Atom &a = molecule_.atoms[i], &b = molecule_.atoms[j];
-        if (kept[a.residue] && kept[b.residue] && in_detail(a) && in_detail(b)) add_bond(a, b);
-      }
-    if (style_ == Style::trace) add_traces(kept);
+    if (style_ != MoleculeStyle::spheres)
+      for (const auto& [i, j] : bonds_)
+        if (is_drawn(i) && is_drawn(j)) add_bond(molecule_.atoms[i], molecule_.atoms[j]);
+    if (style_ == MoleculeStyle::trace) add_traces(kept);
     std::vector<Shape> out;
     for (auto& [name, part] : parts_) {
       if (!part.tapered) part.capsules.radius1 = {};
@@ -193,16 +204,28 @@ class MoleculeDrawing {
       shape.geometry = std::move(part.capsules);
       out.push_back(std::move(shape));
     }
-    if (style_ == Style::cartoon)
+    if (style_ == MoleculeStyle::cartoon)
       for (Shape& shape : cartoon_shapes(
-               molecule_, secondary_, kept,
+               molecule_, secondary_, with_guide(kept),
                [this](const Atom& atom) { return painter_.material(atom); }, scene.source, copies))
         out.push_back(std::move(shape));
+    if (opacity_ < 1)
+      for (Shape& shape : out) shape.alpha = TextureOperand(opacity_);
     return out;
   }
 
  private:
-  bool follows_chains() const { return style_ == Style::trace || style_ == Style::cartoon; }
+  bool follows_chains() const {
+    return style_ == MoleculeStyle::trace || style_ == MoleculeStyle::cartoon;
+  }
+  /// Returns the kept residues whose guide atom is chosen.
+  std::vector<bool> with_guide(std::vector<bool> kept) const {
+    for (std::size_t r = 0; r < kept.size(); ++r) {
+      const std::int64_t guide = kept[r] ? guide_atom(molecule_, molecule_.residues[r]) : -1;
+      kept[r] = guide >= 0 && chosen_[static_cast<std::size_t>(guide)];
+    }
+    return kept;
+  }
   /// The styles trace and cartoon draw residues of no chain as sticks.
   bool in_detail(const Atom& atom) const {
     if (!follows_chains()) return true;
@@ -211,15 +234,17 @@ class MoleculeDrawing {
   }
   float ball_radius(const Atom& atom) const {
     switch (style_) {
-      case Style::spheres:
+      case MoleculeStyle::spheres:
         return van_der_waals_radius(atom.element);
-      case Style::ball_and_stick:
+      case MoleculeStyle::ball_and_stick:
         return kBall * van_der_waals_radius(atom.element);
       default:
         return kStickRadius;
     }
   }
-  float bond_radius() const { return style_ == Style::ball_and_stick ? kBondRadius : kStickRadius; }
+  float bond_radius() const {
+    return style_ == MoleculeStyle::ball_and_stick ? kBondRadius : kStickRadius;
+  }
   std::uint32_t color_of(const Atom& atom) const {
     return follows_chains() ? painter_.of_element(atom) : painter_.material(atom);
   }
@@ -250,8 +275,9 @@ class MoleculeDrawing {
     };
     for (std::size_t r = 0; r < molecule_.residues.size(); ++r) {
       const Residue& residue = molecule_.residues[r];
-      if (!kept[r] || residue.trace_atom < 0) continue;
-      const Atom& atom = molecule_.atoms[static_cast<std::size_t>(residue.trace_atom)];
+      const auto traced = static_cast<std::size_t>(residue.trace_atom);
+      if (!kept[r] || residue.trace_atom < 0 || !chosen_[traced]) continue;
+      const Atom& atom = molecule_.atoms[traced];
       const float gap = residue.kind == ResidueKind::amino_acid ? calpha_gap : phosphorus_gap;
       const std::pair now{residue.chain, residue.kind};
       if (!run.empty() && (last != now || glm::length(atom.position - run.back()->position) > gap))
@@ -313,13 +339,15 @@ class MoleculeDrawing {
   const Molecule& molecule_;
   const std::vector<Bond>& bonds_;
   const std::vector<Secondary>& secondary_;
-  Style style_;
+  std::vector<bool> chosen_;
+  MoleculeStyle style_;
+  double opacity_;
   Painter& painter_;
   std::map<std::string, DrawnPart> parts_;
 };
 
 void add_assembly(Scene& scene, const Molecule& molecule, const std::string& name,
-                  MoleculeDrawing& drawing) {
+                  std::vector<MoleculeDrawing>& drawings) {
   const auto found = molecule.assemblies.find(name);
   if (found == molecule.assemblies.end()) {
     std::string known;
@@ -338,7 +366,9 @@ void add_assembly(Scene& scene, const Molecule& molecule, const std::string& nam
     Object object;
     object.name = fmt::format("assembly {}, part {}", name, scene.objects.size() + 1);
     object.where = {scene.source, 0, 0};
-    object.shapes = drawing.shapes(scene, kept, part.operators.size());
+    for (MoleculeDrawing& drawing : drawings)
+      for (Shape& shape : drawing.shapes(scene, kept, part.operators.size()))
+        object.shapes.push_back(std::move(shape));
     if (object.shapes.empty()) continue;
     for (const glm::dmat4& placed : part.operators)
       scene.instances.push_back(
@@ -375,17 +405,18 @@ void move_atoms(Molecule& molecule, const std::string& path, std::uint32_t numbe
 }
 
 /// Throws InputError where the file lacks what the style or the colours need.
-void check_asked(const Molecule& molecule, Style style, MoleculeColor by) {
+void check_asked(const Molecule& molecule, const Representation& as) {
+  const auto [style, by] = std::pair(as.style, as.by);
   if (by == MoleculeColor::bfactor && !molecule.has_b_factors)
     throw InputError({"--color"}, "the file has no b factors");
-  if (style == Style::trace &&
+  if (style == MoleculeStyle::trace &&
       std::ranges::none_of(molecule.residues, [](const Residue& r) { return r.trace_atom >= 0; }))
-    throw InputError({"--style"},
+    throw InputError({as.option},
                      "trace: the file has neither alpha carbons nor phosphorus of a polymer");
-  if (style == Style::cartoon && std::ranges::none_of(molecule.residues, [&](const Residue& r) {
-        return guide_atom(molecule, r) >= 0;
-      }))
-    throw InputError({"--style"}, "cartoon: the file has no backbone of a polymer");
+  if (style == MoleculeStyle::cartoon &&
+      std::ranges::none_of(molecule.residues,
+                           [&](const Residue& r) { return guide_atom(molecule, r) >= 0; }))
+    throw InputError({as.option}, "cartoon: the file has no backbone of a polymer");
   if (by == MoleculeColor::secondary &&
       std::ranges::none_of(molecule.residues, [](const Residue& r) {
         return r.kind == ResidueKind::amino_acid || r.kind == ResidueKind::nucleotide;
@@ -393,13 +424,10 @@ void check_asked(const Molecule& molecule, Style style, MoleculeColor by) {
     throw InputError({"--color"}, "secondary: the file has no polymer");
 }
 
-/// Returns each residue's part in the secondary structure where it is needed, else nothing. By
-/// default it is the file's where it states any.
-std::vector<Secondary> asked_secondary(const Molecule& molecule, const ImportOptions& options,
-                                       bool is_needed, const std::string& path) {
-  const bool by_file =
-      options.choice("secondary", {"file", "dssp"}, molecule.states_secondary ? 0 : 1) == 0;
-  if (!is_needed) return {};
+/// Returns each residue's part in the secondary structure. By default it is the file's where it
+/// states any.
+std::vector<Secondary> asked_secondary(const Molecule& molecule, bool by_file,
+                                       const std::string& path) {
   if (by_file && !molecule.states_secondary)
     throw InputError({"--secondary"}, "the file has no records of helices and strands");
   return secondary_of(molecule, by_file, path);
@@ -433,29 +461,45 @@ Imported import_molecule(const std::filesystem::path& path, const ImportOptions&
   if (const std::optional<std::string> file = options.text("components"))
     for (auto& [name, bonds] : component_bonds_of(read_text(*file, {"--components"}), *file))
       molecule.components.insert_or_assign(name, std::move(bonds));
-  const std::size_t automatic = static_cast<std::size_t>(
-      molecule.atoms.size() > kMostInDetail ? Style::spheres : Style::ball_and_stick);
-  const auto style = static_cast<Style>(options.choice(
-      "style", {"ball-and-stick", "spheres", "sticks", "trace", "cartoon"}, automatic));
-  const std::size_t usual = static_cast<std::size_t>(
-      style == Style::trace || style == Style::cartoon ? MoleculeColor::chain
-                                                       : MoleculeColor::element);
-  const auto by = static_cast<MoleculeColor>(
-      options.choice("color", {"element", "chain", "residue", "bfactor", "secondary"}, usual));
-  check_asked(molecule, style, by);
+  const std::vector<Representation> representations = asked_representations(
+      options, molecule.atoms.size() > kMostInDetail ? MoleculeStyle::spheres
+                                                     : MoleculeStyle::ball_and_stick);
+  for (const Representation& as : representations) check_asked(molecule, as);
+  const bool has_bonds = std::ranges::any_of(
+      representations, [](const Representation& as) { return as.style != MoleculeStyle::spheres; });
   const std::vector<Bond> bonds =
-      style == Style::spheres ? std::vector<Bond>() : all_bonds(molecule, scene.source);
+      has_bonds ? all_bonds(molecule, scene.source) : std::vector<Bond>();
   if (positions) move_atoms(molecule, *positions, options.number("model", 1));
-  const std::vector<Secondary> secondary = asked_secondary(
-      molecule, options, style == Style::cartoon || by == MoleculeColor::secondary, scene.source);
-  Painter painter(scene, molecule, secondary, by);
-  MoleculeDrawing drawing(molecule, bonds, secondary, style, painter);
+  const bool by_file =
+      options.choice("secondary", {"file", "dssp"}, molecule.states_secondary ? 0 : 1) == 0;
+  std::vector<Secondary> secondary;
+  const auto with_secondary = [&]() -> const std::vector<Secondary>& {
+    if (secondary.empty()) secondary = asked_secondary(molecule, by_file, scene.source);
+    return secondary;
+  };
+  std::map<std::tuple<MoleculeColor, double, double, double>, Painter> painters;
+  std::vector<MoleculeDrawing> drawings;
+  for (const Representation& as : representations) {
+    if (as.style == MoleculeStyle::cartoon || as.by == MoleculeColor::secondary) with_secondary();
+    std::vector<bool> chosen = selected_atoms(molecule, as.selection, with_secondary);
+    if (std::ranges::find(chosen, true) == chosen.end())
+      log::warn("{}: --show '{}' selects no atoms", scene.source, as.selection);
+    const std::tuple key(as.by, as.color.x, as.color.y, as.color.z);
+    Painter& painter =
+        painters.try_emplace(key, scene, molecule, secondary, as.by, as.color).first->second;
+    drawings.emplace_back(molecule, bonds, secondary, std::move(chosen), as, painter);
+    if (!scene.legend) scene.legend = painter.legend();
+  }
   const std::optional<std::string> assembly = options.text("assembly");
-  if (assembly && *assembly != "none")
-    add_assembly(scene, molecule, *assembly, drawing);
-  else
-    scene.shapes = drawing.shapes(scene, std::vector<bool>(molecule.residues.size(), true));
-  scene.legend = painter.legend();
+  if (assembly && *assembly != "none") {
+    add_assembly(scene, molecule, *assembly, drawings);
+  } else {
+    const std::vector<bool> kept(molecule.residues.size(), true);
+    for (MoleculeDrawing& drawing : drawings)
+      for (Shape& shape : drawing.shapes(scene, kept)) scene.shapes.push_back(std::move(shape));
+    if (scene.shapes.empty())
+      throw InputError({"--show"}, "selects none of the file's atoms, or nothing that is drawn");
+  }
   scene.contents = contents_of(molecule);
   scene.has_no_up = true;
   scene.unit = "\u00c5";

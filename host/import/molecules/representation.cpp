@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+#include "import/detail/representation.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <initializer_list>
+#include <optional>
+#include <string_view>
+
+#include "base/error.h"
+#include "base/spelling.h"
+#include "import/detail/mesh_file.h"
+#include "import/detail/text_file.h"
+
+namespace caplet {
+
+namespace {
+
+// These are in the order of MoleculeStyle and MoleculeColor.
+constexpr std::initializer_list<const char*> style_names = {"ball-and-stick", "spheres", "sticks",
+                                                            "trace", "cartoon"};
+constexpr std::initializer_list<const char*> color_names = {"element", "chain", "residue",
+                                                            "bfactor", "secondary"};
+
+MoleculeColor usual_color(MoleculeStyle style) {
+  return style == MoleculeStyle::trace || style == MoleculeStyle::cartoon ? MoleculeColor::chain
+                                                                          : MoleculeColor::element;
+}
+
+/// Returns the colour of "#RRGGBB", linear sRGB.
+std::optional<glm::dvec3> hexadecimal_color(std::string_view text) {
+  unsigned value = 0;
+  if (text.size() != 7 || text[0] != '#') return std::nullopt;
+  const auto [end, error] = std::from_chars(text.data() + 1, text.data() + 7, value, 16);
+  if (error != std::errc() || end != text.data() + 7) return std::nullopt;
+  const auto byte = [&](unsigned shift) { return static_cast<float>(value >> shift & 255U); };
+  return glm::dvec3(decoded_color(glm::vec3(byte(16), byte(8), byte(0)), 255));
+}
+
+/// Reads one representation of --show.
+class RepresentationText {
+ public:
+  explicit RepresentationText(std::string_view text) : text_(text) {}
+
+  Representation read(std::optional<MoleculeColor> color) {
+    const std::size_t colon = text_.rfind(':');
+    if (colon == text_.npos) fail("':' and a style are missing after the selection");
+    Representation out;
+    out.selection = text_.substr(0, colon);
+    words_ = words_of(text_.substr(colon + 1));
+    out.style = static_cast<MoleculeStyle>(named(style_names, "a style"));
+    out.by = color.value_or(usual_color(out.style));
+    while (at_ < words_.size()) {
+      if (words_[at_] == "by") {
+        ++at_;
+        read_color(out);
+      } else if (words_[at_] == "opacity") {
+        ++at_;
+        out.opacity = opacity();
+      } else {
+        fail(fmt::format("{} is neither 'by' nor 'opacity'",
+                         caplet::quoted(std::string(words_[at_]))));
+      }
+    }
+    return out;
+  }
+
+ private:
+  [[noreturn]] void fail(const std::string& message) const {
+    throw InputError({"--show"},
+                     fmt::format("{}: {}", caplet::quoted(std::string(text_)), message));
+  }
+
+  std::size_t named(std::initializer_list<const char*> names, const char* what) {
+    if (at_ == words_.size()) fail(fmt::format("{} is missing", what));
+    const std::string word(words_[at_]);
+    const auto* const found = std::ranges::find_if(names, [&](const char* n) { return word == n; });
+    if (found == names.end())
+      fail(fmt::format("{} is not {}; the nearest is '{}'", caplet::quoted(word), what,
+                       nearest_name(word, {names.begin(), names.end()})));
+    ++at_;
+    return static_cast<std::size_t>(found - names.begin());
+  }
+
+  void read_color(Representation& out) {
+    if (at_ < words_.size() && words_[at_].starts_with('#')) {
+      const std::optional<glm::dvec3> color = hexadecimal_color(words_[at_]);
+      if (!color) fail(caplet::quoted(std::string(words_[at_])) + " is no color (#RRGGBB)");
+      out.by = MoleculeColor::fixed;
+      out.color = *color;
+      ++at_;
+    } else {
+      out.by = static_cast<MoleculeColor>(named(color_names, "what a color tells"));
+    }
+  }
+
+  double opacity() {
+    if (at_ == words_.size()) fail("the opacity is missing");
+    const std::string_view word = words_[at_++];
+    double out = 0;
+    if (!parse_number(word, out) || !(out >= 0 && out <= 1))
+      fail(caplet::quoted(std::string(word)) + " is no opacity from 0 to 1");
+    return out;
+  }
+
+  std::string_view text_;
+  std::vector<std::string_view> words_;
+  std::size_t at_ = 0;
+};
+
+}  // namespace
+
+std::vector<Representation> asked_representations(const ImportOptions& options,
+                                                  MoleculeStyle automatic) {
+  const std::optional<std::string> show = options.text("show");
+  if (show && options.text("style"))
+    throw InputError({"--style"}, "--show states the style of each representation");
+  std::optional<MoleculeColor> color;
+  if (options.text("color"))
+    color = static_cast<MoleculeColor>(options.choice("color", color_names, 0));
+  std::vector<Representation> out;
+  if (!show) {
+    Representation all;
+    all.style = static_cast<MoleculeStyle>(
+        options.choice("style", style_names, static_cast<std::size_t>(automatic)));
+    all.by = color.value_or(usual_color(all.style));
+    all.option = "--style";
+    return {all};
+  }
+  for (std::string_view rest = *show; !rest.empty();) {
+    const std::size_t end = std::min(rest.find_first_of(";\n"), rest.size());
+    const std::string_view one = rest.substr(0, end);
+    rest.remove_prefix(std::min(end + 1, rest.size()));
+    if (one.find_first_not_of(" \t\r\n") == one.npos) continue;
+    out.push_back(RepresentationText(one).read(color));
+  }
+  if (out.empty()) throw InputError({"--show"}, "has no representation");
+  return out;
+}
+
+}  // namespace caplet
