@@ -14,6 +14,7 @@
 #include "present/film_window.h"
 #include "render/known_answers.h"
 #include "render/query.h"
+#include "scene/frozen.h"
 
 namespace caplet::v0 {
 
@@ -27,6 +28,18 @@ RayRecord to_record(const Ray& ray) {
 std::vector<RayRecord> to_records(std::span<const Ray> rays) {
   std::vector<RayRecord> out(rays.size());
   std::ranges::transform(rays, out.begin(), to_record);
+  return out;
+}
+
+/// Returns the rays' times as Query takes them: none where nothing moves.
+std::vector<float> times_of(std::span<const Ray> rays, const caplet::Scene& scene) {
+  if (!moves(scene)) return {};
+  const double open = scene.view.film.shutter_open, seconds = scene.view.film.open_time();
+  std::vector<float> out(rays.size());
+  std::ranges::transform(rays, out.begin(), [&](const Ray& ray) {
+    const double part = (ray.time - open) / seconds;
+    return part > 0 ? static_cast<float>(std::min(part, 1.0)) : 0.0F;  // 0 for what is no number
+  });
   return out;
 }
 
@@ -111,7 +124,7 @@ std::vector<std::optional<Hit>> Questions::nearest(std::span<const Ray> rays) co
   std::vector<std::optional<Hit>> out;
   if (rays.empty()) return out;
   out.reserve(rays.size());
-  for (const PickRecord& pick : query.closest(to_records(rays)))
+  for (const PickRecord& pick : query.closest(to_records(rays), times_of(rays, scene)))
     out.push_back(to_nearest(pick, scene));
   return out;
 }
@@ -123,7 +136,7 @@ void Questions::for_lists(std::span<const Ray> rays, std::size_t most, Take&& ta
         fmt::format("{} hits of a ray: that is not within 1 to {}", most, max_query_capacity));
   try_device(device, {.shapes = shapes, .lists = true});
   if (rays.empty()) return;
-  const HitLists lists = query.all(to_records(rays), most);
+  const HitLists lists = query.all(to_records(rays), most, times_of(rays, scene));
   if (!lists.overflowed.empty())
     throw RunError(fmt::format("ray {} has more than {} hits, as {} in all", lists.overflowed[0],
                                most, lists.overflowed.size()));
@@ -146,7 +159,8 @@ void Questions::nearest(std::span<const Ray> rays, std::span<Crossing> out) cons
   const Numbers numbers(scene);
   for (std::size_t first = 0; first < rays.size(); first += rays_at_once) {
     const std::size_t count = std::min(rays_at_once, rays.size() - first);
-    const std::vector<PickRecord> picks = query.closest(to_records(rays.subspan(first, count)));
+    const std::span<const Ray> part = rays.subspan(first, count);
+    const std::vector<PickRecord> picks = query.closest(to_records(part), times_of(part, scene));
     for (std::size_t i = 0; i < count; ++i) out[first + i] = numbers.crossing(picks[i], first + i);
   }
 }

@@ -23,6 +23,8 @@ struct Ray {
   std::array<float, 3> origin{};
   std::array<float, 3> direction{0, 0, 1};  // of any length, which is the unit of t
   float t_min = 0, t_max = std::numeric_limits<float>::infinity();  // hits are strictly between
+  double time = 0;  // seconds, for scenes that move; before the shutter opens and after it closes
+                    // they stand still
 };
 
 /// An intersection of a ray with a surface.

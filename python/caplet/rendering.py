@@ -247,11 +247,12 @@ def _picker(scene, device):
     return picker
 
 
-def trace(scene, origins, directions, mode="nearest", t_min=0.0, t_max=np.inf, most=256, device=None):
+def trace(scene, origins, directions, mode="nearest", t_min=0.0, t_max=np.inf, most=256, device=None, time=0.0):
     """What rays hit, by the exact shapes.
 
     origins, directions: (n, 3), or (3,) for all; directions of any length, in which t counts. t_min, t_max: one or (n,); hits are
-    strictly between. Rays that are not finite or have no direction miss.
+    strictly between. Rays that are not finite or have no direction miss. time: seconds, one or (n,), for scenes that move; they stand
+    still before the shutter opens and after it closes.
 
     mode "nearest": a structured array of (n,), with "t" infinite where nothing is hit: t, error (bound on the distance of the point
     from the true surface, scene units), uv, object_id (as in Image.object_id), material_id, primitive (within its shape: of
@@ -269,17 +270,17 @@ def trace(scene, origins, directions, mode="nearest", t_min=0.0, t_max=np.inf, m
     if mode not in ("nearest", "any", "all"):
         raise InputError(f'mode: "nearest", "any" or "all" is needed, not {mode!r}')
     origins, directions = arrays.rows(origins, "origins", 3), arrays.rows(directions, "directions", 3)
-    t_min, t_max = arrays.scalars(t_min, "t_min"), arrays.scalars(t_max, "t_max")
-    count = arrays.common(origins=origins, directions=directions, t_min=t_min, t_max=t_max)
+    t_min, t_max, time = arrays.scalars(t_min, "t_min"), arrays.scalars(t_max, "t_max"), arrays.scalars(time, "time")
+    count = arrays.common(origins=origins, directions=directions, t_min=t_min, t_max=t_max, time=time)
     picker = _picker(scene, device)
     if mode == "all":
         most = _count(most, "most", 1 << 20)
         if count == 0:
             return np.empty(0, CROSSING)
-        return picker.crossings(count, origins, directions, t_min, t_max, most).view(CROSSING)
+        return picker.crossings(count, origins, directions, t_min, t_max, time, most).view(CROSSING)
     out = np.empty(count, CROSSING)
     if count:
-        picker.nearest(count, origins, directions, t_min, t_max, out.view(np.uint8))
+        picker.nearest(count, origins, directions, t_min, t_max, time, out.view(np.uint8))
     return np.isfinite(out["t"]) if mode == "any" else out
 
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 # Copyright Caplet authors
-"""Sensors of robots: depth cameras, segmentation, flow and events. Depths, ids and flow are those of the ray through each pixel's
+"""Sensors of robots: depth cameras, lidars, segmentation, flow and events. Depths, ids and flow are those of the ray through each pixel's
 middle, without shading."""
 import io
 import json
@@ -12,8 +12,11 @@ import numpy as np
 
 from .bridges.lidar import NOTHING
 from .errors import InputError
+from .files import replace_file
 from .rendering import trace
+from .scanner import RETURN, Scanner, save_returns, scan
 
+__all__ = ["EVENT", "Frame", "Pinhole", "RETURN", "Scanner", "coco", "depth_camera", "events", "flow", "save_returns", "scan", "segment"]
 EVENT = np.dtype([("t", np.float64), ("x", np.uint16), ("y", np.uint16), ("polarity", np.int8)])
 _MOST_SIDE = 65535
 
@@ -124,7 +127,7 @@ class Frame:
         if not 0 < unit < np.inf:
             raise InputError(f"unit: a positive number is needed, not {unit!r}")
         steps = np.rint(np.nan_to_num(self.depth.astype(np.float64) / unit, nan=0, posinf=0, neginf=0))
-        _replace(path, _grey_png(np.where((steps < 0) | (steps > 65535), 0, steps).astype(np.uint16)))
+        replace_file(path, _grey_png(np.where((steps < 0) | (steps > 65535), 0, steps).astype(np.uint16)))
 
     def save_points(self, path, world=False):
         """Writes the points that were measured: `.npy` (n, 3), `.ply` (binary, with normals in the world), or `.bin` as KITTI's
@@ -137,29 +140,15 @@ class Frame:
         if ending == ".npy":
             out = io.BytesIO()
             np.save(out, points)
-            _replace(path, out.getvalue())
+            replace_file(path, out.getvalue())
         elif ending == ".bin":
-            _replace(path, np.hstack([points, np.zeros((len(points), 1), "<f4")]).tobytes())
+            replace_file(path, np.hstack([points, np.zeros((len(points), 1), "<f4")]).tobytes())
         elif ending == ".ply":
             names = "".join(f"property float {name}\n" for name in ("x", "y", "z", "nx", "ny", "nz"))
             head = f"ply\nformat binary_little_endian 1.0\nelement vertex {len(points)}\n{names}end_header\n"
-            _replace(path, head.encode() + np.hstack([points, self.normal[is_there].astype("<f4")]).tobytes())
+            replace_file(path, head.encode() + np.hstack([points, self.normal[is_there].astype("<f4")]).tobytes())
         else:
             raise InputError(f"{os.fspath(path)!r}: .npy, .ply or .bin is needed")
-
-
-def _replace(path, data):
-    """Writes a file as a whole or not at all."""
-    path = os.fspath(path)
-    beside = f"{path}.{os.getpid()}.part"
-    try:
-        with open(beside, "wb") as file:
-            file.write(data)
-        os.replace(beside, path)
-    except OSError as error:
-        if os.path.exists(beside):
-            os.unlink(beside)
-        raise InputError(f"{path}: {error.strerror}") from error
 
 
 def _grey_png(values):
@@ -218,17 +207,26 @@ def _run_lengths(mask):
     return np.diff(np.concatenate([[0], ends])).astype(int).tolist()
 
 
-def segment(scene, camera, pose, *, amodal=True, most=256, device=None):
+def segment(scene, camera, pose, *, amodal=True, most=256, device=None, of=None):
     """The shapes that a camera sees, a dict each, by index: shape, name, mask (bool, (height, width)), box [x, y, width, height]
     and area (pixels) of what is visible; with `amodal` also amodal_mask, amodal_box and amodal_area of all of it within the picture,
     hidden or not. Shapes that are hidden wholly have area 0 and no box. most: crossings of one ray.
+
+    of: a number for each shape, 0 or more: shapes of one number are one thing, whose `shape` is that number and whose name is that of
+    its first shape. Of a robot (from_mujoco), model.geom_bodyid[scene.info["geom"]] makes things of MuJoCo's bodies.
     """
     pose, size = _pose(pose), (camera.height, camera.width)
     eye, ways, is_seen, _ = _rays(camera, pose)
     kept = np.flatnonzero(is_seen)
     names, pixels, found = scene.shapes, camera.pixels().astype(int), {}
+    if of is not None:
+        of = np.asarray(of)
+        if of.shape != (len(names),) or of.dtype.kind not in "iu" or of.min(initial=0) < 0:
+            raise InputError(f"of: a whole number, 0 or more, for each of the {len(names)} shapes is needed")
+        names = {int(number): names[int(np.flatnonzero(of == number)[0])] for number in np.unique(of)}
 
     def put(kind, shapes, rays):
+        shapes = shapes if of is None else of[shapes].astype(np.int64)
         order = np.argsort(shapes, kind="stable")
         starts = np.flatnonzero(np.diff(shapes[order], prepend=-1))
         for rows in np.split(order, starts[1:]) if len(order) else ():
@@ -266,7 +264,7 @@ def coco(frames, path=None, categories=None):
                 row["amodal_bbox"], row["amodal_area"] = one["amodal_box"], one["amodal_area"]
             out["annotations"].append(row)
     if path is not None:
-        _replace(path, json.dumps(out).encode())
+        replace_file(path, json.dumps(out).encode())
     return out
 
 

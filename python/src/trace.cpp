@@ -36,23 +36,29 @@ constexpr std::size_t rays_in_a_chunk = std::size_t{1} << 18;
 class Rays {
  public:
   Rays(std::size_t count, const Array& origins, const Array& directions, const Array& t_min,
-       const Array& t_max)
-      : count_(count), origins_(origins), directions_(directions), t_min_(t_min), t_max_(t_max) {
+       const Array& t_max, const Array& time)
+      : count_(count),
+        origins_(origins),
+        directions_(directions),
+        t_min_(t_min),
+        t_max_(t_max),
+        time_(time) {
     for (const Array* points : {&origins, &directions})
       if (points->ndim() != 2 || points->shape(1) != 3 ||
           (points->shape(0) != count && points->shape(0) != 1))
         throw nb::value_error("rays are arrays of shape (n, 3)");
-    for (const Array* ends : {&t_min, &t_max})
-      if (ends->ndim() != 1 || (ends->shape(0) != count && ends->shape(0) != 1))
-        throw nb::value_error("ends of rays: shape (n,)");
+    for (const Array* numbers : {&t_min, &t_max, &time})
+      if (numbers->ndim() != 1 || (numbers->shape(0) != count && numbers->shape(0) != 1))
+        throw nb::value_error("ends and times of rays: shape (n,)");
   }
   std::size_t count() const { return count_; }
 
   void read(std::size_t first, std::span<Ray> out) const {
     points(origins_, first, out, &Ray::origin);
     points(directions_, first, out, &Ray::direction);
-    ends(t_min_, first, out, &Ray::t_min);
-    ends(t_max_, first, out, &Ray::t_max);
+    numbers(t_min_, first, out, &Ray::t_min);
+    numbers(t_max_, first, out, &Ray::t_max);
+    numbers(time_, first, out, &Ray::time);
   }
 
  private:
@@ -65,24 +71,25 @@ class Rays {
           (out[i].*to)[k] = static_cast<float>(read((first + i) * step, k));
     });
   }
-  static void ends(const Array& from, std::size_t first, std::span<Ray> out, float Ray::*to) {
+  template <class Number>
+  static void numbers(const Array& from, std::size_t first, std::span<Ray> out, Number Ray::*to) {
     const std::size_t step = from.shape(0) == 1 ? 0 : 1;
     with_floats(from, [&](auto read) {
       for (std::size_t i = 0; i < out.size(); ++i)
-        out[i].*to = static_cast<float>(read((first + i) * step, 0));
+        out[i].*to = static_cast<Number>(read((first + i) * step, 0));
     });
   }
 
   std::size_t count_;
-  Array origins_, directions_, t_min_, t_max_;
+  Array origins_, directions_, t_min_, t_max_, time_;
 };
 
 /// `out`: bytes of as many crossings, which a structured array lends.
 template <class Owner>
 void nearest(Owner& held, std::size_t count, const Array& origins, const Array& directions,
-             const Array& t_min, const Array& t_max,
+             const Array& t_min, const Array& t_max, const Array& time,
              nb::ndarray<std::uint8_t, nb::ndim<1>, nb::c_contig, nb::device::cpu>& out) {
-  const Rays rays(count, origins, directions, t_min, t_max);
+  const Rays rays(count, origins, directions, t_min, t_max, time);
   if (out.shape(0) != count * sizeof(Crossing)) throw nb::value_error("room for other rays");
   std::uint8_t* const to = out.data();
   Released released;
@@ -103,8 +110,8 @@ void nearest(Owner& held, std::size_t count, const Array& origins, const Array& 
 
 template <class Owner>
 auto crossings(Owner& held, std::size_t count, const Array& origins, const Array& directions,
-               const Array& t_min, const Array& t_max, std::size_t most) {
-  const Rays rays(count, origins, directions, t_min, t_max);
+               const Array& t_min, const Array& t_max, const Array& time, std::size_t most) {
+  const Rays rays(count, origins, directions, t_min, t_max, time);
   std::vector<std::uint8_t> bytes;
   {
     Released released;

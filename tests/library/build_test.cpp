@@ -355,6 +355,34 @@ TEST_F(LibraryBuild, CapsulesThatMoveAreTakenAndGivenInBulk) {
   EXPECT_EQ(given.times, moving.times);
 }
 
+TEST_F(LibraryBuild, RaysMeetWhatMovesAtTheirTimes) {
+  caplet::Scene scene;
+  // A ball whose middle is at y = 4 t, from 0 to 1 second.
+  scene.add_capsules({{{0, 0, 0}, {0, 4, 0}}, {{0, 0, 0}, {0, 4, 0}}, {1, 1}, {}, {}, {}, {0, 1}});
+  scene.present();
+  caplet::Picker picker(scene, test_device());
+  caplet::Session session(scene, test_device());
+  std::vector<caplet::Ray> rays;
+  for (const double time : {0.0, 0.25, 1.0, -2.0, 3.0})
+    rays.push_back({{0, -10, 0}, {0, 1, 0}, 0, 100, time});
+  const std::vector<float> expected = {9, 10, 13, 9, 13};
+  const auto hits = picker.nearest(rays);
+  const auto lists = session.all(rays);
+  const auto every = picker.crossings(rays);
+  std::vector<caplet::Crossing> numbers(rays.size());
+  session.nearest(rays, numbers);
+  ASSERT_EQ(every.size(), 2 * rays.size());
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    ASSERT_TRUE(hits[i].has_value());
+    EXPECT_NEAR(hits[i]->t, expected[i], 1e-5F);
+    EXPECT_EQ(numbers[i].t, hits[i]->t);
+    ASSERT_EQ(lists[i].size(), 2U);
+    EXPECT_EQ(lists[i][0].t, hits[i]->t);
+    EXPECT_NEAR(lists[i][1].t, expected[i] + 2, 1e-5F);
+    EXPECT_EQ(every[2 * i].t, hits[i]->t);
+  }
+}
+
 TEST_F(LibraryBuild, CapsulesAreTakenAndGivenInBulk) {
   caplet::Scene scene = three_balls();
   scene.present();
