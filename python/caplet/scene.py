@@ -748,7 +748,8 @@ def load(path, **options):
 
     options: what the program takes as --NAME VALUE of a file and its picture, with _ for -: view="top" or a direction, up="z",
     projection="orthographic", light="flat", background="white", least_width=1.5, style="sticks",
-    show=["polymer: cartoon", "ligand: sticks"]... no_outside=True, for scenes of strangers: the file may name others in its own folder and below it alone.
+    show=["polymer: cartoon", "ligand: sticks"]... no_outside=True, for scenes of strangers: the file may name others in its own
+    folder and below it alone.
     """
     try:
         return Scene(_caplet.load(os.fspath(path), {name.replace("_", "-"): _option(value) for name, value in options.items()}))
