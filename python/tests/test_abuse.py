@@ -121,7 +121,7 @@ VALUES = {  # of required arguments, and of those that are tried as arrays: as t
     "seed": 1, "pose": np.eye(4), "azimuth": [0.0, 10], "elevation": [0.0, 5], "reach": 5.0, "tractogram": [THREE], "rays": 100, "most": 8, "time_limit": 5.0,
     "name": "name", "material": materials.diffuse(), "medium": None, "light": lights.point(), "scene": row, "path": None, "kelvin": 5000.0,
     "parameters": {}, "inside": media.homogeneous(), "messages": "wrong", "film": None, "image": None, "device": None, "devices": None, "agrees": True, "text": "", "json": "",
-    "index": 0, "first": 0, "times": [0.0, 1.0],
+    "index": 0, "first": 0, "times": [0.0, 1.0], "time": 0.5,
 }
 OF = {  # where the same name is something else
     ("add_polyhedron", "normals"): [[0, 0, 1.0], [0, 0, -1], [1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0]], ("set_light", "color"): [1.0, 2, 3],
