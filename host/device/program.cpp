@@ -138,12 +138,6 @@ Program Program::from_source(const Device& device, const std::string& name,
   const std::string all_options = options.empty() ? "-cl-std=CL1.2" : "-cl-std=CL1.2 " + options;
   const bool keeps_binary = cache == BinaryCache::always || !device.is_pocl();
   const std::string key = keeps_binary ? cache_key(device.info(), all_options, source) : "";
-  if (const char* to = std::getenv("CAPLET_BUILD_LOG")) {
-    FILE* f = fopen(to, "a");
-    fprintf(f, "%s|%s|%zx|%zu\n", name.c_str(), all_options.c_str(),
-            std::hash<std::string>()(source), source.size());
-    fclose(f);
-  }
   Program out;
   out.device_ = device;
   out.name_ = name;

@@ -50,20 +50,6 @@ glm::dvec3 linear(const glm::dvec3& srgb) {
   return {decoded_value({}, srgb.x), decoded_value({}, srgb.y), decoded_value({}, srgb.z)};
 }
 
-/// Parses "#rrggbb".
-std::optional<glm::dvec3> hex_color(std::string_view text) {
-  if (text.size() != 7 || text.front() != '#') return std::nullopt;
-  glm::dvec3 out(0);
-  for (int i = 0; i < 3; ++i) {
-    int value = 0;
-    const char* begin = text.data() + 1 + 2 * i;
-    const auto [end, error] = std::from_chars(begin, begin + 2, value, 16);
-    if (error != std::errc() || end != begin + 2 || value < 0) return std::nullopt;
-    out[i] = value / 255.0;
-  }
-  return linear(out);
-}
-
 const std::map<std::string, glm::dvec3>& named_colors() {
   static const std::map<std::string, glm::dvec3> colors = {
       {"white", glm::dvec3(1)},
@@ -121,6 +107,19 @@ glm::dvec3 parse_view(const std::string& text, const glm::dvec3& up, const std::
          "is no view (front, back, left, right, top, bottom, iso, or x,y,z toward the viewer); the "
          "nearest is '" +
              nearest_name(text, names) + "'");
+}
+
+std::optional<glm::dvec3> hex_color(std::string_view text) {
+  if (text.size() != 7 || text.front() != '#') return std::nullopt;
+  glm::dvec3 out(0);
+  for (int i = 0; i < 3; ++i) {
+    int value = 0;
+    const char* begin = text.data() + 1 + 2 * i;
+    const auto [end, error] = std::from_chars(begin, begin + 2, value, 16);
+    if (error != std::errc() || end != begin + 2 || value < 0) return std::nullopt;
+    out[i] = value / 255.0;
+  }
+  return linear(out);
 }
 
 Backdrop parse_backdrop(const std::string& text, const ImageReader& images,

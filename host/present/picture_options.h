@@ -8,6 +8,7 @@
 #include <glm/vec3.hpp>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "scene/image_reader.h"
 #include "scene/scene.h"
@@ -25,6 +26,9 @@ glm::dmat3 turned_up(const glm::dvec3& up);
 /// left, right (x), top, bottom, iso (all three alike), relative to `up`, or "x,y,z" of the world.
 /// Throws InputError that names `flag`.
 glm::dvec3 parse_view(const std::string& text, const glm::dvec3& up, const std::string& flag);
+
+/// Returns the colour of "#rrggbb", linear sRGB; none for any other text.
+std::optional<glm::dvec3> hex_color(std::string_view text);
 
 /// Parses "transparent", the name of a colour, "#rrggbb" or "r,g,b" (sRGB, from 0 to 1); anything
 /// else is a file that `images` reads. Throws InputError that names `flag`.

@@ -18,3 +18,10 @@ def replace_file(path, data):
         if os.path.exists(beside):
             os.unlink(beside)
         raise InputError(f"{path}: {error.strerror}") from error
+
+
+def ply_bytes(rows):
+    """A binary PLY file of points: each field of a structured array, of <f4, <f8 or <u2, is a property."""
+    kinds = {"<f4": "float", "<f8": "double", "<u2": "ushort"}
+    names = "".join(f"property {kinds[kind]} {name}\n" for name, kind in rows.dtype.descr)
+    return f"ply\nformat binary_little_endian 1.0\nelement vertex {len(rows)}\n{names}end_header\n".encode() + rows.tobytes()

@@ -9,7 +9,7 @@ import numpy as np
 from .bridges.cells import package
 from .bridges.lidar import NOTHING
 from .errors import InputError
-from .files import replace_file
+from .files import ply_bytes, replace_file
 from .rendering import trace
 
 RETURN = np.dtype([("t", np.float64), ("firing", np.uint32), ("ring", np.uint16), ("number", np.uint8), ("count", np.uint8), ("shape", np.uint32),
@@ -195,9 +195,7 @@ def save_returns(path, returns, world=False):
         rows["x"], rows["y"], rows["z"] = points.T
         for name in ("intensity", "ring", "t"):
             rows[name] = returns[name]
-        kinds = {"<f4": "float", "<u2": "ushort", "<f8": "double"}
-        names = "".join(f"property {kinds[kind]} {name}\n" for name, kind in row.descr)
-        out.write(f"ply\nformat binary_little_endian 1.0\nelement vertex {len(rows)}\n{names}end_header\n".encode() + rows.tobytes())
+        out.write(ply_bytes(rows))
     elif ending in (".las", ".laz"):
         _write_las(package("laspy", "sensors.save_returns"), returns, points, out, ending == ".laz")
     else:

@@ -12,7 +12,7 @@ import numpy as np
 
 from .bridges.lidar import NOTHING
 from .errors import InputError
-from .files import replace_file
+from .files import ply_bytes, replace_file
 from .rendering import trace
 from .scanner import RETURN, Scanner, save_returns, scan
 
@@ -144,9 +144,8 @@ class Frame:
         elif ending == ".bin":
             replace_file(path, np.hstack([points, np.zeros((len(points), 1), "<f4")]).tobytes())
         elif ending == ".ply":
-            names = "".join(f"property float {name}\n" for name in ("x", "y", "z", "nx", "ny", "nz"))
-            head = f"ply\nformat binary_little_endian 1.0\nelement vertex {len(points)}\n{names}end_header\n"
-            replace_file(path, head.encode() + np.hstack([points, self.normal[is_there].astype("<f4")]).tobytes())
+            rows = np.hstack([points, self.normal[is_there].astype("<f4")])
+            replace_file(path, ply_bytes(rows.view([(name, "<f4") for name in ("x", "y", "z", "nx", "ny", "nz")]).ravel()))
         else:
             raise InputError(f"{os.fspath(path)!r}: .npy, .ply or .bin is needed")
 

@@ -134,7 +134,7 @@ def test_returns_through_what_lets_light_through():
     near = Scanner([(1, 0, 0)], near=1.2, far=3)  # what is nearer takes its part of the light all the same
     made = scan(panes(), near, np.eye(4), mode="all", transmittance=through)
     assert np.abs(made["range"] - [1.5, 2, 2.5]).max() < 1e-6 and abs(made["intensity"][0] - 0.5 / 2.25) < 1e-6
-    # Of equal returns the nearer one is the strongest.
+    # Panes that reflect nothing make no returns.
     assert ranges("strongest", reflectance=[1, 0, 0], transmittance=[0, 1, 1]) == [4]
 
 

@@ -17,6 +17,7 @@
 #include "peptide.h"
 #include "support/data.h"
 #include "support/import_files.h"
+#include "support/log_of.h"
 
 namespace caplet {
 namespace selection_test {
@@ -309,6 +310,19 @@ TEST(Representations, HaveTheColorAskedFor) {
   EXPECT_EQ(two.materials.size(), 2U);
 }
 
+TEST(Representations, HaveTheLegendOfTheFirstThatHasOne) {
+  EXPECT_FALSE(shown("all: sticks by element").legend);
+  const Scene scene = shown("polymer: trace; ligand: spheres by bfactor");
+  ASSERT_TRUE(scene.legend);
+  EXPECT_EQ(scene.legend->title, "B factor");
+}
+
+TEST(Representations, ThatSelectNothingAreWarnedOf) {
+  test::LogOf log;
+  EXPECT_EQ(names_of(shown("all: spheres; water: sticks")).size(), 2U);
+  EXPECT_THAT(log.text(), HasSubstr("--show 'water' selects no atoms"));
+}
+
 TEST(Representations, OfAllAreThePictureWithoutThem) {
   for (const std::string style : {"ball-and-stick", "spheres", "sticks", "trace", "cartoon"}) {
     const Scene by_show = shown("all: " + style), by_style = shown("", {{{"style", style}}});
@@ -321,6 +335,7 @@ TEST(Representations, MistakesAreTold) {
   const auto told = [](const std::string& show, ImportOptions options = {}) {
     return complaint([&] { shown(show, options); });
   };
+  EXPECT_THAT(told("all: sticks;  watr : spheres"), HasSubstr("--show: 'watr', column 1 ('watr')"));
   EXPECT_THAT(told("polymer"), HasSubstr("':' and a style are missing"));
   EXPECT_THAT(told("polymer:"), HasSubstr("a style is missing"));
   EXPECT_THAT(told("polymer: carton"),

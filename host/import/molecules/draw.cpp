@@ -497,7 +497,7 @@ Imported import_molecule(const std::filesystem::path& path, const ImportOptions&
     const std::vector<bool> kept(molecule.residues.size(), true);
     for (MoleculeDrawing& drawing : drawings)
       for (Shape& shape : drawing.shapes(scene, kept)) scene.shapes.push_back(std::move(shape));
-    if (scene.shapes.empty())
+    if (scene.shapes.empty() && options.text("show"))
       throw InputError({"--show"}, "selects none of the file's atoms, or nothing that is drawn");
   }
   scene.contents = contents_of(molecule);

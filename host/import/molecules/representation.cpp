@@ -5,15 +5,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <initializer_list>
 #include <optional>
 #include <string_view>
 
 #include "base/error.h"
 #include "base/spelling.h"
-#include "import/detail/mesh_file.h"
 #include "import/detail/text_file.h"
+#include "present/picture_options.h"
 
 namespace caplet {
 
@@ -30,16 +29,6 @@ MoleculeColor usual_color(MoleculeStyle style) {
                                                                           : MoleculeColor::element;
 }
 
-/// Returns the colour of "#RRGGBB", linear sRGB.
-std::optional<glm::dvec3> hexadecimal_color(std::string_view text) {
-  unsigned value = 0;
-  if (text.size() != 7 || text[0] != '#') return std::nullopt;
-  const auto [end, error] = std::from_chars(text.data() + 1, text.data() + 7, value, 16);
-  if (error != std::errc() || end != text.data() + 7) return std::nullopt;
-  const auto byte = [&](unsigned shift) { return static_cast<float>(value >> shift & 255U); };
-  return glm::dvec3(decoded_color(glm::vec3(byte(16), byte(8), byte(0)), 255));
-}
-
 /// Reads one representation of --show.
 class RepresentationText {
  public:
@@ -49,7 +38,7 @@ class RepresentationText {
     const std::size_t colon = text_.rfind(':');
     if (colon == text_.npos) fail("':' and a style are missing after the selection");
     Representation out;
-    out.selection = text_.substr(0, colon);
+    out.selection = trimmed(text_.substr(0, colon));
     words_ = words_of(text_.substr(colon + 1));
     out.style = static_cast<MoleculeStyle>(named(style_names, "a style"));
     out.by = color.value_or(usual_color(out.style));
@@ -61,8 +50,7 @@ class RepresentationText {
         ++at_;
         out.opacity = opacity();
       } else {
-        fail(fmt::format("{} is neither 'by' nor 'opacity'",
-                         caplet::quoted(std::string(words_[at_]))));
+        fail(fmt::format("{} is neither 'by' nor 'opacity'", caplet::quoted(words_[at_])));
       }
     }
     return out;
@@ -70,8 +58,7 @@ class RepresentationText {
 
  private:
   [[noreturn]] void fail(const std::string& message) const {
-    throw InputError({"--show"},
-                     fmt::format("{}: {}", caplet::quoted(std::string(text_)), message));
+    throw InputError({"--show"}, fmt::format("{}: {}", caplet::quoted(text_), message));
   }
 
   std::size_t named(std::initializer_list<const char*> names, const char* what) {
@@ -87,8 +74,8 @@ class RepresentationText {
 
   void read_color(Representation& out) {
     if (at_ < words_.size() && words_[at_].starts_with('#')) {
-      const std::optional<glm::dvec3> color = hexadecimal_color(words_[at_]);
-      if (!color) fail(caplet::quoted(std::string(words_[at_])) + " is no color (#RRGGBB)");
+      const std::optional<glm::dvec3> color = hex_color(words_[at_]);
+      if (!color) fail(caplet::quoted(words_[at_]) + " is no color (#RRGGBB)");
       out.by = MoleculeColor::fixed;
       out.color = *color;
       ++at_;
@@ -102,7 +89,7 @@ class RepresentationText {
     const std::string_view word = words_[at_++];
     double out = 0;
     if (!parse_number(word, out) || !(out >= 0 && out <= 1))
-      fail(caplet::quoted(std::string(word)) + " is no opacity from 0 to 1");
+      fail(caplet::quoted(word) + " is no opacity from 0 to 1");
     return out;
   }
 
@@ -132,9 +119,9 @@ std::vector<Representation> asked_representations(const ImportOptions& options,
   }
   for (std::string_view rest = *show; !rest.empty();) {
     const std::size_t end = std::min(rest.find_first_of(";\n"), rest.size());
-    const std::string_view one = rest.substr(0, end);
+    const std::string_view one = trimmed(rest.substr(0, end));
     rest.remove_prefix(std::min(end + 1, rest.size()));
-    if (one.find_first_not_of(" \t\r\n") == one.npos) continue;
+    if (one.empty()) continue;
     out.push_back(RepresentationText(one).read(color));
   }
   if (out.empty()) throw InputError({"--show"}, "has no representation");

@@ -120,7 +120,7 @@ class Selection {
     const bool is_end = at_ >= words_.size();
     throw InputError(
         {"--show"},
-        fmt::format("{}, column {}{}: {}", caplet::quoted(std::string(text_)),
+        fmt::format("{}, column {}{}: {}", caplet::quoted(text_),
                     is_end ? text_.size() + 1 : words_[at_].column,
                     is_end ? "" : " (" + caplet::quoted(words_[at_].text) + ")", message));
   }
@@ -133,19 +133,16 @@ class Selection {
     return true;
   }
 
-  Atoms any() {
-    Atoms out = every();
-    while (take("or")) {
-      const Atoms other = every();
-      std::transform(out.begin(), out.end(), other.begin(), out.begin(), std::logical_or<>());
-    }
-    return out;
-  }
-  Atoms every() {
-    Atoms out = one();
-    while (take("and")) {
-      const Atoms other = one();
-      std::transform(out.begin(), out.end(), other.begin(), out.begin(), std::logical_and<>());
+  Atoms any() { return joined("or", &Selection::every, std::logical_or<>()); }
+  Atoms every() { return joined("and", &Selection::one, std::logical_and<>()); }
+
+  /// Reads operands with `word` between them.
+  template <class Join>
+  Atoms joined(std::string_view word, Atoms (Selection::*operand)(), const Join& join) {
+    Atoms out = (this->*operand)();
+    while (take(word)) {
+      const Atoms other = (this->*operand)();
+      std::transform(out.begin(), out.end(), other.begin(), out.begin(), join);
     }
     return out;
   }
