@@ -169,7 +169,7 @@ def test_files_of_returns(tmp_path):
     assert (rows[:, :3] == made["point"]).all() and (rows[:, 3] == made["intensity"]).all()
     sensors.save_returns(tmp_path / "r.ply", made, world=True)
     head, _, body = (tmp_path / "r.ply").read_bytes().partition(b"end_header\n")
-    assert b"element vertex 10\n" in head and b"property ushort ring\n" in head and len(body) == 10 * (4 * 4 + 2 + 8)
+    assert b"element vertex 10\n" in head and b"property ushort ring\nproperty double t\n" in head and len(body) == 10 * (4 * 4 + 2 + 8)
     assert np.frombuffer(body[:12], "<f4").tolist() == made["world"][0].astype(np.float32).tolist()
     assert np.frombuffer(body[16:18], "<u2")[0] == 7
     for wrong, why in (("r.xyz", "needed"), ("no/such/r.bin", "r.bin")):

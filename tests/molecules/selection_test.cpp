@@ -298,6 +298,7 @@ TEST(Representations, HaveTheColorAskedFor) {
   EXPECT_EQ(material("ligand: spheres by chain").name, "chain B");
   EXPECT_EQ(material("ligand: spheres by residue").name, "HEM");
   EXPECT_EQ(material("ligand: spheres").name, "Fe");
+  EXPECT_EQ(material("resid 6: spheres by secondary").name, "helix");
   EXPECT_EQ(material("ligand: spheres", {{{"color", "residue"}}}).name, "HEM");
   EXPECT_EQ(material("ligand: spheres by element", {{{"color", "residue"}}}).name, "Fe");
   // 255 is 1, 0 is 0 and 188 is 0.5029 in linear sRGB (IEC 61966-2-1).
@@ -312,9 +313,12 @@ TEST(Representations, HaveTheColorAskedFor) {
 
 TEST(Representations, HaveTheLegendOfTheFirstThatHasOne) {
   EXPECT_FALSE(shown("all: sticks by element").legend);
-  const Scene scene = shown("polymer: trace; ligand: spheres by bfactor");
-  ASSERT_TRUE(scene.legend);
-  EXPECT_EQ(scene.legend->title, "B factor");
+  for (const std::string show : {"polymer: trace; ligand: spheres by bfactor",
+                                 "ligand: spheres by bfactor; polymer: trace"}) {
+    const Scene scene = shown(show);
+    ASSERT_TRUE(scene.legend) << show;
+    EXPECT_EQ(scene.legend->title, "B factor");
+  }
 }
 
 TEST(Representations, ThatSelectNothingAreWarnedOf) {
