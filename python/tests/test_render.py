@@ -322,12 +322,12 @@ def test_the_interpreters_lock_is_released(ball, work, tmp_path):
     held, picker = caplet._caplet.Session(native, devices), caplet._caplet.Picker(native, devices[0])
     held.render(1, None, None)
     n = 1 << 17
-    origins, directions, ends = np.tile([[0, 0, 5.0]], (n, 1)), np.array([[0, 0, -1.0]]), (np.zeros(1), np.full(1, np.inf))
+    origins, directions, numbers = np.tile([[0, 0, 5.0]], (n, 1)), np.array([[0, 0, -1.0]]), (np.zeros(1), np.full(1, np.inf), np.zeros(1))
     out = np.empty(n, caplet.CROSSING).view(np.uint8)
     many = np.zeros((1_000_000, 3))
     (tmp_path / "big.capsules").write_text("<0, 0, 0> <1, 0, 0> 0.5\n" * 100_000)
-    calls = {"render": lambda: held.render(64, None, None), "trace": lambda: picker.nearest(n, origins, directions, *ends, out),
-             "all": lambda: picker.crossings(n, origins, directions, *ends, 16), "pick": lambda: picker.pixel(1, 1),
+    calls = {"render": lambda: held.render(64, None, None), "trace": lambda: picker.nearest(n, origins, directions, *numbers, out),
+             "all": lambda: picker.crossings(n, origins, directions, *numbers, 16), "pick": lambda: picker.pixel(1, 1),
              "add_capsules": lambda: native.add_capsules(len(many), many, many, np.ones(1), None, None, None, {}),
              "load": lambda: caplet._caplet.load(str(tmp_path / "big.capsules"), {})}
     ticks, inside, stop = [0], [False], threading.Event()
