@@ -281,16 +281,19 @@ def converges(program, scenes, out):
         # Every text of the state: what is asked for later may come when the picture is done.
         shown.script("const state = document.getElementById('state'); window.states = [state.textContent]; new MutationObserver(() => "
                      "window.states.push(state.textContent)).observe(state, {childList: true, characterData: true, subtree: true})")
-        shown.until("a picture", lambda: shown.pixels()[0] > 200)
-        first = shown.pixels()
+        stage = shown.find("stage").rect
+        size = (round(RATIO * stage["width"]), round(RATIO * stage["height"]))
+        # Before the first picture of the stage's size there are an empty canvas and, until the server knows the size, smaller ones.
+        pictures = []
+        shown.until("a picture", lambda: pictures.append(shown.pixels()) or pictures[-1][:2] == size)
+        first = pictures[-1]
         shown.until_samples(16)
         shown.until("the last state", lambda: re.search("16 of 16 samples", shown.find("state").text))
         states = shown.script("return window.states")
         noise = [float(found.group(1)) for found in (re.search(r"noise ([\d.e+]+) %", state) for state in states) if found]
         assert noise and noise[-1] < noise[0], states
         width, height, pixels = shown.pixels()
-        stage = shown.find("stage").rect
-        assert (width, height) == (round(RATIO * stage["width"]), round(RATIO * stage["height"])), (width, height, stage)
+        assert (width, height) == size, (width, height, stage)
         assert 0.1 < mean_difference(first, shown.pixels()) < 40
         assert 60 < sum(pixels) / len(pixels) < 220
         shown.picture(out / "converged.png")
