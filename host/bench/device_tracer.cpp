@@ -27,7 +27,7 @@ static void traced_hit(const Stage* g, uint item, const HitRecord* hit) {
   else g->hits[item] = *hit;
 }
 #define TRACED_TREE(g) (&(g)->tree)
-#define TRACED_ROOT(g) ((g)->root)
+#define TRACED_ROOT(g, item) ((g)->root)
 #if TRACED_ANY
 #define TRACED_ENOUGH(g, item) INFINITY
 #endif

@@ -37,14 +37,11 @@ Bounds placed_bounds(const Subtree& subtree, const Matrix& world_from_subtree,
     return motion->swept(box);
   }
   if (subtree.primitives.size() <= 256) {
-    for (const Shape* shape : subtree.shapes) {
-      Shape moved = *shape;
-      // A subtree with its own transform holds its shapes in their object space.
-      moved.world_from_object = subtree.placed == Matrix(1)
-                                    ? world_from_subtree * shape->world_from_object
-                                    : world_from_subtree;
-      box.extend(bounds_of(moved));
-    }
+    // A subtree with its own transform holds its shapes in their object space.
+    const bool baked = subtree.placed == Matrix(1);
+    for (const Shape* shape : subtree.shapes)
+      box.extend(bounds_of(shape->geometry, baked ? world_from_subtree * shape->world_from_object
+                                                  : world_from_subtree));
     return box;
   }
   for (int corner = 0; corner < 8; ++corner) {

@@ -101,7 +101,8 @@ const std::vector<float>& sent_of(const std::vector<float>& values, const FlatSc
   return &values == &flat.nodes && !packed.empty() ? packed : values;
 }
 
-/// Throws RunError that names the buffer that is too large.
+/// Throws RunError that names the buffer that is too large. A buffer is one allocation: several for
+/// the leaves, the largest, would be chosen between in some forty places of the innermost loops.
 void require_fit(const Device& device, const FlatScene& flat, const std::vector<float>& packed) {
   const DeviceInfo& info = device.info();
   constexpr double megabytes = 1e-6;

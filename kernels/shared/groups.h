@@ -216,6 +216,12 @@
   BUFFER(query_begin, uint, STATE)     /* first of each ray's records in `picks` */                  \
   GROUP_END(Crossings)
 
+// Queries of many worlds have these: a tree of its own places the instances of each.
+#define GROUP_WORLDS                 \
+  GROUP_BEGIN(Worlds, worlds)        \
+  BUFFER(world_roots, uint, STATE) /* by world: the first node of its tree */ \
+  GROUP_END(Worlds)
+
 #define GROUP_PICKS                 \
   GROUP_BEGIN(Picks, picks)         \
   BUFFER(picks, PickRecord, STATE)  \
@@ -227,7 +233,7 @@
 #define VIEW_GROUPS GROUP_VIEW GROUP_CAMERA
 #define PATH_GROUPS \
   GROUP_BATCH GROUP_RAYS GROUP_TIMES GROUP_RADIANCE GROUP_CARRIED GROUP_CONES GROUP_LAYERS GROUP_SHADOWS GROUP_MEDIUM_STACKS GROUP_QUEUES GROUP_SORT GROUP_COUNTERS
-#define QUERY_GROUPS GROUP_QUERY GROUP_CROSSINGS GROUP_PICKS
+#define QUERY_GROUPS GROUP_QUERY GROUP_CROSSINGS GROUP_WORLDS GROUP_PICKS
 #define ALL_GROUPS SCENE_GROUPS VIEW_GROUPS PATH_GROUPS GROUP_FILM QUERY_GROUPS
 
 #endif

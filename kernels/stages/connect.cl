@@ -14,7 +14,7 @@ static void traced_hit(const Stage* g, uint item, const HitRecord* hit) {
     g->radiance.path_radiance[path] += g->shadows.path_shadow_radiance[path];
 }
 #define TRACED_TREE(g) (&(g)->tree)
-#define TRACED_ROOT(g) ((g)->tree.world->root)
+#define TRACED_ROOT(g, item) ((g)->tree.world->root)
 #define TRACED_ENOUGH(g, item) \
   ((g)->shadows.path_shadow_target[(g)->shadows.queue_shadow[item]].enough)
 #define TRACED_TIME(g, item) PATH_TIME(g, (g)->shadows.queue_shadow[item])

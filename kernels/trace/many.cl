@@ -6,7 +6,10 @@
 // it. The including file defines
 //   __global const RayRecord* traced_ray_at(const Stage* g, uint item)
 //   void traced_hit(const Stage* g, uint item, const HitRecord* hit)
-//   TRACED_TREE(g), TRACED_ROOT(g)   // const Tree*, and the number of the node where rays begin
+//   TRACED_TREE(g)                   // const Tree*
+//   TRACED_ROOT(g, item)             // the number of the node where the ray begins
+//   TRACED_UNTIL(g, item)            // if not all rays have one root: the first ray after `item`
+//                                    // that may have another
 //   TRACED_ENOUGH(g, item)           // if some rays need not find the closest hit: one nearer than
 //                                    // this will do (INFINITY: any)
 //   TRACED_TIME(g, item)             // when the ray sees the scene, where something moves (Tree)
@@ -28,6 +31,9 @@
 #ifndef TRACED_TIME
 #define TRACED_TIME(g, item) 0.0f
 #endif
+#ifndef TRACED_UNTIL
+#define TRACED_UNTIL(g, item) CAPLET_NONE
+#endif
 #include "trace/eight.cl"
 #include "trace/trace.cl"
 
@@ -40,15 +46,18 @@ static void stage_share(const Stage* g, uint begin, uint end) {
   for (; begin < end; begin++) {
     const Tree then = tree_at(TRACED_TREE(g), TRACED_TIME(g, begin));
     const HitRecord hit =
-        trace_ray(&then, TRACED_ROOT(g), traced_ray(g, begin), TRACED_ENOUGH(g, begin));
+        trace_ray(&then, TRACED_ROOT(g, begin), traced_ray(g, begin), TRACED_ENOUGH(g, begin));
     traced_hit(g, begin, &hit);
   }
 }
 #elif TRACED_NEIGHBOURS
 #include "trace/stream.cl"
 static void stage_share(const Stage* g, uint begin, uint end) {
-  for (; begin < end; begin += CAPLET_STREAM_RAYS)
-    trace_stream(g, begin, min(end - begin, (uint)CAPLET_STREAM_RAYS));
+  while (begin < end) {
+    const uint next = min(min(end, TRACED_UNTIL(g, begin)), begin + CAPLET_STREAM_RAYS);
+    trace_stream(g, begin, next - begin);
+    begin = next;
+  }
 }
 #else
 #include "trace/pool.cl"
@@ -58,7 +67,7 @@ static void stage_share(const Stage* g, uint begin, uint end) { trace_pool(g, be
 static void stage_item(const Stage* g, uint item) {
   const Tree then = tree_at(TRACED_TREE(g), TRACED_TIME(g, item));
   const HitRecord hit =
-      trace_ray_at(&then, TRACED_ROOT(g), traced_ray_at(g, item), TRACED_ENOUGH(g, item));
+      trace_ray_at(&then, TRACED_ROOT(g, item), traced_ray_at(g, item), TRACED_ENOUGH(g, item));
   traced_hit(g, item, &hit);
 }
 #endif

@@ -123,7 +123,7 @@ static inline void pool_leave_instance(PooledRay* r, const Stage* g, const Tree*
 static inline int pool_begin_next(PooledRay* r, const Stage* g, uint* next, uint end) {
   const HitRecord miss = {INFINITY, CAPLET_NONE, CAPLET_NONE, 0};
   for (; *next < end; traced_hit(g, (*next)++, &miss))
-    if (pool_begin(r, g, TRACED_TREE(g), TRACED_ROOT(g), *next)) {
+    if (pool_begin(r, g, TRACED_TREE(g), TRACED_ROOT(g, *next), *next)) {
       (*next)++;
       return 1;
     }

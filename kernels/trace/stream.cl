@@ -43,7 +43,8 @@ typedef struct {
   uchar met[CAPLET_STREAM_RAYS + 8], near[CAPLET_STREAM_RAYS + 8];
 } StreamLists;
 
-static inline void stream_ray(StreamSpace* space, uint id, const SlabRay* s, const ShapeRay* shape,
+// Returns the bit of the ray's octant.
+static inline uint stream_ray(StreamSpace* space, uint id, const SlabRay* s, const ShapeRay* shape,
                               float t_min, float t_best, int valid) {
   StreamSlab* to = &space->slabs[id];
   to->near_ix = s->near_ix;
@@ -63,7 +64,9 @@ static inline void stream_ray(StreamSpace* space, uint id, const SlabRay* s, con
   space->shapes[id] = *shape;
   space->near[id] = near_ray((float3)(shape->ox, shape->oy, shape->oz),
                              (float3)(shape->dx, shape->dy, shape->dz));
-  space->octants[id] = (uchar)(valid ? octant_of(s) : 8);
+  const int octant = valid ? octant_of(s) : 8;
+  space->octants[id] = (uchar)octant;
+  return 1u << octant;
 }
 
 #define STREAM_WALK stream_within_instance
@@ -77,6 +80,7 @@ static void stream_instance(const Stage* g, uint first, const Tree* tree, uint i
                             StreamSpace* space, StreamSpace* inner, NearestHit* nearest,
                             StreamLists* l, int top, int at, int n) {
   const int begin = at + n;
+  uint octants = 0;
   for (int i = 0; i < n; i++) {
     const uint id = l->ids[at + i];
     const Tree then = tree_at(tree, TRACED_TIME(g, first + id));
@@ -86,16 +90,16 @@ static void stream_instance(const Stage* g, uint first, const Tree* tree, uint i
     ShapeRay shape;
     const int valid = ray_to_instance(&then, instance, (float3)(ray.ox, ray.oy, ray.oz),
                                       (float3)(ray.dx, ray.dy, ray.dz), t_min, &slab, &shape);
-    stream_ray(inner, id, &slab, &shape, t_min, nearest[id].t, valid);
+    octants |= stream_ray(inner, id, &slab, &shape, t_min, nearest[id].t, valid);
   }
   for (int flip = 0; flip < 8; flip++) {
+    if ((octants >> flip & 1u) == 0) continue;
     int begun = 0;
     for (int i = 0; i < n; i++) {
       const uchar id = l->ids[at + i];
       l->ids[begin + begun] = id;
       begun += inner->octants[id] == flip;
     }
-    if (begun == 0) continue;
     stream_within_instance(g, first, tree, tree->instances[instance].root, flip, instance, inner,
                            nearest, l, top, begin, begun);
   }
@@ -115,6 +119,7 @@ static void trace_stream(const Stage* g, uint first, uint count) {
   StreamSpace space, inner;
   NearestHit nearest[CAPLET_STREAM_RAYS];
   StreamLists lists;
+  uint octants = 0;
   for (uint i = 0; i < count; i++) {
     const RayRecord ray = traced_ray(g, first + i);
     const float3 o = (float3)(ray.ox, ray.oy, ray.oz), d = (float3)(ray.dx, ray.dy, ray.dz);
@@ -124,17 +129,17 @@ static void trace_stream(const Stage* g, uint first, uint count) {
     const ShapeRay shape = shape_ray_of(&then, o, d, t_min);
     nearest[i] = nothing_before(ray.t_max);
     const int valid = line_is_valid(o, d) && ray.t_min < ray.t_max && t_min < nearest[i].t;
-    stream_ray(&space, i, &slab, &shape, t_min, nearest[i].t, valid);
+    octants |= stream_ray(&space, i, &slab, &shape, t_min, nearest[i].t, valid);
   }
   for (int flip = 0; flip < 8; flip++) {
+    if ((octants >> flip & 1u) == 0) continue;
     int begun = 0;
     for (uint i = 0; i < count; i++) {
       lists.ids[begun] = (uchar)i;
       begun += space.octants[i] == flip;
     }
-    if (begun == 0) continue;
-    stream_world(g, first, tree, TRACED_ROOT(g), flip, CAPLET_NONE, &space, nearest, &lists, 0, 0,
-                 begun, &inner);
+    stream_world(g, first, tree, TRACED_ROOT(g, first), flip, CAPLET_NONE, &space, nearest, &lists,
+                 0, 0, begun, &inner);
   }
   for (uint i = 0; i < count; i++) {
     const HitRecord hit = hit_record(&nearest[i]);

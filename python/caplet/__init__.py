@@ -53,6 +53,7 @@ from .named import Blackbody, Camera, Light, Material, Medium, Texture
 from .rendering import CROSSING, Report, Session, devices, pick, render, trace, verify
 from .scene import Scene, Shape, Shapes, load
 from . import sensors
+from .batches import Batch, render_batch
 from .viewing import Viewer, view
 
 
@@ -66,8 +67,8 @@ def shape_parameters(type):
     return [(one["name"], tuple(one["types"])) for one in _caplet.statement_parameters("shape", type)]
 
 
-__all__ = ["Blackbody", "CROSSING", "Camera", "Error", "Image", "InputError", "Light", "Material", "Medium", "Report", "RunError", "Scene",
+__all__ = ["Batch", "Blackbody", "CROSSING", "Camera", "Error", "Image", "InputError", "Light", "Material", "Medium", "Report", "RunError", "Scene",
            "Session", "Shape", "Shapes", "Texture", "Viewer", "cameras", "color_map", "denoise", "devices", "errors", "formats", "from_gemmi",
            "from_meshio", "from_morphio", "from_mujoco", "from_neuroml", "from_nibabel", "from_pyvista", "from_sonata", "from_trimesh", "lidar", "lights", "load",
-           "load_film", "materials", "media", "pick", "render", "sensors", "set_log_level", "shape_parameters", "shape_types", "textures", "to_xarray", "trace", "verify", "view"]
+           "load_film", "materials", "media", "pick", "render", "render_batch", "sensors", "set_log_level", "shape_parameters", "shape_types", "textures", "to_xarray", "trace", "verify", "view"]
 __version__ = "0.1.0"

@@ -27,6 +27,7 @@ void bind_errors(nb::module_& m);
 void bind_scene(nb::module_& m);
 void bind_render(nb::module_& m);
 void bind_trace(nb::module_& m);
+void bind_batch(nb::module_& m);
 
 /// bool, numbers, text, arrays of 64-bit floats, lists of texts, and tuples of a word and numbers:
 /// ("texture", 3),

@@ -63,4 +63,5 @@ NB_MODULE(_caplet, m) {
   caplet_python::bind_scene(m);
   caplet_python::bind_render(m);
   caplet_python::bind_trace(m);
+  caplet_python::bind_batch(m);
 }

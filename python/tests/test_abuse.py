@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 import caplet
-from caplet import cameras, lights, materials, media, textures
+from caplet import cameras, lights, materials, media, sensors, textures
 
 TOLD = (TypeError, ValueError)  # InputError is a ValueError
 # What takes objects of other packages, and has tests with these; what takes none of what is tried here.
@@ -121,7 +121,7 @@ VALUES = {  # of required arguments, and of those that are tried as arrays: as t
     "seed": 1, "pose": np.eye(4), "azimuth": [0.0, 10], "elevation": [0.0, 5], "reach": 5.0, "tractogram": [THREE], "rays": 100, "most": 8, "time_limit": 5.0,
     "name": "name", "material": materials.diffuse(), "medium": None, "light": lights.point(), "scene": row, "path": None, "kelvin": 5000.0,
     "parameters": {}, "inside": media.homogeneous(), "messages": "wrong", "film": None, "image": None, "device": None, "devices": None, "agrees": True, "text": "", "json": "",
-    "index": 0, "first": 0, "times": [0.0, 1.0], "time": 0.5,
+    "index": 0, "first": 0, "times": [0.0, 1.0], "time": 0.5, "worlds": np.tile(np.eye(4), (2, 2, 1, 1)), "poses": [np.eye(4)] * 2,
 }
 OF = {  # where the same name is something else
     ("add_polyhedron", "normals"): [[0, 0, 1.0], [0, 0, -1], [1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0]], ("set_light", "color"): [1.0, 2, 3],
@@ -131,6 +131,7 @@ OF = {  # where the same name is something else
     ("from_nibabel", "radius"): 0.1, ("from_sonata", "radius"): 0.1, ("from_neuroml", "radius"): 0.1, ("from_neuroml", "cell"): "c",
     ("from_sonata", "ids"): [0, 1], ("from_sonata", "color"): [[0.1, 0.2, 0.3], [0.4, 0.5, 0.6], [0.7, 0.8, 0.9]],
     ("add", "radius"): 0.5, ("add_many", "radius"): 0.5, ("animate_instance", "transforms"): [np.eye(4)] * 2, ("animate_camera", "transforms"): [np.eye(4)] * 2,
+    ("render_batch", "camera"): sensors.Pinhole(4, 3, fx=4), ("render_batch", "moving"): [0, 1], ("render_batch", "mode"): "rays", ("render_batch", "layers"): ["depth"],
     ("animate", "p0"): [THREE[:2]] * 2, ("animate", "p1"): np.add([THREE[:2]] * 2, 1), ("animate", "radius"): [[0.1, 0.2]] * 2,
 }
 # Of entries that take more by **options: what of it holds numbers.

@@ -46,7 +46,7 @@ def test_the_page_of_circuits():
     assert result.attempted > 15 and result.failed == 0
 
 
-@pytest.mark.parametrize("name", ["scene", "rendering", "colors", "sensors", "scanner"])
+@pytest.mark.parametrize("name", ["scene", "rendering", "colors", "sensors", "scanner", "batches"])
 def test_docstrings(name):
     result = doctest.testmod(importlib.import_module(f"caplet.{name}"))
     assert result.attempted > 0 and result.failed == 0

@@ -9,14 +9,17 @@
 #include <cmath>
 #include <cstring>
 #include <glm/geometric.hpp>
+#include <glm/gtc/matrix_transform.hpp>
 #include <random>
 
 #include "import/import.h"
 #include "lower/camera.h"
 #include "lower/identity.h"
 #include "lower/lower.h"
+#include "lower/worlds.h"
 #include "reference/scene_reference.h"
 #include "render/query.h"
+#include "render/world_query.h"
 #include "render_scene.h"
 #include "support/data.h"
 #include "support/rays.h"
@@ -143,6 +146,27 @@ INSTANTIATE_TEST_SUITE_P(Files, QueryOfScene,
                                          "scenes/gallery.pbrt", "tests/query/solids.pbrt",
                                          "tests/render/everything.pbrt"));
 
+void expect_nearest(const Scene& scene, const reference::SceneReference& reference,
+                    std::span<const RayRecord> rays, std::span<const PickRecord> picks,
+                    Tally& tally) {
+  ASSERT_EQ(picks.size(), rays.size());
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    SCOPED_TRACE(i);
+    const reference::Ray ray{origin_of(rays[i]), direction_of(rays[i])};
+    const auto hit = reference.closest(ray);
+    ASSERT_EQ(picks[i].object != CAPLET_NONE, hit.has_value());
+    EXPECT_EQ(std::isfinite(picks[i].t), hit.has_value());
+    if (!hit) continue;
+    // Where surfaces lie on each other, either is the nearest.
+    std::vector<reference::SceneHit> hits = reference.all(ray);
+    const auto counterpart = counterpart_of(scene, picks[i], hits);
+    ASSERT_NE(counterpart, hits.end());
+    EXPECT_LE((counterpart->t - hit->t) * glm::length(ray.direction) * cosine_of(rays[i], picks[i]),
+              bound_of(rays[i], picks[i]));
+    expect_same(scene, rays[i], picks[i], *counterpart, tally);
+  }
+}
+
 TEST_P(QueryOfScene, NearestCrossingsAreTheReferences) {
   const Scene scene = scene_file(GetParam());
   const reference::SceneReference reference(scene);
@@ -152,28 +176,113 @@ TEST_P(QueryOfScene, NearestCrossingsAreTheReferences) {
   rays.insert(rays.end(), more.begin(), more.end());
   for (const Encoding encoding : {Encoding::wide, Encoding::single}) {
     Query query(flat, test::test_device(encoding));
-    const std::vector<PickRecord> picks = query.closest(rays);
-    ASSERT_EQ(picks.size(), rays.size());
     Tally tally;
-    for (std::size_t i = 0; i < rays.size(); ++i) {
-      SCOPED_TRACE(i);
-      const reference::Ray ray{origin_of(rays[i]), direction_of(rays[i])};
-      const auto hit = reference.closest(ray);
-      ASSERT_EQ(picks[i].object != CAPLET_NONE, hit.has_value());
-      EXPECT_EQ(std::isfinite(picks[i].t), hit.has_value());
-      if (!hit) continue;
-      // Where surfaces lie on each other, either is the nearest.
-      std::vector<reference::SceneHit> hits = reference.all(ray);
-      const auto counterpart = counterpart_of(scene, picks[i], hits);
-      ASSERT_NE(counterpart, hits.end());
-      EXPECT_LE(
-          (counterpart->t - hit->t) * glm::length(ray.direction) * cosine_of(rays[i], picks[i]),
-          bound_of(rays[i], picks[i]));
-      expect_same(scene, rays[i], picks[i], *counterpart, tally);
-    }
+    expect_nearest(scene, reference, rays, query.closest(rays), tally);
     EXPECT_GT(tally.hits, 300);
     EXPECT_LT(tally.grazing, tally.hits / 10);
   }
+}
+
+/// Returns the crossing as a query of `scene` itself reports it.
+PickRecord as_of(const Scene& scene, const Worlds& worlds, PickRecord pick) {
+  if (pick.object == CAPLET_NONE) return pick;
+  const WorldsIdentity identity = worlds.identity_of(pick);
+  const auto in_world = static_cast<std::uint32_t>(scene.shapes.size());
+  pick.object = pick.shape = identity.shape;
+  if (identity.instance == CAPLET_NONE) return pick;
+  pick.object = in_world + identity.instance;
+  for (std::size_t k = 0; k < scene.instances[identity.instance].object; ++k)
+    pick.shape -= static_cast<std::uint32_t>(scene.objects[k].shapes.size());
+  return pick;
+}
+
+TEST_P(QueryOfScene, ManyWorldsAreTheReferences) {
+  constexpr std::size_t count = 5, rays_each = 300;
+  const Scene scene = scene_file(GetParam());
+  std::vector<std::uint32_t> moving;
+  for (std::uint32_t i = 0; i < scene.shapes.size(); i += 2) moving.push_back(i);
+  std::ranges::reverse(moving);
+  std::mt19937_64 random(6);
+  std::uniform_real_distribution<double> unit(-1, 1);
+  std::vector<Scene> poses(count, scene);
+  std::vector<glm::dmat4> transforms;
+  std::vector<RayRecord> rays;
+  for (std::size_t w = 0; w < count; ++w) {
+    for (const std::uint32_t i : moving) {
+      glm::dmat4& m = poses[w].shapes[i].world_from_object;
+      if (w > 0) {  // the first world is the scene's own
+        const dvec3 axis = glm::normalize(dvec3(unit(random), unit(random), unit(random)));
+        m = glm::translate(glm::dmat4(1), dvec3(unit(random), unit(random), unit(random))) * m *
+            glm::rotate(glm::dmat4(1), 3 * unit(random), axis);
+        if (w == 3) m = m * glm::scale(glm::dmat4(1), dvec3(1.2, 0.8, 1));
+      }
+      transforms.push_back(m);
+    }
+    const auto own = random_rays(poses[w], rays_each, static_cast<unsigned>(7 + w));
+    rays.insert(rays.end(), own.begin(), own.end());
+  }
+  // A launch of one world's rays or less; of two worlds; of all.
+  for (const std::size_t batch_rays : {std::size_t{70}, 2 * rays_each, std::size_t{0}})
+    for (const Encoding encoding : {Encoding::wide, Encoding::single}) {
+      WorldQuery query(Worlds(scene, moving), test::test_device(encoding), batch_rays);
+      // Others before them, of another number, leave nothing behind.
+      query.place(2, std::span(transforms).last(2 * moving.size()));
+      query.place(count, transforms);
+      std::vector<PickRecord> picks(rays.size()), identities(rays.size());
+      query.closest(rays, true, picks);
+      query.closest(rays, false, identities);
+      for (std::size_t i = 0; i < rays.size(); ++i) {
+        PickRecord bare = picks[i];
+        bare.u = bare.v = bare.error = 0;
+        std::ranges::fill(bare.point, 0.0F);
+        std::ranges::fill(bare.normal, 0.0F);
+        EXPECT_EQ(0, std::memcmp(&bare, &identities[i], sizeof(PickRecord))) << i;
+      }
+      Tally tally;
+      for (std::size_t w = 0; w < count; ++w) {
+        SCOPED_TRACE(testing::Message() << "world " << w << ", launches of " << batch_rays);
+        std::vector<PickRecord> own;
+        for (std::size_t i = 0; i < rays_each; ++i)
+          own.push_back(as_of(poses[w], query.worlds(), picks[w * rays_each + i]));
+        expect_nearest(poses[w], reference::SceneReference(poses[w]),
+                       std::span(rays).subspan(w * rays_each, rays_each), own, tally);
+      }
+      EXPECT_GT(tally.hits, 300);
+      EXPECT_LT(tally.grazing, tally.hits / 10);
+    }
+}
+
+TEST(Worlds, RefuseWhatHasNoPlace) {
+  const Scene scene = scene_file("scenes/capsules.pbrt");
+  const std::vector<std::uint32_t> moving = {0, 1};
+  Worlds worlds(scene, moving);
+  std::vector<glm::dmat4> transforms(6, glm::dmat4(1));
+  worlds.place(3, transforms);
+  EXPECT_EQ(worlds.roots().size(), 3u);
+  const auto message = [&](const glm::dmat4& wrong) -> std::string {
+    transforms[3] = wrong;
+    try {
+      worlds.place(3, transforms, 100);
+    } catch (const InputError& error) {
+      EXPECT_TRUE(worlds.roots().empty());
+      return error.what();
+    }
+    return "placed";
+  };
+  const std::string said =
+      "world 101: the transform of moving shape 1 is not affine, not finite, or singular (it "
+      "flattens the shape)";
+  EXPECT_EQ(message(glm::scale(glm::dmat4(1), dvec3(1, 0, 1))), said);
+  for (const double far : {double{NAN}, double{INFINITY}}) {
+    glm::dmat4 nowhere(1);
+    nowhere[3][1] = far;
+    EXPECT_EQ(message(nowhere), said);
+  }
+  glm::dmat4 perspective(1);
+  perspective[2][3] = 0.5;
+  EXPECT_EQ(message(perspective), said);
+  EXPECT_EQ(message(glm::dmat4(1)), "placed");
+  EXPECT_THROW(Worlds(scene_file("scenes/motion.pbrt"), moving), InputError);
 }
 
 TEST_P(QueryOfScene, ListsAreTheReferences) {

@@ -2,7 +2,9 @@
 // Copyright Caplet authors
 //
 // PLY meshes (G. Turk 1994): ascii, binary of either byte order, gzipped. Polygons are
-// triangulated.
+// triangulated. assimp 5.2 is no substitute: it reads beyond the end of truncated files, refuses
+// faces before vertices, drops a binary body's first byte if it is 0x0a, and its errors have no
+// lines.
 #pragma once
 
 #include <cstddef>

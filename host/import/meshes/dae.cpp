@@ -2,7 +2,8 @@
 // Copyright Caplet authors
 //
 // COLLADA 1.4 and 1.5: the geometry of the visual scene, placed by its nodes, and the colours and
-// images of its materials. Conventions: docs/formats/meshes.md.
+// images of its materials. Conventions: docs/formats/meshes.md. assimp 5.2 is no substitute: it
+// took 3 GB for a damaged file of 2 KiB, and leaked memory for files that it refused.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -84,10 +84,15 @@ def _add(scene, mujoco, model, geom, options, far):
     raise InputError(f"geom {geom}: MuJoCo's geom type {kind} is not known")
 
 
-def _camera(scene, mujoco, model, data, camera):
+def _camera_number(mujoco, model, camera):
     number = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_CAMERA, camera) if isinstance(camera, str) else int(camera)
     if not 0 <= number < model.ncam:
         raise InputError(f"camera: the model has no camera {camera!r}, of {model.ncam}")
+    return number
+
+
+def _camera(scene, mujoco, model, data, camera):
+    number = _camera_number(mujoco, model, camera)
     place = np.eye(4)
     place[:3, :3] = np.asarray(data.cam_xmat[number]).reshape(3, 3) @ np.diag([1, 1, -1])  # it looks along -z
     place[:3, 3] = data.cam_xpos[number]
@@ -123,7 +128,8 @@ def from_mujoco(model, data=None, groups=(0, 1, 2), camera=None, lights="studio"
 
     Spheres, capsules, cylinders, boxes and ellipsoids are exact; planes, meshes and height fields are triangles. Colours are taken as
     a screen's; what is quite transparent is left out. scene.info["geom"]: the geom of each shape, so that
-    scene.info["geom"][image.object_id] is a segmentation. update_mujoco(scene, data) moves all of it.
+    scene.info["geom"][image.object_id] is a segmentation; scene.info["moving"]: shapes of bodies that are not fixed to the world.
+    update_mujoco(scene, data) moves all of it.
     """
     import mujoco
     if data is None:
@@ -142,6 +148,7 @@ def from_mujoco(model, data=None, groups=(0, 1, 2), camera=None, lights="studio"
         _add(scene, mujoco, model, geom, options, far)
         geoms.append(geom)
     scene.info["geom"] = np.array(geoms, dtype=np.int64)
+    scene.info["moving"] = np.flatnonzero(model.body_weldid[model.geom_bodyid[scene.info["geom"]]] != 0)
     scene.info["scale"] = {i: np.diag([*model.geom_size[geom], 1]) for i, geom in enumerate(geoms)
                            if model.geom_type[geom] == int(mujoco.mjtGeom.mjGEOM_ELLIPSOID)}
     if lights == "model":
@@ -162,3 +169,42 @@ def update_mujoco(scene, data):
     places = _transforms(data)
     for number, geom in enumerate(scene.info["geom"]):
         scene.shape(number).transform = places[geom] @ scene.info["scale"].get(number, np.eye(4))
+
+
+def mujoco_camera(model, camera, width, height):
+    """The caplet.sensors.Pinhole of one of the model's cameras, by name or number, for pictures of this size."""
+    import mujoco
+    from ..sensors import Pinhole
+    return Pinhole(width, height, fx=height / 2 / np.tan(np.radians(model.cam_fovy[_camera_number(mujoco, model, camera)]) / 2))
+
+
+def mujoco_worlds(scene, model, qpos, camera=None):
+    """The worlds of many states of a model, for caplet.Batch and caplet.render_batch of the scene that from_mujoco made of it: the
+    transforms (n, m, 4, 4) of the shapes scene.info["moving"], those of bodies that are not fixed to the world.
+
+    qpos: (n, model.nq), states as mujoco.MjData.qpos has them. camera: one of the model's, by name or number: then also its poses
+    (n, 4, 4), for its mujoco_camera.
+    """
+    import mujoco
+    qpos = np.asarray(qpos, dtype=np.float64)
+    if qpos.ndim != 2 or qpos.shape[1] != model.nq:
+        raise InputError(f"qpos: shape (n, {model.nq}) is needed, not {qpos.shape}")
+    number = None if camera is None else _camera_number(mujoco, model, camera)
+    moving, count, data = scene.info["moving"], len(qpos), mujoco.MjData(model)
+    geoms = scene.info["geom"][moving]
+    worlds, poses = (np.zeros((count, *more, 4, 4)) for more in ((len(geoms),), ()))
+    worlds[..., 3, 3] = poses[..., 3, 3] = 1
+    for i, state in enumerate(qpos):
+        data.qpos[:] = state
+        mujoco.mj_kinematics(model, data)
+        worlds[i, :, :3, :3] = data.geom_xmat[geoms].reshape(-1, 3, 3)
+        worlds[i, :, :3, 3] = data.geom_xpos[geoms]
+        if number is not None:
+            mujoco.mj_comPos(model, data)  # cameras may follow the centre of mass
+            mujoco.mj_camlight(model, data)
+            poses[i, :3, :3] = data.cam_xmat[number].reshape(3, 3) * [1, -1, -1]  # it looks along -z, y up
+            poses[i, :3, 3] = data.cam_xpos[number]
+    for i, shape in enumerate(moving):
+        if shape in scene.info["scale"]:
+            worlds[:, i] = worlds[:, i] @ scene.info["scale"][shape]
+    return worlds if number is None else (worlds, poses)

@@ -1,0 +1,163 @@
+# SPDX-License-Identifier: Apache-2.0
+# Copyright Caplet authors
+"""Many worlds: poses of one scene, as cameras see them, by the thousand."""
+import numpy as np
+
+from . import _caplet, arrays
+from .errors import InputError
+from .image import Image
+from .rendering import _count, _devices, _scene
+from .sensors import Pinhole
+
+_LAYERS = {"depth": ("t", np.float32), "shape": ("shape", np.uint32), "instance": ("instance", np.uint32), "primitive": ("primitive", np.uint32),
+           "material_id": ("material_id", np.uint32), "normal": ("normal", np.float32), "point": ("point", np.float32)}
+_MODES = ("rays", "direct", "paths")
+_FLIP = np.diag([1.0, -1, 1, 1])  # to a Pinhole's axes, y down, from those of cameras in scenes
+
+
+def _moving(scene, moving):
+    names = scene.shapes
+    if moving is None:
+        return [i for i in range(len(names)) if scene.shape(i).object == ""]
+    out = []
+    for which in [moving] if isinstance(moving, (str, int, np.integer)) else moving:
+        if isinstance(which, str):
+            which = scene._native.shape(which)
+        elif isinstance(which, bool) or not isinstance(which, (int, np.integer)) or not 0 <= which < len(names):
+            raise InputError(f"moving: names of shapes, or numbers below {len(names)}, are needed, not {which!r}")
+        out.append(int(which))
+    return out
+
+
+def _matrices(value, name, shapes):
+    """An array of matrices as (..., 12) of 64-bit floats. `shapes`: what their number may look like, by dimensions."""
+    array = arrays.floats(value, name)
+    if array.ndim - 2 not in shapes or array.shape[-2:] not in ((4, 4), (3, 4)):
+        raise InputError(f"{name}: shape {' or '.join(f'({one}4, 4)' for one in shapes.values())} is needed, not {array.shape}")
+    return arrays.transforms(array.reshape(-1, *array.shape[-2:]), name).reshape(*array.shape[:-2], 12)
+
+
+class _Views:
+    """Checks what worlds and poses are: the worlds' matrices (n, m, 12), the cameras' (n, c, 12), and the shape of what is seen."""
+
+    def __init__(self, worlds, moving, camera, poses):
+        if not isinstance(camera, Pinhole):
+            raise InputError(f"camera: a caplet.sensors.Pinhole is needed, not {type(camera).__name__}")
+        self.worlds = _matrices(worlds, "worlds", {2: "n, m, "})
+        count = len(self.worlds)
+        if self.worlds.shape[1] != moving:
+            raise InputError(f"worlds: {self.worlds.shape[1]} transforms each, and {moving} shapes move")
+        poses = _matrices(poses, "poses", {0: "", 1: "n, ", 2: "n, c, "})
+        if poses.ndim > 1 and len(poses) != count:
+            raise InputError(f"poses: {len(poses)} of them, and {count} worlds")
+        self.shape = (count, *poses.shape[1:-1], camera.height, camera.width)
+        poses = np.broadcast_to(poses, (count, *poses.shape[1:]) if poses.ndim > 1 else (count, 12))
+        self.cameras = np.ascontiguousarray(poses if poses.ndim == 3 else poses[:, np.newaxis])
+
+
+class Batch:
+    """The shapes of a scene on a device, once for many worlds. In each world some shapes are elsewhere.
+
+    moving: names or numbers of those shapes, each once; None: all that are not of an object. The scene stays as it is here: later
+    changes do not come along. Shapes of a scene that moves while its shutter is open cannot be seen so.
+
+    >>> from caplet import Scene
+    >>> scene = Scene()
+    >>> ball = scene.add_spheres((0, 0, 0), 1, name="ball")
+    >>> worlds = np.tile(np.eye(4), (3, 1, 1, 1))
+    >>> worlds[:, 0, 2, 3] = 5, 6, 7
+    >>> seen = Batch(scene, "ball").look(worlds, Pinhole(3, 3, fx=10), np.eye(4))
+    >>> seen["depth"].shape, seen["depth"][:, 1, 1].tolist()
+    ((3, 3, 3), [4.0, 5.0, 6.0])
+    """
+
+    def __init__(self, scene, moving=None, device=None):
+        native = _scene(scene)._native
+        self.moving = _moving(scene, moving)
+        self._native = _caplet.Batch(native, self.moving, _devices(device)[0])
+
+    def __repr__(self):
+        return f"<caplet.Batch: {len(self.moving)} shapes move>"
+
+    def look(self, worlds, camera, poses, layers=("depth", "shape"), kind="planar"):
+        """What one ray through the middle of each pixel meets in each world: a dict of arrays (n, height, width), by layer.
+
+        worlds: (n, m, 4, 4), world from object of each moving shape, as Shape.transform is. camera: a caplet.sensors.Pinhole. poses:
+        world from camera, (4, 4), one a world (n, 4, 4), or c of them (n, c, 4, 4), which makes arrays of (n, c, height, width).
+        layers: of "depth" (NaN where nothing is; kind: "planar", along z, or "range", along the ray), "shape" (index of
+        Scene.shapes), "instance", "primitive", "material_id" (2^32 - 1 where there is none), "normal" and "point" (world, with a
+        last dimension of 3; 0 where nothing is).
+        """
+        if kind not in ("planar", "range"):
+            raise InputError(f'kind: "planar" or "range" is needed, not {kind!r}')
+        layers = [layers] if isinstance(layers, str) else list(layers)
+        for layer in layers:
+            if layer not in _LAYERS:
+                raise InputError(f"layers: {', '.join(_LAYERS)} are there, not {layer!r}")
+        views = _Views(worlds, len(self.moving), camera, poses)
+        directions = camera.unproject(camera.pixels())
+        if kind == "range":
+            directions /= np.linalg.norm(directions, axis=1)[:, None]
+        out = {layer: np.empty(views.shape + ((3,) if layer in ("normal", "point") else ()), _LAYERS[layer][1]) for layer in layers}
+        rooms = {_LAYERS[layer][0]: room.reshape(-1) for layer, room in out.items()}
+        rest = dict.fromkeys((room for room, _ in _LAYERS.values()))
+        self._native.nearest(len(views.worlds), views.worlds.reshape(-1, 12), views.cameras.reshape(-1, 12),
+                             np.ascontiguousarray(directions, dtype=np.float32), **{**rest, **rooms})
+        if "depth" in out:
+            out["depth"][np.isinf(out["depth"])] = np.nan
+        return out
+
+
+def _pictures(scene, moving, views, camera, mode, spp, seed, device):
+    native = _scene(scene)._native.copy()
+    native.set_size(camera.width, camera.height)
+    if mode == "direct":
+        native.max_depth = 1
+    if seed is not None:
+        native.seed = int(seed)
+    k1, k2, p1, p2, k3, k4, k5, k6 = camera.distortion.tolist()
+    lens = {"fx": camera.fx, "fy": camera.fy, "cx": camera.cx, "cy": camera.cy,
+            "k1": k1, "k2": k2, "k3": k3, "k4": k4, "k5": k5, "k6": k6, "p1": p1, "p2": p2}
+    out, session, shown = np.empty(views.shape + (3,), np.float32), None, None
+    pictures = out.reshape(*views.cameras.shape[:2], camera.height, camera.width, 3)
+    for w, places in enumerate(views.worlds):
+        for shape, place in zip(moving, places):
+            native.set_transform(shape, place)
+        for c, pose in enumerate(views.cameras[w]):
+            if shown is None or not np.array_equal(shown, pose):
+                pose_4 = np.vstack([pose.reshape(3, 4), [0, 0, 0, 1]]) @ _FLIP
+                native.set_camera("opencv", lens, arrays.transform(pose_4))
+                shown = pose
+            if session is None:
+                session = _caplet.Session(native, _devices(device), False, False)
+            else:
+                session.update(native)
+            session.render(spp, None, None)
+            pictures[w, c] = Image(session.film()).rgb
+    return out
+
+
+def render_batch(scene, worlds, camera, poses, moving=None, mode="rays", layers=None, spp=16, seed=None, device=None):
+    """What cameras see of many worlds of one scene: a dict of arrays, as Batch.look returns them.
+
+    scene, worlds, camera, poses, moving: as in Batch. mode: "rays", one a pixel, without shading (layers: "depth" and "shape", or
+    as in Batch.look); "direct", pictures lit by what comes from lights without a detour, and "paths", by all of it: layer "rgb", linear
+    sRGB (n, height, width, 3), with `spp` samples a pixel and the scene's seed or another.
+
+    >>> from caplet import Scene
+    >>> scene = Scene()
+    >>> ball = scene.add_spheres((0, 0, 0), 1, name="ball")
+    >>> worlds = np.tile(np.eye(4), (2, 1, 1, 1))
+    >>> worlds[:, 0, 2, 3] = 5, 6
+    >>> render_batch(scene, worlds, Pinhole(16, 9, fx=20), np.eye(4), mode="direct")["rgb"].shape
+    (2, 9, 16, 3)
+    """
+    if mode not in _MODES:
+        raise InputError(f"mode: one of {', '.join(_MODES)} is needed, not {mode!r}")
+    if mode == "rays":
+        return Batch(scene, moving, device).look(worlds, camera, poses, ("depth", "shape") if layers is None else layers)
+    if layers is not None and list(layers) != ["rgb"]:
+        raise InputError('layers: pictures have "rgb" alone')
+    numbers = _moving(_scene(scene), moving)
+    views = _Views(worlds, len(numbers), camera, poses)
+    return {"rgb": _pictures(scene, numbers, views, camera, mode, _count(spp, "spp", 1 << 24), seed, device)}

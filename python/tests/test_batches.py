@@ -1,0 +1,231 @@
+# SPDX-License-Identifier: Apache-2.0
+# Copyright Caplet authors
+"""Many worlds against closed forms, against each world alone, and against MuJoCo."""
+import os
+import pathlib
+
+import numpy as np
+import pytest
+
+import caplet
+from caplet import materials
+from caplet.sensors import Pinhole
+from shared_data import data
+
+SOURCE = pathlib.Path(os.environ["CAPLET_SOURCE"])
+NONE = 2**32 - 1
+
+
+def placed(*at):
+    out = np.eye(4)
+    out[:3, 3] = at
+    return out
+
+
+def turned(rng):
+    """A random rotation: of a matrix of normal numbers, what is orthogonal."""
+    q, r = np.linalg.qr(rng.normal(size=(3, 3)))
+    q = q * np.sign(np.diag(r))
+    return q if np.linalg.det(q) > 0 else q[:, [1, 0, 2]]
+
+
+@pytest.fixture
+def parts():
+    """Shapes of most kinds about the origin; the last two do not move, and one of them is an instance's."""
+    scene = caplet.Scene()
+    scene.add_capsules([[-0.5, 0, 0], [0, -0.5, 0]], [[0.5, 0, 0], [0, 0.5, 0]], [0.2, 0.1], color=[(1, 0, 0), (0, 1, 0)], name="cross")
+    scene.add("cylinder", p0=(0, 0, -0.4), p1=(0, 0, 0.4), radius=0.2, name="rod", onesided=True, material=materials.diffuse(reflectance=(0, 0, 1)))
+    scene.add("box", p0=(-0.3, -0.2, -0.1), p1=(0.3, 0.2, 0.1), name="brick")
+    scene.add_mesh([[0, 0, 0], [0.8, 0, 0], [0, 0.8, 0], [0, 0, 0.8]], [[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]], name="tetrahedron")
+    scene.add("sphere", radius=0.4, name="egg", transform=np.diag([1, 2, 0.5, 1]))
+    scene.add("box", p0=(-4, -4, 5), p1=(4, 4, 5.5), name="wall")
+    scene.add("sphere", radius=0.3, object="bead", name="bead")
+    scene.add_instances("bead", [placed(1.5, 0, 0), placed(-1.5, 0, 0)])
+    return scene
+
+
+CAMERA = Pinhole(40, 30, fx=30, cx=18.3, cy=15.2, distortion=(-0.1, 0.02, 0.001, -0.002))
+
+
+def poses_of(scene, moving, count, rng):
+    worlds = np.zeros((count, len(moving), 4, 4))
+    for world in worlds:
+        for i, which in enumerate(moving):
+            own = np.asarray(scene.shape(which).transform).reshape(-1, 4)
+            own = np.vstack([own[:3], [0, 0, 0, 1]])
+            place = placed(*rng.uniform(-1.5, 1.5, 3))
+            place[:3, :3] = turned(rng)
+            world[i] = place @ own
+    return worlds
+
+
+def test_worlds_are_those_of_each_alone(parts):
+    rng = np.random.default_rng(1)
+    moving = ["egg", "cross", 1, "brick", "tetrahedron"]
+    worlds = poses_of(parts, moving, 12, rng)
+    poses = np.stack([[placed(0, 0, -5), placed(0.5, -0.3, -4)]] * 12)
+    poses[:, 1, :3, :3] = [[0.8, 0, 0.6], [0, 1, 0], [-0.6, 0, 0.8]]
+    batch = caplet.Batch(parts, moving)
+    layers = ("depth", "shape", "instance", "primitive", "material_id", "normal", "point")
+    seen = batch.look(worlds, CAMERA, poses, layers, kind="range")
+    assert seen["depth"].shape == (12, 2, 30, 40) and seen["normal"].shape == (12, 2, 30, 40, 3)
+    ways = CAMERA.unproject(CAMERA.pixels())
+    ways /= np.linalg.norm(ways, axis=1)[:, None]
+    hits_seen, other = 0, 0
+    for w, world in enumerate(worlds):
+        for which, place in zip(moving, world):
+            parts.shape(which).transform = place
+        for c in range(2):
+            hits = caplet.trace(parts, poses[w, c, :3, 3], ways @ poses[w, c, :3, :3].T)
+            own = {layer: seen[layer][w, c].reshape(1200, -1).squeeze() for layer in layers}
+            is_hit = np.isfinite(hits["t"])
+            # Rays are the same to the bit; where a shape is placed by an instance rounds otherwise, so that a ray that grazes may miss.
+            same = (own["shape"] == hits["shape"]) & (own["instance"] == hits["instance"]) & (own["primitive"] == hits["primitive"])
+            assert (np.isnan(own["depth"]) == (own["shape"] == NONE)).all()
+            assert (own["material_id"] == hits["material_id"])[same].all()
+            cosine = np.abs((hits["normal"] * (ways @ poses[w, c, :3, :3].T)).sum(axis=1))
+            front = same & is_hit & (cosine > 0.1)
+            # Each is within `error` of the surface along the normal (docs/numerics.md): two of them, and the rounding of the places.
+            bound = (4 * hits["error"] + 64 * 2**-24 * 8)[front] / cosine[front]
+            assert (np.abs(own["depth"] - hits["t"])[front] <= bound).all()
+            assert (np.abs(own["point"] - hits["point"])[front].max(axis=1) <= bound).all()
+            assert np.abs(own["normal"] - hits["normal"])[front].max() < 1e-3
+            assert (own["normal"][own["shape"] == NONE] == 0).all()
+            hits_seen += is_hit.sum()
+            other += (~same).sum()
+    assert hits_seen > 10_000 and other <= 12, (hits_seen, other)
+    assert {1, 2, 5, 6} <= set(np.unique(seen["shape"])) and set(np.unique(seen["instance"])) == {0, 1, NONE}
+
+
+def test_balls_are_where_they_are_put():
+    scene = caplet.Scene()
+    scene.add_spheres((0, 0, 0), 0.5, name="ball")
+    z = np.linspace(2, 40, 500)
+    worlds = np.stack([[placed(0, 0, far)] for far in z])
+    camera = Pinhole(33, 33, fx=40)
+    seen = caplet.render_batch(scene, worlds, camera, np.eye(4))
+    assert list(seen) == ["depth", "shape"]
+    for far, depth in zip(z, seen["depth"]):
+        ways = camera.unproject(camera.pixels())
+        b, c, dd = far, far * far - 0.25, (ways**2).sum(axis=1)
+        inside = b * b - dd * c
+        near = np.where(inside > 0, (b - np.sqrt(np.maximum(inside, 0))) / dd, np.nan).reshape(33, 33)
+        clear = np.abs(inside).reshape(33, 33) > 1e-4 * far * far
+        assert (np.isnan(depth) == np.isnan(near))[clear].all()
+        met = clear & ~np.isnan(near)
+        # The depth of a point that is off by 16 eps of the distance along the normal, at this angle.
+        assert met.sum() > 0 or far > 20
+        assert np.abs(depth - near)[met].max(initial=0) < 64 * 2**-24 * far / 0.01
+
+
+def test_numbers_of_rays_and_worlds_do_not_matter(parts):
+    rng = np.random.default_rng(2)
+    worlds = poses_of(parts, ["rod", "egg"], 40, rng)
+    batch = caplet.Batch(parts, ["rod", "egg"])
+    camera = Pinhole(97, 61, fx=60)  # 40 x 5917 rays: several launches, none with a round number
+    layers = ("depth", "shape", "instance", "primitive", "material_id", "normal", "point")
+    whole = batch.look(worlds, camera, placed(0, 0, -5), layers)
+    for w in (0, 17, 39):
+        alone = batch.look(worlds[w:w + 1], camera, placed(0, 0, -5), layers)
+        for layer, pixels in alone.items():
+            assert np.array_equal(pixels[0], whole[layer][w], equal_nan=True), (w, layer)
+    large = Pinhole(500, 400, fx=300)  # more rays than a launch has
+    a = batch.look(worlds[:2], large, placed(0, 0, -5))
+    b = batch.look(worlds[1:2], large, placed(0, 0, -5))
+    assert np.array_equal(a["depth"][1], b["depth"][0], equal_nan=True) and np.isfinite(a["depth"]).any()
+    assert batch.look(worlds[:0], camera, np.eye(4))["depth"].shape == (0, 61, 97)
+
+
+def test_a_batch_keeps_the_scene_as_it_was(parts):
+    worlds = np.eye(4)[None, None]
+    batch = caplet.Batch(parts, "rod")
+    before = batch.look(worlds, CAMERA, placed(0, 0, -5))
+    parts.shape("wall").transform = placed(0, 0, 9)
+    again = batch.look(worlds, CAMERA, placed(0, 0, -5))
+    assert np.array_equal(before["depth"], again["depth"], equal_nan=True)
+    assert not np.array_equal(caplet.Batch(parts, "rod").look(worlds, CAMERA, placed(0, 0, -5))["depth"], before["depth"], equal_nan=True)
+
+
+def test_pictures_are_those_of_each_alone(parts):
+    rng = np.random.default_rng(3)
+    parts.look_at((0, 0, -5), (0, 0, 0))
+    worlds = poses_of(parts, ["rod", "egg"], 3, rng)
+    poses = np.stack([placed(0, 0, -5), placed(0.2, 0, -5), placed(0.2, 0.1, -5)])
+    lit = caplet.render_batch(parts, worlds, CAMERA, poses, ["rod", "egg"], "paths", spp=4, seed=3)["rgb"]
+    direct = caplet.render_batch(parts, worlds, CAMERA, poses, ["rod", "egg"], "direct", spp=4, seed=3)["rgb"]
+    assert lit.shape == direct.shape == (3, 30, 40, 3)
+    k1, k2, p1, p2 = CAMERA.distortion[:4]
+    parts.seed = 3
+    for w in range(3):
+        for which, place in zip(["rod", "egg"], worlds[w]):
+            parts.shape(which).transform = place
+        parts.camera = caplet.cameras.opencv(fx=CAMERA.fx, fy=CAMERA.fy, cx=CAMERA.cx, cy=CAMERA.cy, k1=k1, k2=k2, p1=p1, p2=p2,
+                                             transform=poses[w] @ np.diag([1, -1, 1, 1]))
+        assert np.array_equal(caplet.render(parts, size=(40, 30), spp=4).rgb, lit[w])
+    assert (direct.mean(axis=(1, 2, 3)) < lit.mean(axis=(1, 2, 3))).all()
+    # The picture is the right way up, and of the same shapes as the rays of the same camera.
+    shapes = caplet.render_batch(parts, worlds[2:], CAMERA, poses[2:], ["rod", "egg"])["shape"][0]
+    image = caplet.render(parts, size=(40, 30), spp=1)
+    ids = np.where(shapes == 6, NONE, shapes)  # an instance's shape has the instance's number there
+    assert (image.object_id == ids)[ids != NONE].mean() > 0.9
+
+
+@pytest.mark.parametrize("change, said", [
+    ({"moving": ["rod", "rod"]}, "shape 1 is there twice"), ({"moving": [6]}, "there is no shape 6 in the world, which has 6"), ({"moving": [-1]}, "numbers below 7"),
+    ({"moving": ["wheel"]}, "wheel"), ({"worlds": np.zeros((2, 2, 4, 4))}, "the last row of an affine transform is 0 0 0 1"),
+    ({"worlds": np.tile(np.eye(4), (2, 2, 1, 1)) * [1, 1, 0, 1]}, "world 0: the transform of moving shape 0 is not affine, not finite, or singular"),
+    ({"worlds": np.tile(np.eye(4), (2, 3, 1, 1))}, "worlds: 3 transforms each, and 2 shapes move"), ({"worlds": np.eye(4)}, "worlds: shape (n, m, 4, 4) is needed"),
+    ({"poses": np.tile(np.eye(4), (3, 1, 1))}, "poses: 3 of them, and 2 worlds"), ({"poses": np.zeros(4)}, "poses: shape (4, 4) or (n, 4, 4) or (n, c, 4, 4) is needed"),
+    ({"camera": 3}, "camera: a caplet.sensors.Pinhole is needed, not int"), ({"layers": ["colour"]}, "layers: depth, shape"), ({"mode": "rasters"}, "mode: one of rays"),
+    ({"mode": "paths", "layers": ["depth"]}, 'pictures have "rgb" alone')])
+def test_what_is_wrong_is_told(parts, change, said):
+    given = {"worlds": np.tile(np.eye(4), (2, 2, 1, 1)), "camera": CAMERA, "poses": np.eye(4), "moving": ["rod", "egg"], **change}
+    with pytest.raises(caplet.InputError) as problem:
+        caplet.render_batch(parts, **given)
+    assert said in str(problem.value)
+
+
+def test_scenes_that_move_are_refused():
+    scene = caplet.Scene()
+    rod = scene.add_capsules((0, 0, 0), (1, 0, 0), 0.1)
+    rod.animate([0, 1], p0=[[[0, 0, 0]], [[0, 1, 0]]])
+    with pytest.raises(caplet.InputError, match="moves while its shutter is open"):
+        caplet.Batch(scene)
+
+
+def test_robots_are_where_mujoco_has_them():
+    mujoco = pytest.importorskip("mujoco")
+    model = mujoco.MjModel.from_xml_path(data("mjcf", "mujoco/humanoid/humanoid.xml"))
+    scene = caplet.from_mujoco(model)
+    rng = np.random.default_rng(4)
+    qpos = np.tile(model.qpos0, (6, 1))
+    qpos[:, 2] += rng.uniform(0, 0.3, 6)
+    qpos[:, 7:] += rng.uniform(-0.4, 0.4, (6, model.nq - 7))
+    camera = caplet.bridges.mujoco_camera(model, 0, 64, 48)
+    assert camera.fx == camera.fy and np.isclose(2 * np.degrees(np.arctan(24 / camera.fy)), model.cam_fovy[0])
+    worlds, poses = caplet.bridges.mujoco_worlds(scene, model, qpos, camera=0)
+    assert np.array_equal(worlds, caplet.bridges.mujoco_worlds(scene, model, qpos))
+    seen = caplet.Batch(scene, scene.info["moving"]).look(worlds, camera, poses, kind="range")
+    assert worlds.shape == (6, len(scene.shapes) - 1, 4, 4)  # all but the floor
+    ways = camera.unproject(camera.pixels())
+    ways /= np.linalg.norm(ways, axis=1)[:, None]
+    agree = total = 0
+    for i, state in enumerate(qpos):
+        now = mujoco.MjData(model)
+        now.qpos[:] = state
+        mujoco.mj_forward(model, now)
+        assert np.allclose(poses[i, :3, 3], now.cam_xpos[0])
+        assert np.allclose(poses[i, :3, 2], -now.cam_xmat[0].reshape(3, 3)[:, 2])
+        ranges, geoms = np.zeros(len(ways)), np.zeros(len(ways), np.int32)
+        shown = np.zeros(6, np.uint8)
+        shown[:3] = 1
+        mujoco.mj_multiRay(model, now, poses[i, :3, 3], (ways @ poses[i, :3, :3].T).ravel(), shown, 1, -1, geoms, ranges, None, len(ways), 1e6)
+        shape, depth = seen["shape"][i].ravel(), seen["depth"][i].ravel()
+        mine = np.where(shape == NONE, -1, scene.info["geom"][np.minimum(shape, len(scene.info["geom"]) - 1)])
+        same = mine == geoms
+        agree, total = agree + same.sum(), total + len(same)
+        met = same & (geoms >= 0)
+        assert met.sum() > 500
+        assert (np.abs(depth - ranges)[met] < 1e-4 * ranges[met]).all()
+        assert np.median(np.abs(depth - ranges)[met]) < 1e-6 * np.median(ranges[met])
+    assert agree / total > 0.99, agree / total
