@@ -149,9 +149,9 @@ TEST(KnownAnswers, SeeCrossingsThatAreMissedByShadowRaysAlone) {
 
 TEST(KnownAnswers, SeeWrongRecordsOfCrossings) {
   // The normal of one shape alone turned around, and the object of all counted from 1.
-  const ChangedKernels normals(
-      {{"stages/pick_record.cl", "vstore3(normal, 0, out.normal);",
-        "vstore3(geometry->shape == shape_cone ? -normal : normal, 0, out.normal);"}});
+  const ChangedKernels normals({{"stages/pick_record.cl", "vstore3(normal, 0, out.normal);",
+                                 "vstore3(surfaces->geometries[s.geometry].shape == shape_cone ? "
+                                 "-normal : normal, 0, out.normal);"}});
   const std::vector<std::string> failures = known_answer_failures(test_device(), nearest);
   ASSERT_EQ(failures.size(), 1u);
   EXPECT_THAT(failures[0], AllOf(StartsWith("cone: nearest crossing (pick)"),
@@ -160,9 +160,9 @@ TEST(KnownAnswers, SeeWrongRecordsOfCrossings) {
 
 // Its square is within 1e-3 of 1: floats that are normalised are within 1e-6.
 TEST(KnownAnswers, SeeNormalsThatAreNotUnitVectors) {
-  const ChangedKernels longer(
-      {{"stages/pick_record.cl", "vstore3(normal, 0, out.normal);",
-        "vstore3(geometry->shape == shape_cone ? 1.0007f * normal : normal, 0, out.normal);"}});
+  const ChangedKernels longer({{"stages/pick_record.cl", "vstore3(normal, 0, out.normal);",
+                                "vstore3(surfaces->geometries[s.geometry].shape == shape_cone ? "
+                                "1.0007f * normal : normal, 0, out.normal);"}});
   const std::vector<std::string> failures = known_answer_failures(test_device(), nearest);
   ASSERT_EQ(failures.size(), 1u);
   EXPECT_THAT(failures[0], AllOf(StartsWith("cone: nearest crossing (pick)"),
