@@ -25,6 +25,7 @@
 #include "cli/noise_options.h"
 #include "cli/options.h"
 #include "cli/overlays.h"
+#include "cli/poses.h"
 #include "cli/render_files.h"
 #include "cli/render_flags.h"
 #include "cli/trial.h"
@@ -69,7 +70,7 @@ void check_film_options(const RenderFlags& options) {
   if (flag && options.has_frames())
     throw InputError(
         SourceLocation{flag},
-        "does not go with --turntable and --frames, which --skip-existing goes on with");
+        "does not go with --turntable, --frames and --poses, which --skip-existing goes on with");
   if (flag && options.separation)
     throw InputError(SourceLocation{flag}, "does not go with --stereo");
 }
@@ -79,11 +80,13 @@ void check_frame_options(const RenderFlags& options, const Files& files) {
     throw InputError(SourceLocation{flag}, why);
   };
   if (!options.has_frames()) {
-    if (options.skip_existing) refuse("--skip-existing", "goes with --turntable or --frames");
+    if (options.skip_existing)
+      refuse("--skip-existing", "goes with --turntable, --frames or --poses");
     return;
   }
-  if (options.separation) refuse("--stereo", "does not go with --turntable and --frames");
-  if (!options.display.empty()) refuse("--display", "does not go with --turntable and --frames");
+  if (options.separation) refuse("--stereo", "does not go with --turntable, --frames and --poses");
+  if (!options.display.empty())
+    refuse("--display", "does not go with --turntable, --frames and --poses");
   if (options.skip_existing && !files.movie.empty())
     refuse("--skip-existing", "does not go with a movie, which has all frames");
   const auto check_numbered = [&](const char* flag, const fs::path& path) {
@@ -446,10 +449,13 @@ std::vector<std::string> numbered_all(const std::vector<std::string>& scenes, st
   return out;
 }
 
-/// The source of frames: a turntable camera, numbered files, or the models of one file.
+/// The source of frames: a turntable camera, numbered files, the models of one file, or poses.
 struct FrameSource {
-  enum class Kind { turntable, files, models } kind = Kind::turntable;
+  enum class Kind { turntable, files, models, poses } kind = Kind::turntable;
   FrameRange range;
+  std::vector<std::vector<SceneEdit>> poses = {};  // by frame, from 1
+  /// Returns whether all frames are of one scene.
+  bool has_one_scene() const { return kind == Kind::turntable || kind == Kind::poses; }
 };
 
 FrameSource source_of(const RenderFlags& options) {
@@ -464,7 +470,14 @@ FrameSource source_of(const RenderFlags& options) {
     std::error_code ignored;
     return is_numbered(scene) && !fs::exists(scene, ignored);
   });
-  if (options.turntable > 0) {
+  if (!options.poses.empty()) {
+    if (has_numbers || options.turntable > 0)
+      throw InputError(SourceLocation{"--poses"},
+                       "does not go with --turntable and numbered scene files");
+    source.kind = FrameSource::Kind::poses;
+    const std::uint32_t count = count_poses(options.poses);
+    source.range = {1, count, count};
+  } else if (options.turntable > 0) {
     if (has_numbers) refuse("numbered scene files do not go with --turntable");
   } else if (has_numbers) {
     source.kind = FrameSource::Kind::files;
@@ -480,7 +493,7 @@ FrameSource source_of(const RenderFlags& options) {
     if (moves == options.scenes.end())
       refuse(
           "the scene has one frame: several are in files of molecules, in numbered files (####), "
-          "or in --turntable N");
+          "or in --turntable N and --poses");
     ImportOptions of_file;
     for (const auto& [name, value] : options.import_options.values())
       if (name == "no-outside" ||
@@ -499,8 +512,7 @@ FrameSource source_of(const RenderFlags& options) {
 }
 
 Scene scene_of_frame(const RenderFlags& options, const FrameSource& source, std::uint32_t frame) {
-  if (source.kind == FrameSource::Kind::turntable)
-    return import_files(options.scenes, options.import_options);
+  if (source.has_one_scene()) return import_files(options.scenes, options.import_options);
   if (source.kind == FrameSource::Kind::files)
     return import_files(numbered_all(options.scenes, frame), options.import_options);
   ImportOptions of_frame = options.import_options;
@@ -551,6 +563,7 @@ RenderResult render_frames(const Work& of_all, const FrameSource& source,
   const std::vector<Light> lights = scene.lights;
   const bool is_automatic = scene.automatic_camera;
   LiveScene live(std::move(scene));
+  std::vector<SceneEdit> undo;  // of a pose: what leads back to the scene
   std::optional<Session> session;
   RenderResult result;
   std::uint32_t made = 0;
@@ -569,6 +582,9 @@ RenderResult render_frames(const Work& of_all, const FrameSource& source,
       for (std::uint32_t i = 0; i < lights.size(); ++i)
         if (table->turns(lights[i]))
           live.edit(LightEdit{i, table->turned(lights[i], frame - 1, source.range.count)});
+    } else if (source.kind == FrameSource::Kind::poses) {
+      for (; !undo.empty(); undo.pop_back()) live.edit(undo.back());
+      for (const SceneEdit& edit : source.poses.at(frame - 1)) undo.push_back(live.edit(edit));
     } else if (session || frame != source.range.first) {
       Scene next = scene_of_frame(options, source, frame);
       apply(overrides, next);
@@ -641,13 +657,17 @@ void run_render(const RenderFlags& given, const Invocation& invocation) {
   const Layers film_layers = Layers::of_bits(layers.bits() | options.overlays.layers().bits());
   apply(overrides, scene);
   if (options.noise) take_open_sampler(scene.view.sampler);
-  if (frames && frames->kind != FrameSource::Kind::turntable)
-    frame_all(options, *frames, overrides, scene);
+  if (frames && !frames->has_one_scene()) frame_all(options, *frames, overrides, scene);
   if (scene.view.film.denoise && !options.denoise) check_denoiser("Film \"denoise\"");
   check_outputs(options, scene, layers, files);
   post::check(options.overlays, scene, "--");
   if (options.overlays.scale_bar && !options.quiet) tell_of_bar(options, scene);
   widen_to_least(scene);
+  if (frames && frames->kind == FrameSource::Kind::poses) {
+    frames->poses = read_poses(options.poses, scene);
+    if (frames->poses.size() != frames->range.count)
+      throw RunError(fmt::format("'{}' has changed while it was read", options.poses));
+  }
   const auto wanted = static_cast<std::uint32_t>(scene.view.sampler.samples_per_pixel);
   const SampleSpan samples = options.film.samples.empty()
                                  ? SampleSpan{0, wanted}

@@ -35,7 +35,7 @@ void add_output(const RenderFlags& options, Files& files, const fs::path& path) 
     if (!options.has_frames())
       throw InputError(
           SourceLocation{"-o"},
-          fmt::format("'{}': a movie goes with --turntable or --frames", path.string()));
+          fmt::format("'{}': a movie goes with --turntable, --frames or --poses", path.string()));
     if (!files.movie.empty())
       throw InputError(SourceLocation{"-o"}, "one movie at a time is written");
     check_preview_format("frame.png", "-o");

@@ -39,10 +39,16 @@ void add_frames(CLI::App& command, RenderFlags& o) {
       ->check(CLI::Range(1, 100000))
       ->type_name("N");
   command
-      .add_option("--frames", o.frames,
-                  "Which frames: of a turntable, of the models in a file of molecules, of numbered "
-                  "scene files (in.####.swc)")
+      .add_option(
+          "--frames", o.frames,
+          "Which frames: of a turntable, of poses, of the models in a file of molecules, of "
+          "numbered scene files (in.####.swc)")
       ->type_name("A-B|all");
+  command
+      .add_option("--poses", o.poses,
+                  "A frame for each line of this file, a JSON object that says where shapes, "
+                  "capsules, instances and the camera are")
+      ->type_name("FILE.jsonl");
   command.add_option("--fps", o.frames_a_second, "Frames a second of a movie")
       ->check(CLI::Range(0.01, 1000.0))
       ->capture_default_str()

@@ -23,7 +23,7 @@ struct RenderFlags {
   Encoding encoding = Encoding::automatic;
   std::vector<std::string> scenes;
   std::vector<std::string> outputs;
-  std::string preview, stats, device, size, crop, frames;
+  std::string preview, stats, device, size, crop, frames, poses;
   ImportOptions import_options;
   post::Overlays overlays;
   std::optional<std::string> layers;
@@ -39,7 +39,7 @@ struct RenderFlags {
   std::uint32_t turntable = 0;
   double frames_a_second = 25;
   bool variance = false, denoise = false, quiet = false, skip_existing = false;
-  bool has_frames() const { return turntable > 0 || !frames.empty(); }
+  bool has_frames() const { return turntable > 0 || !frames.empty() || !poses.empty(); }
 };
 
 /// Adds the options but for the scene files to the command, which sets `o`.

@@ -2,6 +2,7 @@
 // Copyright Caplet authors
 //
 // Several files, several outputs, and frames: turntables, numbered files, models, movies.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
@@ -232,6 +233,116 @@ TEST(Frames, AnInterruptLeavesWholeOnes) {
     }
 }
 
+// The parts of a scene where a line of a file of poses puts them.
+struct Posed {
+  const char* eye = "0 0 9";
+  const char* ball = "1 0 0 0  0 1 0 0  0 0 1 0  -1 0 0 1";  // columns
+  const char* rod = "\"point3 p0\" [ 0 -1 0 ] \"point3 p1\" [ 0 1 0 ] \"float radius\" [ 0.2 0.2 ]";
+  const char* bead = "1 0 0 0  0 1 0 0  0 0 1 0  1 1 0 1";
+  const char* fov = "40";
+  std::string text() const {
+    return fmt::format(
+        "Scale -1 1 1\nLookAt {} 0 0 0 0 1 0\nCamera \"perspective\" \"float fov\" {}\n"
+        "WorldBegin\nLightSource \"infinite\"\nLightSource \"point\" \"point3 from\" [ 3 4 9 ] "
+        "\"float scale\" 50\n"
+        "AttributeBegin\nTransform [ {} ]\nShape \"sphere\" \"string name\" "
+        "\"ball\"\nAttributeEnd\n"
+        "Shape \"capsule\" {} \"string name\" \"rod\"\n"
+        "ObjectBegin \"bead\"\nShape \"sphere\" \"float radius\" 0.4\nObjectEnd\n"
+        "AttributeBegin\nTransform [ {} ]\nObjectInstance \"bead\"\nAttributeEnd\n",
+        eye, fov, ball, rod, bead);
+  }
+};
+
+TEST(Frames, AreThePosesOfAFile) {
+  const Posed still;
+  const Posed moved{.ball = "1 0 0 0  0 2 0 0  0 0 1 0  -1 0.5 0 1"};
+  const Posed seen{.eye = "4 3 8", .fov = "60"};
+  const Posed all{.eye = "0 0 9",
+                  .ball = "1 0 0 0  0 1 0 0  0 0 1 0  0.5 0 0 1",
+                  .rod =
+                      "\"point3 p0\" [ -2 -1 0 ] \"point3 p1\" [ -1 1 0 ] \"float radius\" [ "
+                      "0.1 0.3 ]",
+                  .bead = "1 0 0 0  0 1 0 0  0 0 1 0  1 -1 0 1"};
+  const fs::path folder = folder_of(
+      {{"still.pbrt", still.text()},
+       {"1.pbrt", moved.text()},
+       {"2.pbrt", seen.text()},
+       {"3.pbrt", all.text()},
+       {"4.pbrt", still.text()},
+       {"poses.jsonl",
+        "{\"shapes\": {\"ball\": [1, 0, 0, -1, 0, 2, 0, 0.5, 0, 0, 1, 0]}}\n"
+        "  \n"
+        "{\"camera\": {\"eye\": [4, 3, 8], \"target\": [0, 0, 0], \"fov\": 60}}\r\n"
+        "{\"shapes\": {\"ball\": [[1, 0, 0, 0.5], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]}, "
+        "\"capsules\": {\"rod\": {\"p0\": [-2, -1, 0], \"p1\": [[-1, 1, 0]], \"radius\": [[0.1, "
+        "0.3]]}}, \"instances\": {\"0\": [1, 0, 0, 1, 0, 1, 0, -1, 0, 0, 1, 0]}}\n"
+        "{}"}});
+  const Result result =
+      run(folder, {"still.pbrt", "--poses", "poses.jsonl", "-o", "pose.#.exr", "-o", "pose.#.png"});
+  ASSERT_EQ(result.code, 0) << result.err;
+  for (const char* number : {"1", "2", "3", "4"}) {
+    const fs::path posed = folder / fmt::format("pose.{}.exr", number);
+    ASSERT_EQ(run(folder, {fmt::format("{}.pbrt", number), "-o", "alone.exr"}).code, 0);
+    expect_equal(posed, folder / "alone.exr");
+    EXPECT_TRUE(fs::exists(folder / fmt::format("pose.{}.png", number)));
+  }
+  EXPECT_TRUE(differ(folder / "pose.1.exr", folder / "pose.4.exr"));
+  EXPECT_TRUE(differ(folder / "pose.2.exr", folder / "pose.4.exr"));
+  EXPECT_TRUE(differ(folder / "pose.3.exr", folder / "pose.4.exr"));
+  ASSERT_EQ(
+      run(folder, {"still.pbrt", "--poses", "poses.jsonl", "--frames", "3", "-o", "only#.exr"})
+          .code,
+      0);
+  expect_equal(folder / "only3.exr", folder / "pose.3.exr");
+  EXPECT_FALSE(fs::exists(folder / "only2.exr"));
+}
+
+TEST(Frames, SayWhatIsWrongInAFileOfPoses) {
+  const fs::path folder = folder_of({{"s.pbrt", Posed().text()}, {"empty.jsonl", "\n \n"}});
+  const auto refused = [&](const std::string& line, const std::string& why) {
+    write_file(folder / "p.jsonl", "{}\n\n" + line + "\n");
+    const Result result = run(folder, {"s.pbrt", "--poses", "p.jsonl", "-o", "t#.exr"});
+    EXPECT_EQ(result.code, 2) << line << result.err;
+    EXPECT_THAT(result.err, AllOf(HasSubstr("p.jsonl:3"), HasSubstr(why))) << line;
+    EXPECT_EQ(names_in(folder), (Names{"empty.jsonl", "p.jsonl", "s.pbrt"})) << line;
+  };
+  const std::string matrix = "[1,0,0,0, 0,1,0,0, 0,0,1,0]";
+  refused("{\"shapes\": ", "p.jsonl:3:12: this is no JSON object");
+  refused("[1, 2]", "a pose is a JSON object");
+  refused("{\"shapes\": 3}", "shapes is a JSON object");
+  refused("{\"shape\": {}}", "a pose has no 'shape'; the nearest is 'shapes'");
+  refused("{\"shapes\": {\"bull\": " + matrix + "}}",
+          "there is no shape 'bull'; the nearest is 'ball'");
+  refused("{\"shapes\": {\"ball\": [1, 2, 3]}}",
+          "shape 'ball': 12 or 16 numbers are needed, not 3");
+  refused("{\"shapes\": {\"ball\": [\"a\"]}}", "shape 'ball': numbers are needed");
+  refused("{\"shapes\": {\"ball\": [[[[1]]]]}}", "shape 'ball': numbers are needed");
+  refused("{\"shapes\": {\"ball\": [1e999]}}", "a number is too large");
+  refused("{\"shapes\": {\"ball\": [1,0,0,0, 0,0,0,0, 0,0,1,0]}}", "singular");
+  refused("{\"instances\": {\"1\": " + matrix + "}}", "there is no instance '1'; there are 1");
+  refused("{\"instances\": {\"x\": " + matrix + "}}", "there is no instance 'x'");
+  refused("{\"capsules\": {\"ball\": {}}}", "shape 'ball' has no capsules");
+  refused("{\"capsules\": {\"rod\": {\"p0\": [1, 2]}}}",
+          "p0 of capsules of 'rod': 3 numbers are needed, not 2");
+  refused("{\"capsules\": {\"rod\": {\"radius\": [-1]}}}", "capsules of 'rod': ");
+  refused("{\"camera\": {\"eye\": [0, 0, 1]}}", "eye and target go together");
+  refused("{\"camera\": {\"eye\": [0, 0, 1], \"target\": [0, 0, 1]}}", "no direction");
+  refused(
+      "{\"camera\": {\"eye\": [0, 0, 1], \"target\": [0, 0, 2], \"transform\": " + matrix + "}}",
+      "transform does not go with eye and target");
+  refused("{\"camera\": {\"fov\": 190}}", "camera: ");
+  const auto refused_flag = [&](Names arguments, const std::string& why) {
+    const Result result = run(folder, arguments);
+    EXPECT_EQ(result.code, 2) << result.err;
+    EXPECT_THAT(result.err, AllOf(HasSubstr("--poses"), HasSubstr(why)));
+  };
+  refused_flag({"s.pbrt", "--poses", "none.jsonl", "-o", "t#.exr"}, "is not a file");
+  refused_flag({"s.pbrt", "--poses", "empty.jsonl", "-o", "t#.exr"}, "has no poses");
+  refused_flag({"s.pbrt", "--poses", "p.jsonl", "--turntable", "3", "-o", "t#.exr"},
+               "does not go with --turntable");
+}
+
 TEST(Frames, SayWhatIsWrong) {
   const fs::path folder = folder_of({{"a.swc", neuron}, {"m.xyz", two_frames}});
   const Names before = names_in(folder);
@@ -254,7 +365,7 @@ TEST(Frames, SayWhatIsWrong) {
   refused({"m.xyz", "--frames", "all", "--model", "2", "-o", "t#.exr"}, "--model", "does not go");
   refused({"n.#.swc", "--frames", "all", "-o", "t#.exr"}, "--frames", "such as 1-100");
   refused({"n.#.swc", "--frames", "1-2", "-o", "t#.exr"}, "n.1.swc", "no such file");
-  refused({"a.swc", "-o", "m.mp4"}, "-o", "goes with --turntable or --frames");
+  refused({"a.swc", "-o", "m.mp4"}, "-o", "goes with --turntable, --frames or --poses");
   refused({"a.swc", "-o", "m.xyzzy"}, "-o", "pictures are written as .exr");
   refused({"a.swc", "--skip-existing", "-o", "t.exr"}, "--skip-existing", "goes with");
   refused({"a.swc", "--turntable", "3", "--stereo", "1", "-o", "t#.exr"}, "--stereo",
