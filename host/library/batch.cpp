@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "library/detail/inside.h"
+#include "library/detail/places.h"
 #include "render/known_answers.h"
 #include "render/world_query.h"
 
@@ -28,6 +29,12 @@ Worlds worlds_of(const caplet::Scene& scene, std::span<const std::uint32_t> movi
       throw InputError(fmt::format("moving: shape {} is there twice", shape));
   }
   return {scene, moving};
+}
+
+std::vector<glm::dmat4> to_models(std::span<const Transform> from) {
+  std::vector<glm::dmat4> out(from.size());
+  std::ranges::transform(from, out.begin(), [](const Transform& rows) { return to_model(rows); });
+  return out;
 }
 
 void check_room(const char* name, std::size_t room, std::size_t rays) {
@@ -74,7 +81,7 @@ void Batch::nearest(std::size_t worlds, std::span<const Transform> transforms,
   check_room("normal", out.normal.size(), all);
   check_room("point", out.point.size(), all);
   data.query.look(
-      worlds, transforms, cameras, directions,
+      worlds, to_models(transforms), to_models(cameras), directions,
       {out.t, out.shape, out.instance, out.primitive, out.material_id, out.normal, out.point});
 }
 

@@ -6,7 +6,10 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <glm/mat4x3.hpp>
+#include <glm/vec3.hpp>
 #include <limits>
+#include <utility>
 
 #include "base/check.h"
 
@@ -22,13 +25,6 @@ constexpr std::size_t gpu_batch_rays = std::size_t{1} << 21;
 template <class T>
 std::span<T> part_of(std::span<T> of, std::size_t first, std::size_t count) {
   return of.empty() ? of : of.subspan(first, count);
-}
-
-glm::dmat4 matrix_of(const Rows34& rows) {
-  glm::dmat4 out(1);
-  for (int r = 0; r < 3; ++r)
-    for (int c = 0; c < 4; ++c) out[c][r] = rows[static_cast<std::size_t>(4 * r + c)];
-  return out;
 }
 
 /// Calls each(begin, end) for parts of [0, count) side by side.
@@ -57,25 +53,19 @@ WorldQuery::WorldQuery(Worlds worlds, const Device& device, std::size_t batch_ra
   query_buffers_.query_times = Buffer<float>(device, 1);
 }
 
-void WorldQuery::set_rays(std::span<const Rows34> cameras, std::span<const Vector3> directions) {
+void WorldQuery::set_rays(std::span<const glm::dmat4> cameras,
+                          std::span<const Vector3> directions) {
   const std::size_t each = directions.size();
   rays_.resize(cameras.size() * each);
   for_parts(rays_.size(), [&](std::size_t begin, std::size_t end) {
     while (begin < end) {
       const std::size_t camera = begin / each, stop = std::min(end, (camera + 1) * each);
-      std::array<float, 12> m;
-      std::ranges::transform(cameras[camera], m.begin(),
-                             [](double number) { return static_cast<float>(number); });
+      const glm::mat4x3 m(cameras[camera]);
       for (; begin < stop; ++begin) {
         const Vector3& d = directions[begin - camera * each];
-        rays_[begin] = {m[3],
-                        m[7],
-                        m[11],
-                        0,
-                        m[0] * d[0] + m[1] * d[1] + m[2] * d[2],
-                        m[4] * d[0] + m[5] * d[1] + m[6] * d[2],
-                        m[8] * d[0] + m[9] * d[1] + m[10] * d[2],
-                        std::numeric_limits<float>::infinity()};
+        const glm::vec3 turned = m[0] * d[0] + m[1] * d[1] + m[2] * d[2];
+        rays_[begin] = {m[3].x,   m[3].y,   m[3].z,   0,
+                        turned.x, turned.y, turned.z, std::numeric_limits<float>::infinity()};
       }
     }
   });
@@ -151,21 +141,17 @@ void WorldQuery::keep(const WorldHits& out) const {
   });
 }
 
-void WorldQuery::look(std::size_t worlds, std::span<const Rows34> transforms,
-                      std::span<const Rows34> cameras, std::span<const Vector3> directions,
+void WorldQuery::look(std::size_t worlds, std::span<const glm::dmat4> transforms,
+                      std::span<const glm::dmat4> cameras, std::span<const Vector3> directions,
                       const WorldHits& out) {
   if (worlds == 0 || cameras.empty() || directions.empty()) return;
   CHECK_EQ_(cameras.size() % worlds, std::size_t{0});
   const std::size_t moving = worlds_.moving(), views = cameras.size() / worlds;
   const std::size_t each = views * directions.size();
   const std::size_t at_once = std::max<std::size_t>(1, batch_rays_ / each);
-  std::vector<glm::dmat4> matrices;
   for (std::size_t w = 0; w < worlds; w += at_once) {
     const std::size_t now = std::min(at_once, worlds - w);
-    matrices.resize(now * moving);
-    std::ranges::transform(transforms.subspan(w * moving, now * moving), matrices.begin(),
-                           matrix_of);
-    place(now, matrices, w);
+    place(now, transforms.subspan(w * moving, now * moving), w);
     set_rays(cameras.subspan(w * views, now * views), directions);
     picks_.resize(rays_.size());
     closest(rays_, !out.normal.empty() || !out.point.empty(), picks_);

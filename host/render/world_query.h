@@ -7,6 +7,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <glm/mat4x4.hpp>
 #include <span>
 #include <vector>
 
@@ -17,8 +18,6 @@
 namespace caplet {
 
 using Vector3 = std::array<float, 3>;
-/// Three rows of four numbers that map one space to another.
-using Rows34 = std::array<double, 12>;
 
 /// Where WorldQuery writes: one element for each ray, worlds first, then cameras, then directions.
 /// What is empty is left out. Numbers are CAPLET_NONE, and vectors 0, where a ray misses.
@@ -41,8 +40,9 @@ class WorldQuery {
   /// Traces `directions` (in the camera's space, of any length) from each of `cameras`
   /// (world_from_camera, equally many for each world, one world after the other) through worlds
   /// with these transforms (Worlds::place). Throws InputError as Worlds::place does.
-  void look(std::size_t worlds, std::span<const Rows34> transforms, std::span<const Rows34> cameras,
-            std::span<const Vector3> directions, const WorldHits& out);
+  void look(std::size_t worlds, std::span<const glm::dmat4> transforms,
+            std::span<const glm::dmat4> cameras, std::span<const Vector3> directions,
+            const WorldHits& out);
 
   /// These are the parts of that. Places worlds as Worlds::place does, and sends them.
   void place(std::size_t worlds, std::span<const glm::dmat4> transforms,
@@ -54,7 +54,7 @@ class WorldQuery {
   const Worlds& worlds() const { return worlds_; }
 
  private:
-  void set_rays(std::span<const Rows34> cameras, std::span<const Vector3> directions);
+  void set_rays(std::span<const glm::dmat4> cameras, std::span<const Vector3> directions);
   void launch(std::span<const uint> roots, std::span<const RayRecord> rays, bool points,
               std::span<PickRecord> out);
   void keep(const WorldHits& out) const;
