@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Files of poses (--poses): a JSON object a line, each what one frame changes of the scene.
+// Files of poses: a JSON object a line, each what one frame changes of a scene.
 #pragma once
 
 #include <cstdint>
@@ -11,10 +11,10 @@
 #include "scene/edit.h"
 #include "scene/scene.h"
 
-namespace caplet::cli {
+namespace caplet {
 
-/// Returns the number of lines that are not blank. Throws InputError that names --poses for a file
-/// that is none, or holds none, or more than 10 million.
+/// Returns the number of lines that are not blank. Throws InputError for a file that cannot be
+/// read, or has none or more than 10 million.
 std::uint32_t count_poses(const std::filesystem::path& file);
 
 /// Reads the poses; each starts from the scene as it is. Keys are all optional:
@@ -27,4 +27,4 @@ std::uint32_t count_poses(const std::filesystem::path& file);
 std::vector<std::vector<SceneEdit>> read_poses(const std::filesystem::path& file,
                                                const Scene& scene);
 
-}  // namespace caplet::cli
+}  // namespace caplet

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
-#include "cli/poses.h"
+#include "import/poses.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>
 #include <charconv>
-#include <fstream>
 #include <functional>
 #include <glm/mat3x3.hpp>
 #include <glm/matrix.hpp>
@@ -15,13 +14,15 @@
 #include <numbers>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include "base/check.h"
 #include "base/error.h"
 #include "base/spelling.h"
+#include "import/detail/text_file.h"
 
-namespace caplet::cli {
+namespace caplet {
 
 namespace fs = std::filesystem;
 using nlohmann::json;
@@ -31,17 +32,13 @@ namespace {
 constexpr std::uint32_t most_poses = 10'000'000;
 
 /// Calls each(line, number) for lines that are not blank.
-void for_lines(const fs::path& file, const std::function<void(const std::string&, int)>& each) {
-  const SourceLocation flag{"--poses"};
-  std::error_code ignored;
-  if (!fs::is_regular_file(file, ignored))
-    throw InputError(flag, fmt::format("'{}' is not a file", file.string()));
-  std::ifstream in(file, std::ios::binary);
-  if (!in) throw InputError(flag, fmt::format("'{}' cannot be read", file.string()));
-  std::string line;
-  for (int number = 1; std::getline(in, line); ++number)
-    if (line.find_first_not_of(" \t\r") != std::string::npos) each(line, number);
-  if (in.bad()) throw InputError(flag, fmt::format("'{}' cannot be read", file.string()));
+void for_lines(const fs::path& file, const std::function<void(std::string_view, int)>& each) {
+  const TextFile text(file);
+  std::string_view rest = text.text();
+  for (int number = 1; !rest.empty(); ++number) {
+    const std::string_view line = take_line(rest);
+    if (line.find_first_not_of(" \t") != std::string_view::npos) each(line, number);
+  }
 }
 
 /// PoseReader makes edits of one line.
@@ -49,7 +46,7 @@ class PoseReader {
  public:
   PoseReader(const Scene& scene, SourceLocation where) : scene_(scene), where_(std::move(where)) {}
 
-  std::vector<SceneEdit> read(const std::string& line) {
+  std::vector<SceneEdit> read(std::string_view line) {
     json pose;
     try {
       pose = json::parse(line);
@@ -243,22 +240,21 @@ class PoseReader {
 
 std::uint32_t count_poses(const fs::path& file) {
   std::uint32_t count = 0;
-  for_lines(file, [&](const std::string&, int) {
+  for_lines(file, [&](std::string_view, int number) {
     if (++count > most_poses)
-      throw InputError(SourceLocation{"--poses"},
-                       fmt::format("'{}' has more than {} poses", file.string(), most_poses));
+      throw InputError({file.string(), number, 0},
+                       fmt::format("there are more than {} poses", most_poses));
   });
-  if (count == 0)
-    throw InputError(SourceLocation{"--poses"}, fmt::format("'{}' has no poses", file.string()));
+  if (count == 0) throw InputError({file.string(), 0, 0}, "it has no poses");
   return count;
 }
 
 std::vector<std::vector<SceneEdit>> read_poses(const fs::path& file, const Scene& scene) {
   std::vector<std::vector<SceneEdit>> out;
-  for_lines(file, [&](const std::string& line, int number) {
+  for_lines(file, [&](std::string_view line, int number) {
     out.push_back(PoseReader(scene, {file.string(), number, 0}).read(line));
   });
   return out;
 }
 
-}  // namespace caplet::cli
+}  // namespace caplet
