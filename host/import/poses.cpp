@@ -10,6 +10,7 @@
 #include <functional>
 #include <glm/mat3x3.hpp>
 #include <glm/matrix.hpp>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <numbers>
 #include <optional>
@@ -51,7 +52,8 @@ class PoseReader {
     try {
       pose = json::parse(line);
     } catch (const json::parse_error& error) {
-      where_.column = narrow<int>(error.byte);
+      where_.column =
+          static_cast<int>(std::min<std::size_t>(error.byte, std::numeric_limits<int>::max()));
       fail("this is no JSON object");
     } catch (const json::exception&) {
       fail("a number is too large");

@@ -10,6 +10,7 @@
 #include <bit>
 #include <cmath>
 #include <iterator>
+#include <optional>
 #include <utility>
 
 #include "base/check.h"
@@ -65,37 +66,41 @@ void copy_tree(const WorldTree& tree, std::uint64_t node, std::uint64_t row, Fla
 // tree; the resting ones together are another.
 constexpr std::size_t most_in_tree = 64;
 
-/// Returns the primitives of a shape under a transform, or none where its kernel form cannot hold
-/// it or has data elsewhere. `of`: the primitives as lowered, which have the same ids and kinds.
+/// Returns primitive i of a shape whose primitives hold all that its kernels read, under a
+/// transform that they can hold; none for other kinds.
+std::optional<FlatPrimitive> primitive_under(const Shape& shape, std::size_t i,
+                                             const glm::dmat4& m) {
+  std::vector<float> unused;
+  if (const auto* capsules = std::get_if<CapsulesShape>(&shape.geometry))
+    return flat_capsule(*capsules, i, &m, similarity_scale(m));
+  if (const auto* sphere = std::get_if<SphereShape>(&shape.geometry))
+    return flat_primitive(*sphere, m, unused);
+  if (const auto* cylinder = std::get_if<CylinderShape>(&shape.geometry))
+    return flat_primitive(*cylinder, m, unused);
+  if (const auto* cone = std::get_if<ConeShape>(&shape.geometry))
+    return flat_primitive(*cone, m, unused);
+  return std::nullopt;
+}
+
+/// Appends the primitives of a shape that stands_in_tree, under a transform. Returns false, and
+/// appends nothing, where they cannot hold it. `of`: the primitives as lowered, which have the same
+/// ids.
 bool append_under(const Shape& shape, const glm::dmat4& m, std::span<const FlatPrimitive> of,
                   std::vector<FlatPrimitive>& out) {
-  if (of.empty() || !subtree_key(shape, m).is_common()) return false;
-  std::vector<float> unused;
-  const double scale = similarity_scale(m);
+  if (!subtree_key(shape, m).is_common()) return false;
   for (std::size_t i = 0; i < of.size(); ++i) {
-    FlatPrimitive p = of[i];
-    if (const auto* capsules = std::get_if<CapsulesShape>(&shape.geometry))
-      p = flat_capsule(*capsules, i, &m, scale);
-    else if (const auto* sphere = std::get_if<SphereShape>(&shape.geometry))
-      p = flat_primitive(*sphere, m, unused);
-    else if (const auto* cylinder = std::get_if<CylinderShape>(&shape.geometry))
-      p = flat_primitive(*cylinder, m, unused);
-    else if (const auto* cone = std::get_if<ConeShape>(&shape.geometry))
-      p = flat_primitive(*cone, m, unused);
-    p.id = of[i].id;
-    out.push_back(p);
+    out.push_back(primitive_under(shape, i, m).value());
+    out.back().id = of[i].id;
   }
   return true;
 }
 
 /// `shape`: without a transform.
 bool stands_in_tree(const Shape& shape) {
-  return primitive_count(shape) <= most_in_tree &&
+  const std::size_t count = primitive_count(shape);
+  return count > 0 && count <= most_in_tree &&
          subtree_key(shape, shape.world_from_object).is_common() &&
-         (std::holds_alternative<CapsulesShape>(shape.geometry) ||
-          std::holds_alternative<SphereShape>(shape.geometry) ||
-          std::holds_alternative<CylinderShape>(shape.geometry) ||
-          std::holds_alternative<ConeShape>(shape.geometry));
+         primitive_under(shape, 0, shape.world_from_object).has_value();
 }
 
 }  // namespace

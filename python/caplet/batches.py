@@ -50,6 +50,8 @@ class _Views:
         poses = _matrices(poses, "poses", {0: "", 1: "n, ", 2: "n, c, "})
         if poses.ndim > 1 and len(poses) != count:
             raise InputError(f"poses: {len(poses)} of them, and {count} worlds")
+        if not np.isfinite(poses).all():
+            raise InputError("poses: finite numbers are needed")
         self.shape = (count, *poses.shape[1:-1], camera.height, camera.width)
         poses = np.broadcast_to(poses, (count, *poses.shape[1:]) if poses.ndim > 1 else (count, 12))
         self.cameras = np.ascontiguousarray(poses if poses.ndim == 3 else poses[:, np.newaxis])

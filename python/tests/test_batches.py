@@ -176,7 +176,7 @@ def test_pictures_are_those_of_each_alone(parts):
     ({"worlds": np.tile(np.eye(4), (2, 2, 1, 1)) * [1, 1, 0, 1]}, "world 0: the transform of moving shape 0 is not affine, not finite, or singular"),
     ({"worlds": np.tile(np.eye(4), (2, 3, 1, 1))}, "worlds: 3 transforms each, and 2 shapes move"), ({"worlds": np.eye(4)}, "worlds: shape (n, m, 4, 4) is needed"),
     ({"poses": np.tile(np.eye(4), (3, 1, 1))}, "poses: 3 of them, and 2 worlds"), ({"poses": np.zeros(4)}, "poses: shape (4, 4) or (n, 4, 4) or (n, c, 4, 4) is needed"),
-    ({"camera": 3}, "camera: a caplet.sensors.Pinhole is needed, not int"), ({"layers": ["colour"]}, "layers: depth, shape"), ({"mode": "rasters"}, "mode: one of rays"),
+    ({"poses": placed(0, np.nan, 0)}, "poses: finite numbers are needed"), ({"camera": 3}, "camera: a caplet.sensors.Pinhole is needed, not int"), ({"layers": ["colour"]}, "layers: depth, shape"), ({"mode": "rasters"}, "mode: one of rays"),
     ({"mode": "paths", "layers": ["depth"]}, 'pictures have "rgb" alone')])
 def test_what_is_wrong_is_told(parts, change, said):
     given = {"worlds": np.tile(np.eye(4), (2, 2, 1, 1)), "camera": CAMERA, "poses": np.eye(4), "moving": ["rod", "egg"], **change}
