@@ -138,6 +138,7 @@ def test_numbers_of_rays_and_worlds_do_not_matter(parts):
 
 def test_a_batch_keeps_the_scene_as_it_was(parts):
     worlds = np.eye(4)[None, None]
+    assert caplet.Batch(parts).moving == list(range(6))  # all but those of objects
     batch = caplet.Batch(parts, "rod")
     before = batch.look(worlds, CAMERA, placed(0, 0, -5))
     parts.shape("wall").transform = placed(0, 0, 9)
@@ -150,7 +151,7 @@ def test_pictures_are_those_of_each_alone(parts):
     rng = np.random.default_rng(3)
     parts.look_at((0, 0, -5), (0, 0, 0))
     worlds = poses_of(parts, ["rod", "egg"], 3, rng)
-    poses = np.stack([placed(0, 0, -5), placed(0.2, 0, -5), placed(0.2, 0.1, -5)])
+    poses = np.stack([placed(0, 0, -5), placed(0.2, 0.1, -5), placed(0, 0, -5)])  # the last as the first
     lit = caplet.render_batch(parts, worlds, CAMERA, poses, ["rod", "egg"], "paths", spp=4, seed=3)["rgb"]
     direct = caplet.render_batch(parts, worlds, CAMERA, poses, ["rod", "egg"], "direct", spp=4, seed=3)["rgb"]
     assert lit.shape == direct.shape == (3, 30, 40, 3)
@@ -162,6 +163,9 @@ def test_pictures_are_those_of_each_alone(parts):
         parts.camera = caplet.cameras.opencv(fx=CAMERA.fx, fy=CAMERA.fy, cx=CAMERA.cx, cy=CAMERA.cy, k1=k1, k2=k2, p1=p1, p2=p2,
                                              transform=poses[w] @ np.diag([1, -1, 1, 1]))
         assert np.array_equal(caplet.render(parts, size=(40, 30), spp=4).rgb, lit[w])
+        depth, parts.max_depth = parts.max_depth, 1
+        assert np.array_equal(caplet.render(parts, size=(40, 30), spp=4).rgb, direct[w])
+        parts.max_depth = depth
     assert (direct.mean(axis=(1, 2, 3)) < lit.mean(axis=(1, 2, 3))).all()
     # The picture is the right way up, and of the same shapes as the rays of the same camera.
     shapes = caplet.render_batch(parts, worlds[2:], CAMERA, poses[2:], ["rod", "egg"])["shape"][0]
@@ -215,7 +219,8 @@ def test_robots_are_where_mujoco_has_them():
         now.qpos[:] = state
         mujoco.mj_forward(model, now)
         assert np.allclose(poses[i, :3, 3], now.cam_xpos[0])
-        assert np.allclose(poses[i, :3, 2], -now.cam_xmat[0].reshape(3, 3)[:, 2])
+        # MuJoCo's camera looks along -z with y up, OpenCV's along z with y down.
+        assert np.allclose(poses[i, :3, :3], now.cam_xmat[0].reshape(3, 3) @ np.diag([1, -1, -1]))
         ranges, geoms = np.zeros(len(ways)), np.zeros(len(ways), np.int32)
         shown = np.zeros(6, np.uint8)
         shown[:3] = 1
@@ -229,3 +234,37 @@ def test_robots_are_where_mujoco_has_them():
         assert (np.abs(depth - ranges)[met] < 1e-4 * ranges[met]).all()
         assert np.median(np.abs(depth - ranges)[met]) < 1e-6 * np.median(ranges[met])
     assert agree / total > 0.99, agree / total
+
+
+TUMBLERS = """<mujoco><worldbody><geom type="plane" size="5 5 1"/>
+<body pos="-1 0 1"><freejoint/><geom type="ellipsoid" size="0.2 0.5 0.3"/></body><body pos="0 0 1"><freejoint/><geom type="box" size="0.2 0.5 0.3"/></body>
+<body pos="1 0 1"><freejoint/><geom type="cylinder" size="0.2 0.5"/></body><geom type="sphere" pos="0 2 1" size="0.4"/></worldbody></mujoco>"""
+
+
+def test_every_kind_of_geom_tumbles_as_mujoco_has_it():
+    mujoco = pytest.importorskip("mujoco")
+    model = mujoco.MjModel.from_xml_string(TUMBLERS)
+    scene = caplet.from_mujoco(model)
+    assert scene.info["moving"].tolist() == [2, 3, 4]  # the floor and the sphere, the world's own geoms, come first
+    rng = np.random.default_rng(5)
+    qpos = np.tile(model.qpos0, (4, 1))
+    for first in (3, 10, 17):
+        qpos[:, first:first + 4] = rng.normal(size=(4, 4))
+        qpos[:, first:first + 4] /= np.linalg.norm(qpos[:, first:first + 4], axis=1)[:, None]
+    camera, pose = Pinhole(80, 60, fx=70), np.eye(4)
+    pose[:3, :3], pose[:3, 3] = [[1, 0, 0], [0, -0.3162, 0.9487], [0, -0.9487, -0.3162]], (0, -4, 2.5)
+    seen = caplet.Batch(scene, scene.info["moving"]).look(caplet.bridges.mujoco_worlds(scene, model, qpos), camera, pose)
+    ways = camera.unproject(camera.pixels()) @ pose[:3, :3].T  # t counts depth
+    lengths = np.linalg.norm(ways, axis=1)
+    for i, state in enumerate(qpos):
+        now = mujoco.MjData(model)
+        now.qpos[:] = state
+        mujoco.mj_forward(model, now)
+        ranges, geoms = np.zeros(len(ways)), np.zeros(len(ways), np.int32)
+        mujoco.mj_multiRay(model, now, pose[:3, 3], (ways / lengths[:, None]).ravel(), None, 1, -1, geoms, ranges, None, len(ways), 1e6)
+        shape, depth = seen["shape"][i].ravel(), seen["depth"][i].ravel()
+        mine = np.where(shape == NONE, -1, scene.info["geom"][np.minimum(shape, len(scene.info["geom"]) - 1)])
+        same = mine == geoms
+        assert same.mean() > 0.995, same.mean()  # but for edges
+        assert set(scene.info["geom"]) <= set(geoms)
+        assert (np.abs(depth * lengths - ranges)[same & (geoms >= 0)] < 1e-4 * 10).all()
