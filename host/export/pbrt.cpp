@@ -17,6 +17,7 @@
 #include "export/detail/families.h"
 #include "export/export.h"
 #include "scene/frozen.h"
+#include "scene/part_materials.h"
 #include "scene/transform.h"
 
 namespace caplet {
@@ -366,9 +367,8 @@ class SceneWriter {
     if (const auto* csg = std::get_if<CsgShape>(&shape.geometry))
       return std::ranges::all_of(csg->operands,
                                  [&](const auto& operand) { return is_all_interface(*operand); });
-    if (const auto* capsules = std::get_if<CapsulesShape>(&shape.geometry);
-        capsules && !capsules->materials.empty())
-      return std::ranges::all_of(capsules->materials, interface);
+    if (const auto* parts = part_materials(shape); parts && !parts->empty())
+      return std::ranges::all_of(*parts, interface);
     return is_interface(shape.material);
   }
 

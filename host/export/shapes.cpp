@@ -116,25 +116,37 @@ struct GeometryWriter {
     floats(out, "radius", of.radius0);
     if (of.radius1 != of.radius0) floats(out, "radius1", of.radius1);
     chain(out, of);
-    if (of.materials.empty()) return out;
-    // Each used material is listed once.
-    constexpr std::uint32_t none = 0xffffffffu;
-    std::vector<std::uint32_t> place(references.scene.materials.size(), none);
-    std::vector<std::string> used;
-    for (const std::uint32_t material : of.materials)
-      if (place[material] == none) {
-        place[material] = static_cast<std::uint32_t>(used.size());
-        used.push_back(references.names.materials[material]);
-      }
-    out.texts("capsulematerials", used);
-    out.list("integer", "materialindices", of.materials.size(),
-             [&of, place = std::move(place)](Text& text, std::size_t i) {
-               text << std::int64_t{place[of.materials[i]]};
-             });
+    listed_materials(out, "capsulematerials", of.materials);
+    return out;
+  }
+  Statement write(const MolecularSurfaceShape& of, const char*) const {
+    Statement out = begin("molecularsurface");
+    points(out, "point3", "P", of.centers);
+    floats(out, "radius", of.radii);
+    out.number("probe", of.probe);
+    listed_materials(out, "ballmaterials", of.materials);
     return out;
   }
 
  private:
+  /// Lists each material that is used once, and which of them each thing has.
+  void listed_materials(Statement& to, const char* list,
+                        const std::vector<std::uint32_t>& materials) const {
+    if (materials.empty()) return;
+    constexpr std::uint32_t none = 0xffffffffu;
+    std::vector<std::uint32_t> place(references.scene.materials.size(), none);
+    std::vector<std::string> used;
+    for (const std::uint32_t material : materials)
+      if (place[material] == none) {
+        place[material] = static_cast<std::uint32_t>(used.size());
+        used.push_back(references.names.materials[material]);
+      }
+    to.texts(list, used);
+    to.list("integer", "materialindices", materials.size(),
+            [&materials, place = std::move(place)](Text& text, std::size_t i) {
+              text << std::int64_t{place[materials[i]]};
+            });
+  }
   Statement one_capsule(const CapsulesShape& of) const {
     Statement out = begin("capsule");
     points(out, "point3", "p0", of.p0);
@@ -198,8 +210,7 @@ bool any_hair(const Scene& scene, const Shape& shape) {
     return std::holds_alternative<HairMaterial>(scene.materials[material].model);
   };
   if (hair(shape.material) || std::ranges::any_of(shape.materials, hair)) return true;
-  if (const auto* capsules = std::get_if<CapsulesShape>(&shape.geometry))
-    return std::ranges::any_of(capsules->materials, hair);
+  if (const auto* parts = part_materials(shape)) return std::ranges::any_of(*parts, hair);
   const auto* csg = std::get_if<CsgShape>(&shape.geometry);
   return csg && std::ranges::any_of(csg->operands,
                                     [&](const auto& operand) { return any_hair(scene, *operand); });
@@ -218,6 +229,7 @@ Statement shape_statement(const Shape& shape, const ShapeReferences& references,
   static constexpr const char* types[] = {
 #define GEOMETRY(Type, row) #row,
 #include "scene/geometries.def"
+#include "scene/part_materials.h"
   };
   const char* const type =
       types[geometry.index()];  // clang 14 cannot capture a structured binding in a lambda

@@ -13,8 +13,10 @@ namespace caplet {
 const std::vector<ImportOptionRow>& import_option_rows() {
   using Of = ImportOptionRow::Of;
   static const std::vector<ImportOptionRow> rows = {
-      {"style", "ball-and-stick|spheres|sticks|trace|cartoon",
-       "How molecules are drawn: ball-and-stick, spheres, sticks, trace or cartoon", Of::format},
+      {"style", "ball-and-stick|spheres|sticks|trace|cartoon|surface|accessible",
+       "How molecules are drawn: ball-and-stick, spheres, sticks, trace, cartoon, surface "
+       "(solvent-excluded) or accessible (to a solvent)",
+       Of::format},
       {"color",
        "element|chain|residue|bfactor|secondary|direction|fibre|file|scalar|scalar:NAME|type|order|"
        "depth|"
@@ -28,6 +30,8 @@ const std::vector<ImportOptionRow>& import_option_rows() {
        "Parts of a molecule, each in its own style, between semicolons or by repetition, such as "
        "'polymer: cartoon; ligand: sticks by element'; see docs/formats/molecules.md",
        Of::format, true},
+      {"probe", "R", "Radius of the solvent's probe for a molecule's surfaces, in angstroms",
+       Of::format},
       {"range", "LOW,HIGH", "Values at the ends of the colour map", Of::format},
       {"select", "ATOMS",
        "Part of a molecule, as gemmi and mmdb write it: //A,B/10-20/CA; see "

@@ -17,6 +17,7 @@
 #include "library/detail/places.h"
 #include "library/detail/statements.h"
 #include "present/present.h"
+#include "scene/part_materials.h"
 
 namespace caplet::v0 {
 
@@ -126,8 +127,8 @@ std::uint32_t number_in(const caplet::Scene& scene, const std::string& object, s
 std::uint32_t greatest_material(const Shape& shape) {
   std::uint32_t most = shape.material;
   for (const std::uint32_t material : shape.materials) most = std::max(most, material);
-  if (const auto* capsules = std::get_if<CapsulesShape>(&shape.geometry))
-    for (const std::uint32_t material : capsules->materials) most = std::max(most, material);
+  if (const auto* parts = part_materials(shape))
+    for (const std::uint32_t material : *parts) most = std::max(most, material);
   return most;
 }
 
@@ -295,6 +296,17 @@ std::uint32_t Scene::add_capsules(const CapsuleArrays& capsules, const ShapeOpti
   return number;
 }
 
+std::uint32_t Scene::add_molecular_surface(const BallArrays& balls, double probe,
+                                           const ShapeOptions& options) {
+  if (balls.centers.empty()) throw InputError("molecular surface: there are no balls");
+  std::vector<Shape> shapes =
+      one_of(make_molecule(points_of(balls.centers), balls.radii, probe, balls.materials), options);
+  Data& data = changed();
+  const std::uint32_t number = add(data.model, std::move(shapes), options.object);
+  data.as_a_whole();
+  return number;
+}
+
 std::uint32_t Scene::add_mesh(const MeshArrays& mesh, const ShapeOptions& options) {
   TriangleMeshShape to;
   to.positions = points_of(mesh.positions);
@@ -352,7 +364,7 @@ void Scene::set_shape_materials(std::uint32_t shape, const std::vector<std::uint
   std::vector<Shape> one{shape_at(data_->model, place)};
   one[0].material = materials[0];
   one[0].materials = materials.size() > 1 ? materials : std::vector<std::uint32_t>{};
-  if (auto* capsules = std::get_if<CapsulesShape>(&one[0].geometry)) capsules->materials.clear();
+  if (auto* parts = part_materials(one[0])) parts->clear();
   check_shapes(data_->model, one);
   Data& data = changed();
   const_cast<Shape&>(shape_at(data.model, place)) = std::move(one[0]);

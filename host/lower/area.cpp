@@ -145,6 +145,8 @@ double placed_area(const FlatPrimitive& p, const std::vector<float>& leaves, con
   };
   if (p.shape == shape_bilinear) return counted(0) ? bilinear_area(p.data, a) : 0;
   const glm::dmat3 cofactor = glm::transpose(glm::inverse(a)) * std::abs(glm::determinant(a));
+  if (p.shape == shape_molecular_patch)
+    return counted(0) ? molecular_patch_area(&leaves[molecular_patch_begin(p.data)], cofactor) : 0;
   const Pieces pieces = pieces_of(p, leaves);
   double area = 0;
   for (const Piece& piece : pieces.all())

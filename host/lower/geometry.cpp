@@ -164,6 +164,8 @@ class GeometryLowering {
         counts[shape_triangle] += mesh->triangles.size();
       if (const auto* mesh = std::get_if<BilinearMeshShape>(&shape.geometry))
         counts[shape_bilinear] += mesh->patches.size();
+      if (const auto* molecule = std::get_if<MolecularSurfaceShape>(&shape.geometry))
+        counts[shape_molecular_patch] += count_of(*molecule);
     };
     for (const Shape& shape : scene_.shapes) add(shape);
     for (const Object& object : scene_.objects)
@@ -341,6 +343,26 @@ class GeometryLowering {
       }
       FlatPrimitive& p = add_primitive(subtree, kind, found->second);
       std::copy(std::begin(flat.data), std::end(flat.data), std::begin(p.data));
+    }
+  }
+
+  void append(const MolecularSurfaceShape& molecule, const Matrix& m, const GeometryRecord& record,
+              Subtree& subtree) {
+    const std::vector<FlatPrimitive> patches = flat_patches(molecule, m, out_.leaves);
+    std::map<uint, uint> geometry_of;  // by material
+    reserve_more(subtree.primitives, patches.size());
+    for (std::size_t i = 0; i < patches.size(); ++i) {
+      const uint material = molecule.materials.empty()
+                                ? record.material
+                                : molecule.materials[ball_of_patch(molecule, i)];
+      const auto [found, fresh] = geometry_of.try_emplace(material, 0);
+      if (fresh) {
+        GeometryRecord own = record;
+        own.material = material;
+        found->second = add_geometry(own, shape_molecular_patch);
+      }
+      FlatPrimitive& p = add_primitive(subtree, shape_molecular_patch, found->second);
+      std::copy(std::begin(patches[i].data), std::end(patches[i].data), std::begin(p.data));
     }
   }
 

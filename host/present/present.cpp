@@ -37,7 +37,7 @@ struct Ball {
   double radius;
 };
 
-/// Returns spheres whose hull contains every shape: a capsule's ends, a sphere itself, the corners
+/// Returns spheres whose hull contains every shape: a capsule's ends, balls themselves, the corners
 /// of the bounds of anything else. Without shapes it is the unit ball, as in bounds_or_unit_of.
 std::vector<Ball> balls_of(const Scene& scene) {
   std::vector<Ball> balls;
@@ -78,6 +78,9 @@ std::vector<Ball> balls_of(const Scene& scene) {
         balls.push_back({place(capsules->p0[i]), scale * capsules->radius0[i]});
         balls.push_back({place(capsules->p1[i]), scale * radius1});
       }
+    } else if (const auto* molecule = std::get_if<MolecularSurfaceShape>(&shape.geometry)) {
+      for (std::size_t i = 0; i < molecule->centers.size(); ++i)
+        balls.push_back({place(molecule->centers[i]), scale * molecule->radii[i]});
     } else {
       add_corners(bounds_of(shape));
     }

@@ -43,8 +43,15 @@ struct Swept {
                                        glm::length(glm::dvec3(world[2]))};
     const double scale = std::ranges::max(scales);
     const auto* capsules = std::get_if<CapsulesShape>(&shape.geometry);
-    if (!capsules || scale > 1.000001 * std::ranges::min(scales)) return add(bounds_of(shape));
+    const auto* molecule = std::get_if<MolecularSurfaceShape>(&shape.geometry);
+    if (!(capsules || molecule) || scale > 1.000001 * std::ranges::min(scales))
+      return add(bounds_of(shape));
     const auto place = [&](const glm::vec3& p) { return glm::dvec3(world * glm::dvec4(p, 1)); };
+    if (molecule) {
+      for (std::size_t i = 0; i < molecule->centers.size(); ++i)
+        add(place(molecule->centers[i]), scale * static_cast<double>(molecule->radii[i]));
+      return;
+    }
     for (std::size_t i = 0; i < capsules->p0.size(); ++i) {
       add(place(capsules->p0[i]), scale * static_cast<double>(capsules->radius0[i]));
       add(place(capsules->p1[i]),

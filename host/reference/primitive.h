@@ -25,7 +25,8 @@ int surface_count(const Primitive& primitive);
 /// For solids this is negative inside, positive outside, 1-Lipschitz, and convex except for csg
 /// shapes. Outside it is the distance to the solid, but for boxes and polyhedra the greatest
 /// distance to a plane, and for csg shapes what min and max make of their operands' values, each
-/// divided by its `stretch`. For open surfaces it is the distance to the surface, never negative.
+/// divided by its `stretch`. For open surfaces it is the distance to the surface, never negative;
+/// for molecular patches the greatest of those to the carrier and to the clips that it is beyond.
 double value(const Primitive& primitive, const glm::dvec3& x);
 
 /// Returns the surface that a point on (or next to) the boundary of a solid belongs to.

@@ -153,6 +153,7 @@ void SceneReference::add(const Shape& shape, const glm::dmat4& world_from_shape,
   surface_materials_.push_back(materials_by_surface(shape));
   corner_uvs_.push_back(corner_uvs(shape));
   const auto* capsules = std::get_if<CapsulesShape>(&shape.geometry);
+  const auto* molecule = std::get_if<MolecularSurfaceShape>(&shape.geometry);
   const std::vector<bool> turned = turned_faces(shape);
   const std::size_t first = placed_.size();
   std::uint32_t index = 0;
@@ -160,8 +161,10 @@ void SceneReference::add(const Shape& shape, const glm::dmat4& world_from_shape,
     Placed placed{primitive, bounding_ball(primitive), identity,
                   static_cast<std::uint32_t>(object_from_world_.size() - 1)};
     placed.identity.primitive = index;
-    placed.identity.material =
-        capsules && !capsules->materials.empty() ? capsules->materials[index] : shape.material;
+    placed.identity.material = capsules && !capsules->materials.empty() ? capsules->materials[index]
+                               : molecule && !molecule->materials.empty()
+                                   ? molecule->materials[ball_of_patch(*molecule, index)]
+                                   : shape.material;
     // A one-sided shape is not seen from behind an open shape's normal, as ReverseOrientation
     // leaves it, or from inside a solid.
     if (shape.one_sided)

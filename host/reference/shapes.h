@@ -106,6 +106,25 @@ struct Bilinear {
   glm::dvec3 p00, p10, p01, p11;
 };
 
+/// A MolecularPatch is part of the surface that a probe cannot pass: of a sphere (major radius 0),
+/// within planes, or of the inner side of a torus. The molecule is within the spheres of balls, and
+/// outside those of probes and the tubes of tori. Its normal points out of the molecule.
+struct MolecularPatch {
+  struct Plane {
+    glm::dvec3 normal;  // unit
+    double offset = 0;  // normal . (x - center) <= offset
+  };
+  glm::dvec3 center{0};
+  double minor = 1, major = 0;
+  bool of_probe = false;
+  std::vector<Plane> planes;
+  // Of tori: as SurfacePatches::TorusPatch.
+  glm::dvec3 axis{0, 0, 1}, start{1, 0, 0};
+  double phi_max = full_turn, theta_min = 0, theta_max = 0;
+  glm::dvec3 ball_center{0};  // of a ball that holds it
+  double ball_radius = 0;
+};
+
 /// A Csg combines solids, nested to any depth. Surface numbers of the operands follow each other.
 /// make_csg makes it.
 struct CsgBody;

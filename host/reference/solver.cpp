@@ -339,6 +339,117 @@ std::vector<Crossing> bilinear_crossings(const Bilinear& patch, const Ray& ray) 
   return out;
 }
 
+// --- Molecular patches ---
+
+// Finds the sign changes of a 1-Lipschitz function between two places. Halves are left out where
+// the function is further from 0 than their ends; what is so short that samples rise or fall
+// throughout has one sign change or none. Pairs closer than 2^-24 of the line are not seen.
+class SignChanges {
+ public:
+  SignChanges(std::function<double(double)> f, double shortest)
+      : f_(std::move(f)), shortest_(shortest) {}
+
+  std::vector<double> between(double low, double high) {
+    search({low, f_(low)}, {high, f_(high)}, 0);
+    return std::move(found_);
+  }
+
+ private:
+  struct Sample {
+    double s, value;
+    bool inside() const { return value <= 0; }
+  };
+
+  void search(const Sample& low, const Sample& high, int level) {
+    const double s = 0.5 * (low.s + high.s);
+    const Sample middle{s, f_(s)};
+    const double half = 0.5 * (high.s - low.s);
+    if (std::abs(middle.value) > half * (1 + 1e-12)) return;
+    const bool is_short = 2 * half <= shortest_;
+    if (is_short || (level >= 8 && goes_one_way(low, high))) {
+      if (low.inside() != high.inside()) found_.push_back(refined(low, high));
+      return;
+    }
+    search(low, middle, level + 1);
+    search(middle, high, level + 1);
+  }
+
+  bool goes_one_way(const Sample& low, const Sample& high) const {
+    constexpr int samples = 8;
+    const double sign = high.value >= low.value ? 1 : -1;
+    double before = low.value;
+    for (int i = 1; i <= samples; ++i) {
+      const double here = i == samples ? high.value : f_(low.s + (high.s - low.s) * i / samples);
+      if (!(sign * (here - before) > 0)) return false;
+      before = here;
+    }
+    return true;
+  }
+
+  // The Illinois form of regula falsi, and halving in one step of three.
+  double refined(Sample low, Sample high) const {
+    double from = low.value, to = high.value;
+    for (int i = 1;; ++i) {
+      double s = high.s - to * (high.s - low.s) / (to - from);
+      if (i % 3 == 0 || !(s > low.s && s < high.s)) s = 0.5 * (low.s + high.s);
+      if (!(s > low.s && s < high.s)) return low.s;
+      const double here = f_(s);
+      if ((here <= 0) == low.inside()) {
+        low.s = s, from = here, to *= 0.5;
+      } else {
+        high.s = s, to = here, from *= 0.5;
+      }
+    }
+  }
+
+  std::function<double(double)> f_;
+  double shortest_;
+  std::vector<double> found_;
+};
+
+std::vector<Crossing> molecular_crossings(const MolecularPatch& patch, const Ray& ray) {
+  const Line line = line_near(patch, ray);
+  if (line.miss_distance > 0) return {};
+  const auto at = [&](double s) { return line.foot + s * line.unit; };
+  std::vector<Crossing> out;
+  if (patch.major == 0) {
+    for (const Crossing& c : solid_crossings(Sphere{patch.center, patch.minor}, ray))
+      if (keeps(patch, at((c.t - line.t_foot) * line.speed), 0))
+        out.push_back({c.t, c.leaving != patch.of_probe, 0, HUGE_VAL});
+    return out;
+  }
+  const auto f = [&](double s) { return carrier_value(patch, at(s)); };
+  for (const double s : SignChanges(f, 0x1p-24 * line.reach).between(-line.reach, line.reach))
+    if (keeps(patch, at(s), 0)) {
+      const double step = 0x1p-26 * line.reach;
+      out.push_back({line.t_foot + s / line.speed, f(s + step) > f(s - step), 0, HUGE_VAL});
+    }
+  return out;
+}
+
+// Returns the distance between the patch and the places where a small shift of the line makes or
+// removes two crossings: where the carrier's value has a least or a greatest value on the line.
+double distance_to_touch(const Line& line, const MolecularPatch& patch) {
+  constexpr int samples = 512;
+  const auto at = [&](double s) { return line.foot + s * line.unit; };
+  const auto f = [&](double s) { return carrier_value(patch, at(s)); };
+  const double step = 2 * line.reach / samples;
+  double least = HUGE_VAL;
+  for (int i = 1; i < samples; ++i) {
+    double s = i * step - line.reach, here = f(s);
+    const double sign = here <= f(s - step) && here <= f(s + step)   ? 1
+                        : here >= f(s - step) && here >= f(s + step) ? -1
+                                                                     : 0;
+    if (sign == 0) continue;
+    for (double width = 0.5 * step; width > 1e-9 * step; width *= 0.5)
+      for (const double there : {s - width, s + width})
+        if (const double value_there = f(there); sign * value_there < sign * here)
+          s = there, here = value_there;
+    least = std::min(least, value(patch, at(s)));
+  }
+  return least;
+}
+
 // --- Margins ---
 
 constexpr double no_limit = -HUGE_VAL;
@@ -435,6 +546,8 @@ std::vector<Crossing> crossings(const Primitive& primitive, const Ray& ray) {
   if (const auto* disk = std::get_if<PartialDisk>(&primitive))
     return partial_disk_crossings(*disk, ray);
   if (const auto* patch = std::get_if<Bilinear>(&primitive)) return bilinear_crossings(*patch, ray);
+  if (const auto* patch = std::get_if<MolecularPatch>(&primitive))
+    return molecular_crossings(*patch, ray);
   if (const auto* csg = std::get_if<Csg>(&primitive)) return csg_crossings(*csg, ray);
   return is_solid(primitive) ? solid_crossings(primitive, ray) : clipped_crossings(primitive, ray);
 }
@@ -452,10 +565,16 @@ namespace {
 double change_distance(const Primitive& primitive, const Ray& ray, double limit) {
   const Line line = line_near(primitive, ray);
   double distance = HUGE_VAL;
-  for (const Curve& curve : boundary(primitive))
-    distance = std::min(distance, distance_line_to_curve(line, curve, limit));
+  const auto* molecular = std::get_if<MolecularPatch>(&primitive);
+  for (const Curve& curve : boundary(primitive)) {
+    // A plane that is moved moves its circle by as much over the sine of its angle to the sphere.
+    const double sine = molecular && molecular->major == 0 ? curve.radius / molecular->minor : 1;
+    distance = std::min(distance, sine * distance_line_to_curve(line, curve, limit / sine));
+  }
   if (const auto* patch = std::get_if<Bilinear>(&primitive)) {
     distance = std::min(distance, distance_to_fold(line, *patch, limit));
+  } else if (molecular) {
+    distance = std::min(distance, distance_to_touch(line, *molecular));
   } else if (const Primitive carrier = carrier_of(primitive);
              carrier.index() != primitive.index() || std::holds_alternative<Frustum>(primitive)) {
     distance = std::min(distance, std::abs(least_on(carrier, line_near(carrier, ray))));

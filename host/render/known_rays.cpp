@@ -543,6 +543,28 @@ void known(bilinear_kind, Maker& make) {
              });
 }
 
+/// Two balls of radius 0.8 and a probe of radius 4: their surface has a neck whose normals lean by
+/// 3 degrees at most, so that a line at 17 degrees to it leaves the inside once.
+void known(molecular_patch_kind, Maker& make) {
+  constexpr double half = 0.25, r = 0.8, probe = 4;
+  const double major = std::sqrt((r + probe) * (r + probe) - half * half),
+               contact = half * probe / (r + probe);
+  make.solid(
+      shape_molecular_patch, make_molecule({{0, 0, -0.25f}, {0, 0, 0.25f}}, {0.8f, 0.8f}, probe),
+      [=](Random& random) {
+        const double z = random.uniform(-half - r, half + r), phi = random.uniform(0, full_turn);
+        const dvec3 out(std::cos(phi), std::sin(phi), 0), up(0, 0, 1);
+        if (std::abs(z) < contact) {
+          const double from_probe = std::sqrt(probe * probe - z * z);
+          return SurfacePoint{(major - from_probe) * out + z * up,
+                              (from_probe * out - z * up) / probe};
+        }
+        const double above = z - std::copysign(half, z);
+        const dvec3 n = (std::sqrt(r * r - above * above) * out + above * up) / r;
+        return SurfacePoint{std::copysign(half, z) * up + r * n, n};
+      });
+}
+
 void known(csg_kind, Maker& make) { make.csg(); }
 
 void known(instance_kind, Maker& make) { make.instances(); }

@@ -102,7 +102,8 @@ bool is_sheet(const Shape& shape) {
          std::holds_alternative<DiskShape>(shape.geometry) ||
          std::holds_alternative<PartialSphereShape>(shape.geometry) ||
          std::holds_alternative<OpenCylinderShape>(shape.geometry) ||
-         std::holds_alternative<BilinearMeshShape>(shape.geometry);
+         std::holds_alternative<BilinearMeshShape>(shape.geometry) ||
+         std::holds_alternative<MolecularSurfaceShape>(shape.geometry);
 }
 
 }  // namespace

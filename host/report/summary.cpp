@@ -33,6 +33,10 @@ std::uint64_t bytes_of(const Shape& shape, Counted& counted) {
   if (const auto* mesh = std::get_if<BilinearMeshShape>(&shape.geometry))
     out += bytes_of(mesh->positions) + bytes_of(mesh->patches) + bytes_of(mesh->normals) +
            bytes_of(mesh->uvs);
+  if (const auto* molecule = std::get_if<MolecularSurfaceShape>(&shape.geometry))
+    out += bytes_of(molecule->centers) + bytes_of(molecule->radii) + bytes_of(molecule->materials) +
+           bytes_of(molecule->patches->planes) + bytes_of(molecule->patches->balls) +
+           bytes_of(molecule->patches->tori);
   if (const auto* polyhedron = std::get_if<PolyhedronShape>(&shape.geometry))
     out += bytes_of(polyhedron->points) + bytes_of(polyhedron->normals);
   if (const auto* csg = std::get_if<CsgShape>(&shape.geometry))

@@ -9,6 +9,7 @@
 
 #include "base/check.h"
 #include "scene/field.h"
+#include "scene/part_materials.h"
 
 namespace caplet {
 
@@ -98,8 +99,8 @@ class Appending {
     shape.material =
         shape.material < out_.materials.size() ? out_.materials[shape.material] : shape.material;
     for (std::uint32_t& one : shape.materials) one = out_.materials.at(one);
-    if (auto* capsules = std::get_if<CapsulesShape>(&shape.geometry))
-      for (std::uint32_t& one : capsules->materials) one = out_.materials.at(one);
+    if (auto* parts = part_materials(shape))
+      for (std::uint32_t& one : *parts) one = out_.materials.at(one);
     if (auto* csg = std::get_if<CsgShape>(&shape.geometry))
       for (std::shared_ptr<const Shape>& operand : csg->operands) {
         auto own = std::make_shared<Shape>(*operand);  // the operand may be shared with another csg

@@ -89,6 +89,12 @@ constexpr std::array loop_rows = {
     positions, Row{{"indices", "corners, in threes"}, "integer"},
     Row{{"levels", "times that each triangle becomes four", 0, 12}, "integer", "3"}};
 constexpr std::array loop_ignored = {Row{{"scheme", "Loop's always"}, "string"}};
+constexpr std::array molecule_rows = {
+    Row{{"P", "centres of the balls"}, "point3"},
+    Row{{"radius", "the balls' radii: one, or one a ball", 0, no_limit, "", true}, "float"},
+    Row{{"probe", "radius of the probe", 0, no_limit, "", true}, "float", "1.4"},
+    Row{{"ballmaterials", "names of materials; \"\" is the shape's own"}, "string"},
+    Row{{"materialindices", "which of ballmaterials each ball has", 0}, "integer"}};
 constexpr std::array ply_rows = {Row{{"filename", "a PLY file"}, "string"}};
 constexpr std::array polyhedron_rows = {Row{{"P", "a point of each plane, at most 1024"}, "point3"},
                                         Row{{"N", "the planes' outward normals"}, "normal"}};
@@ -134,6 +140,7 @@ void add_shape(const std::string& type, std::vector<Parameter>& out) {
   if (type == "cylinder") add_rows(cylinder_rows, out);
   if (type == "disk") add_rows(disk_rows, out);
   if (type == "loopsubdiv") add_rows(loop_rows, out), add_ignored(loop_ignored, out);
+  if (type == "molecularsurface") add_rows(molecule_rows, out);
   if (type == "plymesh") add_rows(ply_rows, out);
   if (type == "polyhedron") add_rows(polyhedron_rows, out);
   if (type == "sphere") add_rows(sphere_rows, out);

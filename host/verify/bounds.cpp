@@ -42,15 +42,18 @@ double furthest_corner(const reference::Csg& csg, const dvec3& center, const dma
 
 // The kernels' stated bound for a ray from a distance D of the primitive's ball (docs/numerics.md),
 // in multiples of eps. Every size in the bounds is at most twice the ball's radius R and every |o -
-// p0| at most D + R: a factor of D + 3 R. For csg shapes it is 3 D + 16 (R + 3 e), and half as much
+// p0| at most D + R: a factor of D + 3 R. A molecular patch may be a small part of its sphere or
+// torus, whose own size counts. For csg shapes it is 3 D + 16 (R + 3 e), and half as much
 // again for operands in spaces of their own; R is that of the shape's box and e the distance of the
 // furthest corner of an operand's.
 double bound_of(const reference::Primitive& primitive, const reference::Ball& ball, double corner,
                 double distance) {
   if (std::holds_alternative<reference::Csg>(primitive))
     return 3 * distance + 24 * (std::sqrt(3.0) * ball.radius + 3 * corner);
-  return (std::holds_alternative<reference::Bilinear>(primitive) ? 24 : 16) *
-         (distance + 3 * ball.radius);
+  double size = ball.radius;
+  if (const auto* patch = std::get_if<reference::MolecularPatch>(&primitive))
+    size += patch->major + patch->minor + glm::length(patch->center - ball.center);
+  return (std::holds_alternative<reference::Bilinear>(primitive) ? 24 : 16) * (distance + 3 * size);
 }
 
 double altitude(const dvec3& a, const dvec3& b, const dvec3& c) {
@@ -97,6 +100,7 @@ struct TiltOf {
   double operator()(const reference::PartialSphere&) const { return 0; }
   double operator()(const reference::OpenCylinder&) const { return 0; }
   double operator()(const reference::PartialDisk&) const { return 0; }
+  double operator()(const reference::MolecularPatch&) const { return 0; }
 };
 
 double tilt_of(const reference::Primitive& primitive, double moved) {

@@ -218,10 +218,13 @@ Match Comparison::measure(const LocalRay& local, const SceneHit& hit, const Pick
   };
   // The gradient of the value in the world is the transposed matrix's image of its gradient here.
   const double largest = std::max({std::abs(point.x), std::abs(point.y), std::abs(point.z)});
+  // Molecular patches reach beyond their borders by what depends on the ray.
+  const double off_surface = std::holds_alternative<reference::MolecularPatch>(primitive)
+                                 ? reference::distance_from_surface(primitive, x, solid.surface)
+                                 : std::abs(reference::value(primitive, x));
   set(Quantity::point,
-      std::abs(reference::value(primitive, x)) /
-          glm::length(normal_matrix * reference::normal_at(primitive, x, reach)),
-      error, ulp_of(largest));
+      off_surface / glm::length(normal_matrix * reference::normal_at(primitive, x, reach)), error,
+      ulp_of(largest));
 
   const dvec3 own = to_dvec3(pick.normal), unit = world_normal(x);
   // The device's arithmetic contributes: a unit vector by a square root and quotients (16 eps), the

@@ -534,6 +534,12 @@ void visit_form(FormFields& fields, Shape& shape) {
           any("zmin", geometry.z_min);
           any("zmax", geometry.z_max);
           turn("phimax", geometry.phi_max);
+        } else if constexpr (std::is_same_v<Type, MolecularSurfaceShape>) {
+          const double before = geometry.probe;
+          positive("probe", geometry.probe);
+          if (geometry.probe != before)
+            geometry =
+                make_molecule(geometry.centers, geometry.radii, geometry.probe, geometry.materials);
         }
       },
       shape.geometry);

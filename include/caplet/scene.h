@@ -147,6 +147,10 @@ class CAPLET_API Scene {
                            const ShapeOptions& options = {});
   /// Adds one shape of many capsules.
   std::uint32_t add_capsules(const CapsuleArrays& capsules, const ShapeOptions& options = {});
+  /// Adds the solvent-excluded surface of balls for a probe of this radius (docs/shapes.md,
+  /// "Molecular surface").
+  std::uint32_t add_molecular_surface(const BallArrays& balls, double probe,
+                                      const ShapeOptions& options = {});
   /// Adds one shape of many triangles.
   std::uint32_t add_mesh(const MeshArrays& mesh, const ShapeOptions& options = {});
   /// Get and set all capsules of a shape; set_capsules may change their number.

@@ -39,6 +39,14 @@ struct CapsuleArrays {
   std::vector<double> times = {};
 };
 
+/// Balls of a molecular surface, with an entry each; `materials`, by number, are empty where all
+/// have the shape's.
+struct BallArrays {
+  std::vector<std::array<float, 3>> centers;
+  std::vector<float> radii;
+  std::vector<std::uint32_t> materials;
+};
+
 /// Triangles by corner indices, counter-clockwise from outside. Normals (any length) and uvs: empty
 /// or one per vertex.
 struct MeshArrays {

@@ -54,11 +54,9 @@ static inline void list_add(HitList* list, float t, uint slot, uint instance, ui
   list->sorted[place] = hit;
 }
 
-// Adds the crossings of the primitives in lanes lane .. lane + CAPLET_REAL_WIDTH - 1.
-static inline void list_add_spans(HitList* list, uint kind, const ShapeRay* ray,
-                                  __global const float* block, uint lane, uint slot,
-                                  uint instance) {
-  const Span span = shape_span(kind, ray, block, lane);
+// Adds crossings of the primitives in lanes lane .. lane + CAPLET_REAL_WIDTH - 1.
+static inline void list_add_span(HitList* list, uint kind, const ShapeRay* ray, Span span,
+                                 __global const float* block, uint lane, uint slot, uint instance) {
   const real_mask filled = lanes_filled(block, lane);
   const uint enter_bits = mask_bits(span.enter & filled), exit_bits = mask_bits(span.exit & filled);
   if ((enter_bits | exit_bits) == 0) return;
@@ -101,8 +99,16 @@ static inline void list_add_leaf(HitList* list, const ShapeRay* ray, uint kind, 
   if (CAPLET_HAS_SHAPE(shape_csg) && kind == shape_csg) {
     list_add_csg(list, ray, block, row * 8, instance);
   } else {
-    for (uint lane = 0; lane < CAPLET_WIDTH; lane += CAPLET_REAL_WIDTH)
-      list_add_spans(list, kind, ray, block, lane, row * 8 + lane, instance);
+    for (uint lane = 0; lane < CAPLET_WIDTH; lane += CAPLET_REAL_WIDTH) {
+      const uint slot = row * 8 + lane;
+      list_add_span(list, kind, ray, shape_span(kind, ray, block, lane), block, lane, slot,
+                    instance);
+#ifdef CAPLET_SHAPES_MOLECULAR_PATCH_CL
+      if (kind == shape_molecular_patch)
+        list_add_span(list, kind, ray, patch_span_from(ray, block, lane, 2u), block, lane, slot,
+                      instance);
+#endif
+    }
   }
 }
 

@@ -545,6 +545,27 @@ class Scene:
         """Spheres, all of them one shape. center: (n, 3); radius: one or (n,). Options as of add_capsules."""
         return self.add_capsules(center, center, radius, **options)
 
+    def add_molecular_surface(self, center, radius, probe=1.4, *, color=None, material=None, name=None, transform=None, emission=None,
+                              inside=None, outside=None, object=None, reverse_orientation=False):
+        """The solvent-excluded surface of balls, one shape: what a ball of radius `probe` cannot reach (docs/shapes.md).
+
+        center: (n, 3); radius: one or (n,), above 0. color: (3,) or (n, 3); each patch has that of the ball that it is nearest to.
+        Options as of add_capsules.
+
+        >>> Scene().add_molecular_surface([[0, 0, 0], [2, 0, 0]], [1.5, 1.2], name="dimer").name
+        'dimer'
+        """
+        center = arrays.rows(center, "center", 3)
+        radius = arrays.scalars(radius, "radius")
+        count = arrays.common(center=center, radius=radius)
+        probe = arrays.scalars(probe, "probe")
+        if probe.size != 1:
+            raise InputError(f"probe: one radius is needed, not shape {probe.shape}")
+        material, each = self._colored(color, material, count)
+        number = self._native.add_molecular_surface(count, center, radius, float(probe.reshape(-1)[0]), each, self._options(
+            name, transform, material, emission, inside, outside, object, reverse_orientation))
+        return self._one(number, object)
+
     def add_mesh(self, vertices, faces, normals=None, uv=None, *, color=None, material=None, name=None, transform=None, emission=None,
                  inside=None, outside=None, object=None, reverse_orientation=False):
         """Triangles. vertices: (v, 3); faces: (n, 3) of whole numbers, counter-clockwise from outside; normals: (v, 3); uv: (v, 2)."""

@@ -443,6 +443,18 @@ void bind_shapes(nb::class_<HeldScene>& held) {
            nb::arg("count"), nb::arg("p0"), nb::arg("p1"), nb::arg("radius0"),
            nb::arg("radius1").none(), nb::arg("materials").none(), nb::arg("u").none(),
            nb::arg("options"))
+      .def(
+          "add_molecular_surface",
+          in_turn([](Scene& scene, std::size_t count, const Array& center, const Array& radius,
+                     double probe, const std::optional<Array>& materials, const nb::dict& options) {
+            const caplet::ShapeOptions given = options_of(options);
+            const Released released;
+            caplet::BallArrays balls{rows_of<3>(center, count), floats_of(radius, count), {}};
+            if (materials) balls.materials = numbers_of(*materials);
+            return scene.add_molecular_surface(balls, probe, given);
+          }),
+          nb::arg("count"), nb::arg("center"), nb::arg("radius"), nb::arg("probe"),
+          nb::arg("materials").none(), nb::arg("options"))
       .def("set_capsules",
            in_turn([](Scene& scene, std::uint32_t shape, std::size_t count, const Array& p0,
                       const Array& p1, const Array& radius0, const std::optional<Array>& radius1,

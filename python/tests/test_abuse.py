@@ -130,7 +130,7 @@ OF = {  # where the same name is something else
     ("integrator", "type"): "path", ("set_material", "material"): materials.diffuse(), ("add_many", "type"): "sphere", ("shape_parameters", "type"): "sphere",
     ("from_nibabel", "radius"): 0.1, ("from_sonata", "radius"): 0.1, ("from_neuroml", "radius"): 0.1, ("from_neuroml", "cell"): "c",
     ("from_sonata", "ids"): [0, 1], ("from_sonata", "color"): [[0.1, 0.2, 0.3], [0.4, 0.5, 0.6], [0.7, 0.8, 0.9]],
-    ("add", "radius"): 0.5, ("add_many", "radius"): 0.5, ("animate_instance", "transforms"): [np.eye(4)] * 2, ("animate_camera", "transforms"): [np.eye(4)] * 2,
+    ("add", "radius"): 0.5, ("add_molecular_surface", "probe"): 1.4, ("add_many", "radius"): 0.5, ("animate_instance", "transforms"): [np.eye(4)] * 2, ("animate_camera", "transforms"): [np.eye(4)] * 2,
     ("render_batch", "camera"): sensors.Pinhole(4, 3, fx=4), ("render_batch", "moving"): [0, 1], ("render_batch", "mode"): "rays", ("render_batch", "layers"): ["depth"],
     ("animate", "p0"): [THREE[:2]] * 2, ("animate", "p1"): np.add([THREE[:2]] * 2, 1), ("animate", "radius"): [[0.1, 0.2]] * 2,
 }

@@ -175,6 +175,13 @@ def test_bonds_are_those_of_small_molecules():
     assert len(scene["atoms"]) == 12 and len(scene["bonds"]) == 24
     assert np.allclose(np.sort(scene["bonds"].p1[:, 0]), np.sort(np.repeat([(positions[a][0] + positions[b][0]) / 2 for a, b in sorted(ring)], 2)), atol=2e-3)
     assert len(caplet.from_gemmi(structure, hydrogens=False)["atoms"]) == 6
+    # A probe of 1.4 rests on the middle of the ring, at 1.7 + 1.4 from all six carbons.
+    surface = caplet.from_gemmi(structure, style="surface", color="chain")
+    assert list(surface.primitives) == ["molecular_patch"] and len(surface.shapes) == 1
+    assert caplet.trace(surface, (0, 0, 10), (0, 0, -1))["t"][0] == pytest.approx(10 - (math.sqrt(3.1**2 - 1.39**2) - 1.4), abs=1e-3)
+    assert caplet.trace(caplet.from_gemmi(structure, style="surface", probe=0.1), (0, 0, 10), (0, 0, -1))["t"][0] > 8.9
+    reached = caplet.from_gemmi(structure, style="accessible", probe=0.5)["atoms"].radius
+    assert sorted(set(np.round(np.asarray(reached).reshape(-1), 3))) == pytest.approx([1.7, 2.2])
     for wrong in (dict(style="cartoon"), dict(color="pink"), dict(model=3)):
         with pytest.raises(caplet.InputError):
             caplet.from_gemmi(structure, **wrong)

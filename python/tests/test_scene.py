@@ -138,6 +138,7 @@ SHAPES = {  # with where a ray from (0, 0, 10) down hits it
     "capsules": (dict(p0=[(0, 0, -1), (5, 0, 0)], p1=[(0, 0, 2), (6, 0, 0)], radius=[0.5, 0.1]), 7.5),
     "cylinder": (dict(p0=(0, 0, -1), p1=(0, 0, 3), radius=1), 7), "cone": (dict(p0=(0, 0, 2), p1=(0, 0, -1), radius=(1, 0.5)), 8),
     "box": (dict(p0=(-1, -1, -1), p1=(1, 1, 1.5)), 8.5), "disk": (dict(height=4, radius=1), 6),
+    "molecularsurface": (dict(P=[(0, 0, 0), (0, 0, 1.5)], radius=[1, 1], probe=1), 7.5),
     "polyhedron": (dict(P=[(0, 0, 1), (0, 0, -1), (1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0)],
                         N=[(0, 0, 1), (0, 0, -1), (1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0)]), 9),
     "trianglemesh": (dict(P=[(-1, -1, 1), (2, -1, 1), (-1, 2, 1)], indices=[0, 1, 2]), 9),

@@ -246,9 +246,10 @@ TEST(Texts, BashCompletesCommandsAndValues) {
   EXPECT_THAT(bash.offers({"de"}), ElementsAre("devices"));  // what is hidden is not offered
   EXPECT_THAT(bash.offers({"--ver"}), ElementsAre("--version"));
   EXPECT_THAT(bash.offers({"render", "a.pbrt", "--style", ""}),
-              UnorderedElementsAre("ball-and-stick", "spheres", "sticks", "trace", "cartoon"));
+              UnorderedElementsAre("ball-and-stick", "spheres", "sticks", "trace", "cartoon",
+                                   "surface", "accessible"));
   EXPECT_THAT(bash.offers({"render", "--style", "=", "st"}), ElementsAre("sticks"));  // --style=st
-  EXPECT_THAT(bash.offers({"render", "--style", "="}), testing::SizeIs(5));
+  EXPECT_THAT(bash.offers({"render", "--style", "="}), testing::SizeIs(7));
   EXPECT_THAT(bash.offers({"render", "--layers", "al"}), UnorderedElementsAre("all", "albedo"));
   EXPECT_THAT(bash.offers({"render", "--layers", "Z,al"}), ElementsAre("Z,albedo"));
   EXPECT_THAT(bash.offers({"render", "--device", ""}),

@@ -422,6 +422,10 @@ class Maker {
     if (auto* capsules = std::get_if<CapsulesShape>(&shape.geometry);
         capsules && count_of(*capsules) > 1 && random_.one_in(2))
       for (std::size_t i = 0; i < count_of(*capsules); ++i) capsules->materials.push_back(some());
+    if (auto* molecule = std::get_if<MolecularSurfaceShape>(&shape.geometry);
+        molecule && random_.one_in(2))
+      for (std::size_t i = 0; i < molecule->centers.size(); ++i)
+        molecule->materials.push_back(some());
     if (random_.one_in(3)) shape.name = "a shape \\ named";
     shape.reverse_orientation = random_.one_in(3);
     if (is_closed(shape) && next_medium_ < scene_.media.size()) {

@@ -149,6 +149,30 @@ ObjectInstance "leaf"
   EXPECT_TRUE(same_pictures(scene, caplet::import_scene(folder_ / "written.pbrt")));
 }
 
+TEST_F(LibraryBuild, MolecularSurfacesAreThoseOfTheFile) {
+  std::ofstream(folder_ / "scene.pbrt")
+      << "WorldBegin\n"
+         "MakeNamedMaterial \"red\" \"string type\" \"diffuse\" \"rgb reflectance\" [1 0 0]\n"
+         "MakeNamedMaterial \"blue\" \"string type\" \"diffuse\" \"rgb reflectance\" [0 0 1]\n"
+         "NamedMaterial \"red\"\n"
+         "Shape \"molecularsurface\" \"point3 P\" [0 0 0 2 0 0] \"float radius\" [1 0.5]\n"
+         "\"float probe\" 0.75 \"string ballmaterials\" [\"red\" \"blue\"] \"integer "
+         "materialindices\" [0 1]\n";
+  caplet::Scene scene;
+  const std::uint32_t red = scene.add_material(
+      "red", caplet::NamedMaterial{"diffuse", {{"reflectance", caplet::Rgb{1, 0, 0}}}});
+  const std::uint32_t blue = scene.add_material(
+      "blue", caplet::NamedMaterial{"diffuse", {{"reflectance", caplet::Rgb{0, 0, 1}}}});
+  const caplet::BallArrays balls{{{0, 0, 0}, {2, 0, 0}}, {1, 0.5F}, {red, blue}};
+  EXPECT_EQ(scene.add_molecular_surface(balls, 0.75, {.materials = {red}}), 0U);
+  scene.present();
+  EXPECT_TRUE(same_pictures(scene, caplet::import_scene(folder_ / "scene.pbrt")));
+  EXPECT_THROW(scene.add_molecular_surface({}, 0.75), caplet::InputError);
+  EXPECT_THROW(scene.add_molecular_surface({{{0, 0, 0}}, {-1}, {}}, 0.75), caplet::InputError);
+  EXPECT_THROW(scene.add_molecular_surface({{{0, 0, 0}}, {1}, {7}}, 0.75), caplet::InputError);
+  EXPECT_THROW(scene.add_molecular_surface(balls, 0), caplet::InputError);
+}
+
 TEST_F(LibraryBuild, TypesAndParametersAreThoseOfTheLists) {
   EXPECT_THAT(caplet::statement_types(Statement::light),
               IsSupersetOf({"point", "spot", "ies", "infinite"}));

@@ -138,6 +138,12 @@ Surface surface_of(const BoxShape& box, const Shape&) {
   return out;
 }
 
+/// One of a single ball.
+Surface surface_of(const MolecularSurfaceShape& molecule, const Shape&) {
+  return star(dvec3(molecule.centers[0]),
+              [r = double(molecule.radii[0])](const dvec3&) { return r; });
+}
+
 /// One that holds the origin.
 Surface surface_of(const PolyhedronShape& polyhedron, const Shape&) {
   return star(dvec3(0), [=](const dvec3& d) {

@@ -204,6 +204,24 @@ FlatPrimitive CaseMaker::polyhedron(int planes, double stretch, const Frame& at,
   }
 }
 
+FlatPrimitive CaseMaker::molecular_patch(const Frame& at, std::vector<float>& leaves) {
+  std::vector<glm::vec3> centers;
+  std::vector<float> radii;
+  for (int i = 0, count = 2 + below(4); i < count; ++i) {
+    const double r = at.r * uniform(0.2, 1);
+    centers.emplace_back(at.center + at.r * uniform(0, 1.5) * direction());
+    radii.push_back(static_cast<float>(r));
+  }
+  const MolecularSurfaceShape molecule = make_molecule(centers, radii, at.r * uniform(0.1, 2));
+  const std::vector<FlatPrimitive> patches = flat_patches(molecule, glm::dmat4(1), leaves);
+  // Half of them are tori, where there are any.
+  const int balls = static_cast<int>(molecule.patches->balls.size()),
+            all = static_cast<int>(patches.size());
+  const int chosen =
+      below(2) == 0 && balls < all ? balls + below(all - balls) : below(std::max(1, balls));
+  return patches.at(static_cast<std::size_t>(chosen));
+}
+
 Shape CaseMaker::csg_shape(int depth) {
   CsgShape csg;
   csg.operation = static_cast<CsgShape::Operation>(below(3));
@@ -317,7 +335,9 @@ void CaseMaker::add_primitive(int shape, bool hard, CaseSet& out) {
       return;
     }
   }
-  if (shape == shape_polyhedron) {
+  if (shape == shape_molecular_patch) {
+    out.primitives.push_back(molecular_patch(frame(hard), out.leaves));
+  } else if (shape == shape_polyhedron) {
     const Frame at = frame(hard);
     const double stretch = hard ? std::pow(10.0, uniform(-1.5, 1.5)) : 1;
     out.primitives.push_back(polyhedron(4 + below(hard ? 12 : 6), stretch, at, out.leaves));
@@ -419,6 +439,10 @@ double surface_bound(const FlatPrimitive& p, const reference::Primitive& referen
         for (int k = 0; k < i; ++k)
           diameter = std::max(diameter, glm::length(point(d + 3 * i) - point(d + 3 * k)));
       return 24 * eps * (from(point(d)) + diameter);
+    }
+    case shape_molecular_patch: {
+      const auto& patch = std::get<reference::MolecularPatch>(reference);
+      return 16 * eps * (from(patch.center) + patch.major + patch.minor);
     }
     case shape_csg: {
       const reference::Ball ball = reference::bounding_ball(reference);
@@ -559,6 +583,29 @@ dvec3 CaseMaker::point_of(const reference::Bilinear& b, dvec3* normal) {
   return b.p00 + u * (b.p10 - b.p00) + v * dv;
 }
 
+dvec3 CaseMaker::point_of(const reference::MolecularPatch& patch, dvec3* normal) {
+  const auto at = [&](double phi, double theta) {
+    const dvec3 spoke =
+        std::cos(phi) * patch.start + std::sin(phi) * glm::cross(patch.axis, patch.start);
+    *normal = -(std::cos(theta) * spoke + std::sin(theta) * patch.axis);
+    return patch.center + patch.major * spoke - patch.minor * *normal;
+  };
+  if (patch.major > 0)
+    return at(angle_within(patch.phi_max, uniform(0, 1), uniform(0, 1)),
+              between(patch.theta_min, patch.theta_max));
+  const std::vector<reference::Curve> border = reference::boundary(patch);
+  dvec3 x = patch.center + patch.minor * direction();
+  if (!border.empty() && below(3) == 0)
+    x = border[static_cast<std::size_t>(below(static_cast<int>(border.size())))].at(uniform(0, 1));
+  else
+    for (int i = 0; i < 200 && !reference::keeps(patch, x, 0); ++i)
+      x = patch.center +
+          patch.minor * glm::normalize(patch.ball_center - patch.center +
+                                       patch.ball_radius * uniform(0, 1) * direction());
+  *normal = (patch.of_probe ? -1.0 : 1.0) * glm::normalize(x - patch.center);
+  return x;
+}
+
 dvec3 CaseMaker::point_of(const reference::Csg& csg, dvec3* normal) {
   const reference::Primitive whole = csg;
   const reference::Ball ball = reference::bounding_ball(whole);
@@ -641,6 +688,8 @@ dvec3 CaseMaker::own_axis(const FlatPrimitive& p, const reference::Primitive& re
       return point(d + 3);
     case shape_box:
       return {double(d[3]) - double(d[0]), 0, 0};
+    case shape_molecular_patch:
+      return std::get<reference::MolecularPatch>(reference).axis;
     case shape_polyhedron: {  // edges come as pairs of corners
       const auto& corners = std::get<reference::Polyhedron>(reference).corners;
       const auto i = static_cast<std::size_t>(below(static_cast<int>(corners.size()) / 2));

@@ -59,6 +59,8 @@ class CaseMaker {
   };
   /// A bounded polyhedron of `planes` planes that touch the ball of `at`, stretched along its axis.
   FlatPrimitive polyhedron(int planes, double stretch, const Frame& at, std::vector<float>& leaves);
+  /// A patch of some balls' surface.
+  FlatPrimitive molecular_patch(const Frame& at, std::vector<float>& leaves);
   /// Along the shape's axis, or an edge.
   glm::dvec3 own_axis(const FlatPrimitive& primitive, const reference::Primitive& reference);
 
@@ -78,6 +80,7 @@ class CaseMaker {
   glm::dvec3 point_of(const reference::OpenCylinder& cylinder, glm::dvec3* normal);
   glm::dvec3 point_of(const reference::PartialDisk& disk, glm::dvec3* normal);
   glm::dvec3 point_of(const reference::Bilinear& patch, glm::dvec3* normal);
+  glm::dvec3 point_of(const reference::MolecularPatch& patch, glm::dvec3* normal);
   glm::dvec3 point_of(const reference::Csg& csg, glm::dvec3* normal);
   double between(double low, double high) {
     return below(4) == 0 ? low : below(3) == 0 ? high : uniform(low, high);

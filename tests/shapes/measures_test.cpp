@@ -157,6 +157,7 @@ double area(const Shape& shape) {
         if constexpr (std::is_same_v<Geometry, CapsulesShape> ||
                       std::is_same_v<Geometry, TriangleMeshShape> ||
                       std::is_same_v<Geometry, BilinearMeshShape> ||
+                      std::is_same_v<Geometry, MolecularSurfaceShape> ||
                       std::is_same_v<Geometry, CsgShape>) {
           return -1;
         } else {
@@ -292,6 +293,32 @@ TEST(Areas, BilinearPatches) {
   const double dart = patch_area({dvec3(0), dvec3(1, 0, 0), dvec3(0, 1, 0), dvec3(0.25, 0.25, 0)});
   EXPECT_GT(dart, 0.25);
   EXPECT_LT(dart, 0.5);
+}
+
+// Two balls and the belt that a probe leaves between them, under maps of either kind.
+TEST(Areas, MolecularPatches) {
+  const double r = 1, half = 1.25, probe = 0.75;
+  const MolecularSurfaceShape molecule =
+      make_molecule({{0, 0, 1.25f}, {0, 0, -1.25f}}, {1, 1}, probe);
+  const auto area_under = [&](const glm::dmat4& m) {
+    std::vector<float> leaves;
+    double out = 0;
+    for (const FlatPrimitive& p : flat_patches(molecule, glm::dmat4(1), leaves))
+      out += placed_area(p, leaves, AreaMap(m), {});
+    return out;
+  };
+  const double major = std::sqrt((r + probe) * (r + probe) - half * half),
+               contact = half * probe / (r + probe), angle = std::asin(contact / probe);
+  const double ball = 2 * pi * r * (half + r - contact),
+               belt = 2 * pi * probe * (major * angle - probe * std::sin(angle));
+  EXPECT_NEAR(area_under(glm::dmat4(1)), 2 * (ball + belt), 3e-4 * 8 * pi);
+  EXPECT_NEAR(area_under(glm::scale(glm::dmat4(1), dvec3(-3))), 9 * 2 * (ball + belt),
+              27e-4 * 8 * pi);
+  // Stretched along the axis by so much that slopes alone count: twice the widest and twice less
+  // the narrowest circle, each way.
+  const double flat = 1e-4, neck = major - probe;
+  EXPECT_NEAR(area_under(glm::scale(glm::dmat4(1), dvec3(1, 1, flat))),
+              2 * pi * (2 * r * r - neck * neck), 3e-3);
 }
 
 }  // namespace

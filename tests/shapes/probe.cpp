@@ -122,6 +122,30 @@ FlatPrimitive make(int shape, std::initializer_list<float> values) {
   return p;
 }
 
+// The patch of these floats (shapes.def).
+reference::MolecularPatch patch_of(const FlatPrimitive& p, const std::vector<float>& leaves) {
+  const float* data = &leaves.at(molecular_patch_begin(p.data));
+  reference::MolecularPatch out;
+  out.center = point(data);
+  out.minor = double(data[3]);
+  out.ball_center = point(p.data);
+  out.ball_radius = double(p.data[3]);
+  if (const auto count = std::bit_cast<std::uint32_t>(data[4]); count != CAPLET_NONE) {
+    out.of_probe = data[5] != 0;
+    for (std::uint32_t i = 0; i < count; ++i)
+      out.planes.push_back({point(data + 8 + 4 * i), double(data[8 + 4 * i + 3])});
+    return out;
+  }
+  out.major = double(data[5]);
+  out.axis = glm::normalize(point(data + 8));
+  out.phi_max = double(data[11]);
+  out.start = point(data + 12);
+  out.start = glm::normalize(out.start - glm::dot(out.start, out.axis) * out.axis);
+  out.theta_min = double(std::min(data[20], data[21]));
+  out.theta_max = double(std::max(data[20], data[21]));
+  return out;
+}
+
 }  // namespace
 
 reference::Primitive reference_of(const FlatPrimitive& p, const std::vector<float>& leaves) {
@@ -163,6 +187,8 @@ reference::Primitive reference_of(const FlatPrimitive& p, const std::vector<floa
       return reference::PartialDisk{d[0], d[1], d[2], d[3]};
     case shape_bilinear:
       return reference::Bilinear{point(d), point(d + 3), point(d + 6), point(d + 9)};
+    case shape_molecular_patch:
+      return patch_of(p, leaves);
     default: {
       reference::Primitive out;
       if (!for_faced(p.shape,
@@ -176,6 +202,7 @@ reference::Primitive reference_of(const FlatPrimitive& p, const std::vector<floa
 int length_count(const FlatPrimitive& p) {
   switch (p.shape) {
     case shape_sphere:
+    case shape_molecular_patch:  // and what lies in `leaves`
       return 4;
     case shape_capsule:
     case shape_cylinder:
@@ -224,6 +251,7 @@ int coordinate_count(const FlatPrimitive& p) {
     case shape_open_cylinder:
     case shape_partial_disk:
     case shape_csg:
+    case shape_molecular_patch:
       return 0;
     default: {
       int out = 0;

@@ -42,7 +42,7 @@ FlatPrimitive make_bilinear(std::array<float, 3> p00, std::array<float, 3> p10,
                             std::array<float, 3> p01, std::array<float, 3> p11);
 /// How many values of `data` are lengths or coordinates (and must be scaled with the shape), from
 /// the first on (a disk's normal lies among them). Polyhedra and csg shapes: none; their data lie
-/// in `leaves`.
+/// in `leaves`, and so do most of molecular patches.
 int length_count(const FlatPrimitive& primitive);
 /// How many of them are coordinates, three a point: they move with the shape.
 int coordinate_count(const FlatPrimitive& primitive);

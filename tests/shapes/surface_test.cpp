@@ -39,6 +39,11 @@ double feature_size(const reference::Primitive& reference, const dvec3& x) {
     return cylinder->radius;
   if (const auto* capsule = std::get_if<reference::Capsule>(&reference))
     return std::min(capsule->radius0, capsule->radius1);
+  if (const auto* patch = std::get_if<reference::MolecularPatch>(&reference)) {
+    if (patch->major == 0) return patch->minor;
+    // Its radii of curvature are that of the tube and one that vanishes on the axis.
+    return std::min(patch->minor, glm::length(glm::cross(x - patch->center, patch->axis)));
+  }
   const reference::SurfaceAt at = reference::surface_at(reference, x);
   if (const auto* s = std::get_if<reference::Frustum>(&reference)) {
     const double across = glm::length(glm::cross(x - s->p0, s->axis));
@@ -61,6 +66,14 @@ double feature_size(const reference::Primitive& reference, const dvec3& x) {
                                      (operand.stretch * condition * condition));
     }
   return std::min(at.margin, ball);
+}
+
+// Molecular patches reach beyond their borders by what depends on the ray: their points are on the
+// whole sphere or torus.
+reference::Primitive surface_around(const reference::Primitive& reference) {
+  return std::holds_alternative<reference::MolecularPatch>(reference)
+             ? reference::carrier_of(reference)
+             : reference;
 }
 
 bool is_flat(const FlatPrimitive& p) {
@@ -106,12 +119,15 @@ TEST_P(SurfacePoints, LieOnTheSurfaceAndInTheBox) {
     const FlatPrimitive& p = cases.primitive(i);
     const reference::Primitive& reference = cases.reference(i);
     const dvec3 x = point(s.p), ng = point(s.ng);
-    const double distance = std::abs(reference::value(reference, x));
+    const double distance = std::abs(reference::value(surface_around(reference), x));
     ASSERT_LE(distance, s.error) << i;
     worst = std::max(worst, distance / double(s.error));
+    // Molecular patches reach beyond their border by what depends on the ray.
+    const double beyond =
+        p.shape == shape_molecular_patch ? surface_bound(p, reference, cases.rays[i]) : 0;
     for (int k = 0; k < 3; ++k) {
-      ASSERT_GE(s.p[k], probe.tree(cases.which[i]).min[k]) << i;
-      ASSERT_LE(s.p[k], probe.tree(cases.which[i]).max[k]) << i;
+      ASSERT_GE(double(s.p[k]) + beyond, double(probe.tree(cases.which[i]).min[k])) << i;
+      ASSERT_LE(double(s.p[k]) - beyond, double(probe.tree(cases.which[i]).max[k])) << i;
     }
     ASSERT_NEAR(glm::length(ng), 1, 8 * eps);
     ASSERT_EQ(s.primitive, cases.which[i]);
@@ -176,7 +192,9 @@ std::array<float, 3> leaving_direction(CaseMaker& maker, const dvec3& n, bool ma
 // What a ray that leaves may meet again.
 enum class Meets { nothing, itself_elsewhere, its_other_side };
 Meets outward_of(int shape) {
-  return shape == shape_bilinear || shape == shape_csg ? Meets::itself_elsewhere : Meets::nothing;
+  return shape == shape_bilinear || shape == shape_csg || shape == shape_molecular_patch
+             ? Meets::itself_elsewhere
+             : Meets::nothing;
 }
 Meets inward_of(int shape, const reference::Primitive& reference) {
   if (shape == shape_csg) return Meets::itself_elsewhere;
@@ -337,7 +355,8 @@ TEST_P(SurfacePoints, OfInstances) {
     const dvec3 n = point(s.ng);
     const double stretch =
         glm::length(glm::transpose(glm::dmat3(placed.world_from_object[which])) * n);
-    ASSERT_LE(std::abs(reference::value(reference, x)) * stretch, double(s.error)) << i;
+    ASSERT_LE(std::abs(reference::value(surface_around(reference), x)) * stretch, double(s.error))
+        << i;
     ASSERT_EQ(s.light, which % 2 == 0 ? CAPLET_NONE : 100 + which + 3);
     // The normal is that of the implicit function of the world point; open shapes' winding is that
     // of object space.

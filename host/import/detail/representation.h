@@ -12,7 +12,7 @@
 
 namespace caplet {
 
-enum class MoleculeStyle { ball_and_stick, spheres, sticks, trace, cartoon };
+enum class MoleculeStyle { ball_and_stick, spheres, sticks, trace, cartoon, surface, accessible };
 enum class MoleculeColor { element, chain, residue, bfactor, secondary, fixed };
 
 struct Representation {
@@ -21,6 +21,7 @@ struct Representation {
   MoleculeColor by = MoleculeColor::element;
   glm::dvec3 color{0};            // linear sRGB, for MoleculeColor::fixed
   double opacity = 1;             // 0 to 1
+  float probe = 1.4F;             // radius, for surfaces; angstroms
   const char* option = "--show";  // what asked for it, for errors
 };
 

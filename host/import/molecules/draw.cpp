@@ -175,15 +175,19 @@ class MoleculeDrawing {
         chosen_(std::move(chosen)),
         style_(as.style),
         opacity_(as.opacity),
+        probe_(as.probe),
         painter_(painter) {}
 
   /// Makes the shapes of the residues that `kept` marks, which are placed `copies` times.
   std::vector<Shape> shapes(const Scene& scene, const std::vector<bool>& kept,
                             std::size_t copies = 1) {
     parts_.clear();
+    const auto is_chosen = [&](std::uint32_t i) {
+      return chosen_[i] && kept[molecule_.atoms[i].residue];
+    };
+    if (has_surface()) find_covered(is_chosen);
     const auto is_drawn = [&](std::uint32_t i) {
-      const Atom& atom = molecule_.atoms[i];
-      return chosen_[i] && kept[atom.residue] && in_detail(atom);
+      return is_chosen(i) && in_detail(molecule_.atoms[i]);
     };
     for (std::uint32_t i = 0; i < molecule_.atoms.size(); ++i) {
       if (!is_drawn(i)) continue;
@@ -193,7 +197,8 @@ class MoleculeDrawing {
     }
     if (style_ != MoleculeStyle::spheres)
       for (const auto& [i, j] : bonds_)
-        if (is_drawn(i) && is_drawn(j)) add_bond(molecule_.atoms[i], molecule_.atoms[j]);
+        if (is_drawn(i) && is_drawn(j) && has_bonds(molecule_.atoms[i]))
+          add_bond(molecule_.atoms[i], molecule_.atoms[j]);
     if (style_ == MoleculeStyle::trace) add_traces(kept);
     std::vector<Shape> out;
     for (auto& [name, part] : parts_) {
@@ -209,6 +214,13 @@ class MoleculeDrawing {
                molecule_, secondary_, with_guide(kept),
                [this](const Atom& atom) { return painter_.material(atom); }, scene.source, copies))
         out.push_back(std::move(shape));
+    if (style_ == MoleculeStyle::surface) {
+      Shape shape;
+      shape.name = "surface";
+      shape.where = {scene.source, 0, 0};
+      shape.geometry = surface_of(is_chosen, scene.source);
+      if (primitive_count(shape) > 0) out.push_back(std::move(shape));
+    }
     if (opacity_ < 1)
       for (Shape& shape : out) shape.alpha = TextureOperand(opacity_);
     return out;
@@ -218,6 +230,41 @@ class MoleculeDrawing {
   bool follows_chains() const {
     return style_ == MoleculeStyle::trace || style_ == MoleculeStyle::cartoon;
   }
+  bool has_surface() const {
+    return style_ == MoleculeStyle::surface || style_ == MoleculeStyle::accessible;
+  }
+  static int rank_of(ResidueKind kind) {
+    return kind == ResidueKind::water ? 0 : kind == ResidueKind::other ? 1 : 2;
+  }
+  int rank_of(const Atom& atom) const { return rank_of(molecule_.residues[atom.residue].kind); }
+  /// Surfaces cover polymers; where none is chosen, ligands; else water.
+  template <class IsChosen>
+  void find_covered(const IsChosen& is_chosen) {
+    covered_rank_ = 0;
+    for (std::uint32_t i = 0; i < molecule_.atoms.size(); ++i)
+      if (is_chosen(i)) covered_rank_ = std::max(covered_rank_, rank_of(molecule_.atoms[i]));
+  }
+  bool is_covered(const Atom& atom) const { return rank_of(atom) == covered_rank_; }
+  template <class IsChosen>
+  MolecularSurfaceShape surface_of(const IsChosen& is_chosen, const std::string& path) {
+    std::vector<glm::vec3> centers;
+    std::vector<float> radii;
+    std::vector<std::uint32_t> materials;
+    for (std::uint32_t i = 0; i < molecule_.atoms.size(); ++i) {
+      const Atom& atom = molecule_.atoms[i];
+      if (!is_chosen(i) || !is_covered(atom)) continue;
+      centers.push_back(atom.position);
+      radii.push_back(van_der_waals_radius(atom.element));
+      materials.push_back(painter_.material(atom));
+    }
+    try {
+      return make_molecule(std::move(centers), std::move(radii), static_cast<double>(probe_),
+                           std::move(materials));
+    } catch (const InputError& error) {
+      throw InputError({path}, std::string("surface: ") + error.what());
+    }
+  }
+
   /// Returns the kept residues whose guide atom is chosen.
   std::vector<bool> with_guide(std::vector<bool> kept) const {
     for (std::size_t r = 0; r < kept.size(); ++r) {
@@ -226,8 +273,10 @@ class MoleculeDrawing {
     }
     return kept;
   }
-  /// The styles trace and cartoon draw residues of no chain as sticks.
+  /// The styles trace, cartoon and surface draw residues of no chain as sticks.
   bool in_detail(const Atom& atom) const {
+    if (has_surface())
+      return is_covered(atom) ? style_ == MoleculeStyle::accessible : rank_of(atom) == 1;
     if (!follows_chains()) return true;
     const Residue& residue = molecule_.residues[atom.residue];
     return residue.trace_atom < 0 && residue.kind == ResidueKind::other;
@@ -236,17 +285,21 @@ class MoleculeDrawing {
     switch (style_) {
       case MoleculeStyle::spheres:
         return van_der_waals_radius(atom.element);
+      case MoleculeStyle::accessible:
+        return is_covered(atom) ? van_der_waals_radius(atom.element) + probe_ : kStickRadius;
       case MoleculeStyle::ball_and_stick:
         return kBall * van_der_waals_radius(atom.element);
       default:
         return kStickRadius;
     }
   }
+  bool has_bonds(const Atom& atom) const { return !has_surface() || !is_covered(atom); }
   float bond_radius() const {
     return style_ == MoleculeStyle::ball_and_stick ? kBondRadius : kStickRadius;
   }
   std::uint32_t color_of(const Atom& atom) const {
-    return follows_chains() ? painter_.of_element(atom) : painter_.material(atom);
+    return follows_chains() || (has_surface() && !is_covered(atom)) ? painter_.of_element(atom)
+                                                                    : painter_.material(atom);
   }
   DrawnPart& part(const Atom& atom, const char* what) {
     const std::string& chain = molecule_.chains[molecule_.residues[atom.residue].chain];
@@ -342,6 +395,8 @@ class MoleculeDrawing {
   std::vector<bool> chosen_;
   MoleculeStyle style_;
   double opacity_;
+  float probe_;
+  int covered_rank_ = 0;  // of surfaces
   Painter& painter_;
   std::map<std::string, DrawnPart> parts_;
 };

@@ -19,14 +19,32 @@ namespace caplet {
 namespace {
 
 // These are in the order of MoleculeStyle and MoleculeColor.
-constexpr std::initializer_list<const char*> style_names = {"ball-and-stick", "spheres", "sticks",
-                                                            "trace", "cartoon"};
+constexpr std::initializer_list<const char*> style_names = {
+    "ball-and-stick", "spheres", "sticks", "trace", "cartoon", "surface", "accessible"};
 constexpr std::initializer_list<const char*> color_names = {"element", "chain", "residue",
                                                             "bfactor", "secondary"};
 
 MoleculeColor usual_color(MoleculeStyle style) {
-  return style == MoleculeStyle::trace || style == MoleculeStyle::cartoon ? MoleculeColor::chain
-                                                                          : MoleculeColor::element;
+  switch (style) {
+    case MoleculeStyle::trace:
+    case MoleculeStyle::cartoon:
+    case MoleculeStyle::surface:
+    case MoleculeStyle::accessible:
+      return MoleculeColor::chain;
+    default:
+      return MoleculeColor::element;
+  }
+}
+
+/// Water has a radius of 1.4 angstroms.
+float asked_probe(const ImportOptions& options) {
+  const std::optional<std::string> text = options.text("probe");
+  if (!text) return 1.4F;
+  double radius = 0;
+  if (!parse_number(*text, radius) || !(radius >= 0.01 && radius <= 1000))
+    throw InputError({"--probe"},
+                     caplet::quoted(*text) + " is no radius from 0.01 to 1000 angstroms");
+  return static_cast<float>(radius);
 }
 
 /// Reads one representation of --show.
@@ -108,9 +126,11 @@ std::vector<Representation> asked_representations(const ImportOptions& options,
   std::optional<MoleculeColor> color;
   if (options.text("color"))
     color = static_cast<MoleculeColor>(options.choice("color", color_names, 0));
+  const float probe = asked_probe(options);
   std::vector<Representation> out;
   if (!show) {
     Representation all;
+    all.probe = probe;
     all.style = static_cast<MoleculeStyle>(
         options.choice("style", style_names, static_cast<std::size_t>(automatic)));
     all.by = color.value_or(usual_color(all.style));
@@ -123,6 +143,7 @@ std::vector<Representation> asked_representations(const ImportOptions& options,
     rest.remove_prefix(std::min(end + 1, rest.size()));
     if (one.empty()) continue;
     out.push_back(RepresentationText(one).read(color));
+    out.back().probe = probe;
   }
   if (out.empty()) throw InputError({"--show"}, "has no representation");
   return out;

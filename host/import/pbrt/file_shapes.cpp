@@ -10,6 +10,7 @@
 #include "import/detail/pbrt/builder.h"
 #include "import/detail/pbrt/resolve.h"
 #include "scene/append.h"
+#include "scene/part_materials.h"
 #include "scene/transform.h"
 
 namespace caplet::pbrt {
@@ -27,7 +28,7 @@ void take_off_materials(Scene& scene) {
   const auto visit = [](Shape& shape) {
     shape.material = 0;
     shape.materials.clear();
-    if (auto* capsules = std::get_if<CapsulesShape>(&shape.geometry)) capsules->materials.clear();
+    if (auto* parts = part_materials(shape)) parts->clear();
     shape.alpha.reset();
     shape.emission.reset();
   };

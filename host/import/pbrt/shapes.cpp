@@ -103,15 +103,16 @@ Shape make_shape(const std::string& type, Parameters& parameters, std::uint32_t 
   if (alpha.texture = parameters.texture("alpha", true, context.textures); !alpha.texture)
     alpha = parameters.number_or_texture("alpha", 1, context.textures);
   if (alpha.texture || std::get<ConstantSpectrum>(alpha.value).value < 1) shape.alpha = alpha;
-  // Surfaces come first, because capsules without their own material use the shape's.
-  if (type == "capsules") set_materials(parameters, context.material_index, shape);
+  // Surfaces come first, because parts without their own material use the shape's.
+  const bool has_parts = type == "capsules" || type == "molecularsurface";
+  if (has_parts) set_materials(parameters, context.material_index, shape);
   const auto material_or_default = [&](const std::string& name, const SourceLocation& where) {
     return name.empty() ? shape.material : context.material_index(name, where);
   };
   shape.geometry = make_geometry(type, parameters, material_or_default, context);
   if (const auto* csg = std::get_if<CsgShape>(&shape.geometry); csg && !csg->operands.empty())
     shape.material = csg->operands[0]->material;  // no surface has the statement's own material
-  if (type != "capsules") set_materials(parameters, context.material_index, shape);
+  if (!has_parts) set_materials(parameters, context.material_index, shape);
   parameters.finish();
   return shape;
 }

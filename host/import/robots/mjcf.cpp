@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Reads an MJCF model as a robot.
+// Reads an MJCF model as a robot. MuJoCo's own library would read it best, but Debian does not have
+// it, and it merges bodies and loses names and the places of errors. tools/beside_mujoco.py
+// compares.
 #include "import/detail/mjcf.h"
 
 namespace caplet {

@@ -51,35 +51,39 @@ std::vector<double> times_of(Parameters& parameters) {
   return {};
 }
 
-/// Reads the materials that "materialindices" selects from "capsulematerials".
-void read_materials(Parameters& parameters, const MaterialIndex& material_index,
-                    CapsulesShape& capsules) {
-  const Parameter* names = parameters.values("capsulematerials", {"string"});
+}  // namespace
+
+std::vector<std::uint32_t> listed_materials(Parameters& parameters, const char* list,
+                                            const MaterialIndex& material_index, std::size_t count,
+                                            const char* things) {
+  const Parameter* names = parameters.values(list, {"string"});
   const Parameter* indices = parameters.values("materialindices", {"integer"});
-  if (!names && !indices) return;
-  if (!names || !indices)
-    return parameters.error(
-        names ? "capsulematerials" : "materialindices",
-        names ? "needs \"integer materialindices\"" : "needs \"string capsulematerials\"");
-  if (indices->numbers.size() != count_of(capsules))
-    return parameters.error("materialindices",
-                            "has " + std::to_string(indices->numbers.size()) + " values for " +
-                                std::to_string(count_of(capsules)) + " capsules");
-  std::vector<std::uint32_t> known;
+  if (!names && !indices) return {};
+  if (!names || !indices) {
+    parameters.error(
+        names ? list : "materialindices",
+        names ? "needs \"integer materialindices\"" : "needs \"string " + std::string(list) + "\"");
+    return {};
+  }
+  if (indices->numbers.size() != count) {
+    parameters.error("materialindices", "has " + std::to_string(indices->numbers.size()) +
+                                            " values for " + std::to_string(count) + " " + things);
+    return {};
+  }
+  std::vector<std::uint32_t> known, out;
   for (const std::string& name : names->strings)
     known.push_back(material_index(name, names->where));
-  capsules.materials.reserve(indices->numbers.size());
+  out.reserve(count);
   for (const double index : indices->numbers) {
     if (!(index >= 0 && index < static_cast<double>(known.size()))) {
-      capsules.materials.clear();
-      return parameters.error("materialindices",
-                              "must be below the number of \"capsulematerials\", from 0 up");
+      parameters.error("materialindices",
+                       "must be below the number of \"" + std::string(list) + "\", from 0 up");
+      return {};
     }
-    capsules.materials.push_back(known[static_cast<std::size_t>(index)]);
+    out.push_back(known[static_cast<std::size_t>(index)]);
   }
+  return out;
 }
-
-}  // namespace
 
 std::vector<glm::vec2> chain_u(Parameters& parameters, std::size_t capsules) {
   const Parameter* given = parameters.values("u", {"float"});
@@ -127,7 +131,8 @@ CapsulesShape make_capsule_list(Parameters& parameters, const MaterialIndex& mat
   if (capsules.radius0.empty()) return {};
   capsules.radius1 = radii(parameters, "radius1", count, times);
   if (capsules.radius1 == capsules.radius0) capsules.radius1.clear();
-  read_materials(parameters, material_index, capsules);
+  capsules.materials =
+      listed_materials(parameters, "capsulematerials", material_index, count, "capsules");
   capsules.u = chain_u(parameters, count);
   return capsules;
 }

@@ -13,8 +13,8 @@
 namespace caplet {
 
 /// Returns the surface area of a primitive in its tree's space, without open ends; for csg shapes
-/// 0. Bilinear patches use a sum (error 1e-8 of it for patches without folds), all others a closed
-/// form.
+/// 0. Bilinear patches use a sum (error 1e-8 of it for patches without folds), and so do molecular
+/// ones (0.01 % of the whole sphere's), all others a closed form.
 double primitive_area(const FlatPrimitive& p, const std::vector<float>& leaves);
 
 /// AreaMap is an affine map, with the values that all primitives need of it.

@@ -28,7 +28,8 @@ struct ExactBox {
 // Each kind of shapes.def has, for a primitive in the space of its tree:
 // - its exact box; kinds with trait_kept_box have it in their data.
 // - its area, without open ends (0 for csg shapes), and the pieces of its surface, which give areas
-//   under affine maps. Bilinear patches have no pieces: bilinear_area.
+//   under affine maps. Bilinear and molecular patches have no pieces: bilinear_area and
+// molecular_patch_area.
 // - solids: itself with its surfaces moved out by `b`; data of no fixed size are appended to
 // `leaves`.
 #define SHAPE(name, traits)                                                                     \
@@ -42,6 +43,9 @@ struct ExactBox {
 
 /// Returns the area of a bilinear patch's image under `m`.
 double bilinear_area(const float* data, const glm::dmat3& m);
+/// Returns the area of a molecular patch's image under the map whose cofactor is given, to about
+/// 0.01 % of the whole sphere's or torus'.
+double molecular_patch_area(const float* data, const glm::dmat3& cofactor);
 
 // Each geometry of the model has:
 // - whether its kernels' form can hold the transform `m`; otherwise it becomes an instance.
@@ -77,6 +81,9 @@ class MovingCapsules {
 };
 
 FlatPrimitive flat_partial_disk(const DiskShape& disk);
+/// Returns the patches of a molecular surface under the similarity `m`, in order.
+std::vector<FlatPrimitive> flat_patches(const MolecularSurfaceShape& molecule, const glm::dmat4& m,
+                                        std::vector<float>& leaves);
 /// Returns the kinds of a csg primitive's operands, as shape_bit()s.
 std::uint64_t csg_operand_shapes(const FlatPrimitive& csg, const std::vector<float>& leaves);
 /// Returns whether an operand is a capsule with u at its ends.

@@ -105,6 +105,7 @@ struct FlatOf {
   }
   FlatPrimitive operator()(const TriangleMeshShape&) const { return open(); }
   FlatPrimitive operator()(const BilinearMeshShape&) const { return open(); }
+  FlatPrimitive operator()(const MolecularSurfaceShape&) const { return open(); }
   template <class One>
   FlatPrimitive operator()(const One& one) const {
     const FlatPrimitive p = flat_primitive(one, m, leaves);

@@ -42,6 +42,7 @@ SurfaceAt surface_of(const Polyhedron& polyhedron, const glm::dvec3& x);
 SurfaceAt surface_of(const Csg& csg, const glm::dvec3& x);
 double distance_from(const Frustum& frustum, const glm::dvec3& x, int surface);
 double distance_from(const Polyhedron& polyhedron, const glm::dvec3& x, int surface);
+double distance_from(const MolecularPatch& patch, const glm::dvec3& x, int surface);
 double distance_from(const Csg& csg, const glm::dvec3& x, int surface);
 glm::dvec3 normal_of(const Frustum& frustum, const glm::dvec3& x, int surface);
 glm::dvec3 normal_of(const Polyhedron& polyhedron, const glm::dvec3& x, int surface);
@@ -53,13 +54,16 @@ glm::dvec3 sheet_normal(const Triangle& triangle, const glm::dvec3& x);
 glm::dvec3 sheet_normal(const Disk& disk, const glm::dvec3& x);
 glm::dvec3 sheet_normal(const PartialDisk& disk, const glm::dvec3& x);
 glm::dvec3 sheet_normal(const Bilinear& patch, const glm::dvec3& x);
+glm::dvec3 sheet_normal(const MolecularPatch& patch, const glm::dvec3& x);
 Primitive carrier_from(const Frustum& frustum);
 Primitive carrier_from(const PartialSphere& sphere);
 Primitive carrier_from(const OpenCylinder& cylinder);
+Primitive carrier_from(const MolecularPatch& patch);  // the whole sphere or torus
 bool keeps_of(const Frustum& frustum, const glm::dvec3& x, int surface);
 bool keeps_of(const PartialSphere& sphere, const glm::dvec3& x, int surface);
 bool keeps_of(const OpenCylinder& cylinder, const glm::dvec3& x, int surface);
 bool keeps_of(const PartialDisk& disk, const glm::dvec3& x, int surface);
+bool keeps_of(const MolecularPatch& patch, const glm::dvec3& x, int surface);
 std::vector<Curve> boundary_of(const Frustum& frustum);
 std::vector<Curve> boundary_of(const PartialSphere& sphere);
 std::vector<Curve> boundary_of(const OpenCylinder& cylinder);
@@ -67,6 +71,7 @@ std::vector<Curve> boundary_of(const PartialDisk& disk);
 std::vector<Curve> boundary_of(const Disk& disk);
 std::vector<Curve> boundary_of(const Triangle& triangle);
 std::vector<Curve> boundary_of(const Bilinear& patch);
+std::vector<Curve> boundary_of(const MolecularPatch& patch);
 
 // --- Convex solids as the model describes them ---
 
@@ -140,6 +145,9 @@ double hull_value(const Frustum& frustum,
 // Returns where the side of normal n (one of side_normals) touches an end: along and across the
 // axis.
 glm::dvec2 side_contact(const Frustum& frustum, std::size_t end, const glm::dvec2& n);
+
+// molecular_patch.cpp: negative in the molecule, as far as this carrier tells; 1-Lipschitz.
+double carrier_value(const MolecularPatch& patch, const glm::dvec3& x);
 
 // bilinear.cpp
 glm::dvec2 parameters_of(const Bilinear& patch, const glm::dvec3& x);  // of the point nearest to x

@@ -69,24 +69,26 @@ def bonds_of(positions, radii):
     return pairs[np.lexsort((pairs[:, 1], pairs[:, 0]))]
 
 
-def from_gemmi(structure, model=0, style="ball-and-stick", color="element", hydrogens=True, waters=True):
-    """A scene of a molecule, in angstroms: shapes "atoms" (spheres) and "bonds" (capsules halved by the atoms' colours).
+def from_gemmi(structure, model=0, style="ball-and-stick", color="element", hydrogens=True, waters=True, probe=1.4):
+    """A scene of a molecule, in angstroms: shapes "atoms" (spheres) and "bonds" (capsules halved by the atoms' colours), or "surface".
 
     structure: a gemmi.Structure, or a SmallStructure (its cell's atoms). model: counted from 0. style: "ball-and-stick", "spheres"
-    (van der Waals radii) or "sticks". color: "element" (Jmol's colours) or "chain". Of atoms in several places (altlocs) the first
+    (van der Waals radii), "sticks", "surface" (the solvent-excluded surface of all atoms but water, for a probe of this radius) or
+    "accessible" (the same atoms with the probe's radius added). color: "element" (Jmol's colours) or "chain". Of atoms in several places (altlocs) the first
     is shown. Bonds are found by distance: up to 1.3 times the sum of the covalent radii, never between hydrogens.
 
     scene.info: "positions" (n, 3), "elements", "chains", and "bonds" (m, 2), pairs of rows.
     """
     import gemmi
-    styles = {"ball-and-stick": (0.25, 0.15), "spheres": (1.0, 0.0), "sticks": (0.0, 0.2)}
+    styles = {"ball-and-stick": (0.25, 0.15), "spheres": (1.0, 0.0), "sticks": (0.0, 0.2), "surface": None, "accessible": (1.0, 0.0)}
     if style not in styles:
         raise InputError(f"style: one of {', '.join(styles)} is needed, not {style!r}")
     if color not in ("element", "chain"):
         raise InputError(f'color: "element" or "chain" is needed, not {color!r}')
     if not isinstance(structure, (gemmi.Structure, gemmi.SmallStructure)):
         raise InputError(f"structure: gemmi's is needed, not {type(structure).__name__}")
-    held = list(_atoms(gemmi, structure, model, hydrogens, waters))
+    covered = style in ("surface", "accessible")
+    held = list(_atoms(gemmi, structure, model, hydrogens, waters and not covered))
     if not held:
         raise InputError("the structure has no atoms")
     positions = np.array([one[0] for one in held])
@@ -102,10 +104,14 @@ def from_gemmi(structure, model=0, style="ball-and-stick", color="element", hydr
     else:
         names = sorted(set(chains))
         colors = np.array([_linear(_CHAINS[names.index(name) % len(_CHAINS)]) for name in chains])
-    ball, stick = styles[style]
     base = materials.coateddiffuse(alpha=0.1)
     scene = Scene()
-    scene.add_spheres(positions, ball * wide if ball else stick, color=colors, material=base, name="atoms")
+    if style == "surface":
+        scene.add_molecular_surface(positions, wide, probe, color=colors, material=base, name="surface")
+        scene.info.update(positions=positions, elements=elements, chains=chains, bonds=np.empty((0, 2), dtype=np.int64))
+        return scene
+    ball, stick = styles[style]
+    scene.add_spheres(positions, (ball * wide if ball else stick) + (probe if covered else 0), color=colors, material=base, name="atoms")
     pairs = np.empty((0, 2), dtype=np.int64)
     if stick:
         pairs = bonds_of(positions, covalent)

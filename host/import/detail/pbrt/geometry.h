@@ -84,6 +84,13 @@ CapsulesShape make_capsule(Parameters& parameters);
 std::vector<glm::vec2> chain_u(Parameters& parameters, std::size_t capsules);
 /// Makes the capsules of the lists in a statement.
 CapsulesShape make_capsule_list(Parameters& parameters, const MaterialIndex& material_index);
+/// Reads the materials that "materialindices" selects from those that the parameter `list` names,
+/// one for each of `count` things; none where they are missing or wrong (reported).
+std::vector<std::uint32_t> listed_materials(Parameters& parameters, const char* list,
+                                            const MaterialIndex& material_index, std::size_t count,
+                                            const char* things);
+MolecularSurfaceShape make_molecular_surface(Parameters& parameters,
+                                             const MaterialIndex& material_index);
 /// Makes our cylinder if "p0" or "p1" is given, otherwise pbrt's open one.
 Geometry make_cylinder(Parameters& parameters);
 ConeShape make_cone(Parameters& parameters);

@@ -6,14 +6,15 @@
 #include <memory>
 
 #include "import/detail/pbrt/resolve.h"
+#include "scene/part_materials.h"
 
 namespace caplet::pbrt {
 
 void each_material(Shape& shape, const std::function<void(std::uint32_t&)>& visit) {
   visit(shape.material);
   for (std::uint32_t& material : shape.materials) visit(material);
-  if (auto* capsules = std::get_if<CapsulesShape>(&shape.geometry))
-    for (std::uint32_t& material : capsules->materials) visit(material);
+  if (auto* parts = part_materials(shape))
+    for (std::uint32_t& material : *parts) visit(material);
   if (auto* csg = std::get_if<CsgShape>(&shape.geometry))
     for (std::shared_ptr<const Shape>& operand : csg->operands) {
       auto own = std::make_shared<Shape>(*operand);  // a nested operand may be shared
@@ -34,11 +35,11 @@ void each_surface(const Shape& shape, const std::function<void(std::uint32_t)>& 
       return;
     }
   }
-  const auto* capsules = std::get_if<CapsulesShape>(&shape.geometry);
+  const auto* parts = part_materials(shape);
   if (!shape.materials.empty())
     std::ranges::for_each(shape.materials, visit);
-  else if (capsules && !capsules->materials.empty())
-    std::ranges::for_each(capsules->materials, visit);
+  else if (parts && !parts->empty())
+    std::ranges::for_each(*parts, visit);
   else
     visit(shape.material);
 }
