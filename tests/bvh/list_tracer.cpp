@@ -49,13 +49,7 @@ __attribute__((vec_type_hint(float8))) __kernel void list_all(SCENE_PARAMETERS, 
 bool is_leaving(const HitRecord& hit) { return (hit.surface & CAPLET_LEAVING) != 0; }
 std::uint32_t surface_number(const HitRecord& hit) { return hit.surface & CAPLET_SURFACE_MASK; }
 
-ListTracer::ListTracer(const Device& device, int width)
-    : device_(device),
-      width_(width),
-      kernel_(Program::from_source(device, "list test",
-                                   flatten_kernels(std::string(scene_parameters) + kernel_text),
-                                   fmt::format("-DCAPLET_REAL_WIDTH={}", width))
-                  .kernel("list_all")) {}
+ListTracer::ListTracer(const Device& device, int width) : device_(device), width_(width) {}
 
 std::vector<RayList> ListTracer::trace(const FlatScene& scene, std::span<const RayRecord> rays,
                                        std::uint32_t capacity) const {
@@ -66,7 +60,15 @@ std::vector<RayList> ListTracer::trace(const FlatScene& scene, std::span<const R
   const Buffer<int> any(device_, rays.size());
   const Buffer<std::uint32_t> counts(device_, rays.size());
   const Buffer<CrossingSurface> surfaces(device_, places);
-  cl::Kernel kernel = kernel_;
+  auto found = kernels_.find(scene.leaf_kind_bits);
+  if (found == kernels_.end()) {
+    Program program = Program::from_source(
+        device_, "list test", flatten_kernels(std::string(scene_parameters) + kernel_text),
+        fmt::format("-DCAPLET_REAL_WIDTH={} -DCAPLET_LEAF_KIND_BITS={}", width_,
+                    scene.leaf_kind_bits));
+    found = kernels_.emplace(scene.leaf_kind_bits, program.kernel("list_all")).first;
+  }
+  cl::Kernel kernel = found->second;
   buffers.set_arguments(kernel, ray_buffer, static_cast<cl_uint>(capacity), closest, any, counts,
                         sorted, surfaces, static_cast<cl_uint>(rays.size()));
   launch(device_, kernel, rays.size(), 16);

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <glm/vec3.hpp>
+#include <map>
 #include <span>
 #include <vector>
 
@@ -45,7 +46,7 @@ class ListTracer {
  private:
   Device device_;
   int width_;
-  cl::Kernel kernel_;
+  mutable std::map<int, cl::Kernel> kernels_;  // by FlatScene::leaf_kind_bits
 };
 
 /// The one of the test program, on test_device(); compiled once a width.

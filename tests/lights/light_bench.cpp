@@ -127,9 +127,10 @@ __kernel void chances(SCENE, __global const float* at, __global float* out, uint
 
 Program& program_of(const Device& device, const RowMasks& rows, const FlatScene& scene) {
   static std::map<std::pair<RowMasks, std::string>, Program> built;
-  const std::string options = fmt::format("-DCAPLET_REAL_WIDTH={}{}{}", test_width(),
-                                          scene.light_nodes.empty() ? "" : " -DCAPLET_LIGHT_TREE",
-                                          scene.has_chains ? " -DCAPLET_CHAINS" : "");
+  const std::string options =
+      fmt::format("-DCAPLET_REAL_WIDTH={} -DCAPLET_LEAF_KIND_BITS={}{}{}", test_width(),
+                  scene.leaf_kind_bits, scene.light_nodes.empty() ? "" : " -DCAPLET_LIGHT_TREE",
+                  scene.has_chains ? " -DCAPLET_CHAINS" : "");
   const auto found = built.find({rows, options});
   if (found != built.end()) return found->second;
   return built

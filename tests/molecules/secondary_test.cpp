@@ -196,6 +196,132 @@ TEST(DsspRules, PeptideBondsHaveALength) {
   EXPECT_EQ(states(2.51), "-HHHHHH--HHHHHH-");
 }
 
+// Where mkdssp 4.2.2 decides by its rounding of energies, or joins two bridges that share a
+// residue. The first are residues 35 to 38 and 42 to 45 of chain D of 1BD2, 43 a proline; the
+// others are pieces of proteins whose atoms were moved at random.
+TEST(DsspRules, AreThoseOfMkdsspAtTheirLimits) {
+  using test::BackboneAtoms;
+  // One bond of a strand has -0.50002, which is no bond to the thousandth.
+  const std::vector<BackboneAtoms> strand = {
+      {{-8.598, 37.838, 16.182},
+       {-8.390, 38.522, 14.909},
+       {-9.596, 38.257, 14.022},
+       {-10.182, 37.171, 14.069}},
+      {{-9.978, 39.269, 13.252},
+       {-11.113, 39.211, 12.327},
+       {-10.497, 39.356, 10.937},
+       {-9.664, 40.238, 10.730}},
+      {{-10.897, 38.518, 9.985},
+       {-10.316, 38.579, 8.641},
+       {-11.325, 38.766, 7.524},
+       {-12.230, 37.947, 7.373}},
+      {{-11.178, 39.829, 6.736},
+       {-12.095, 40.058, 5.617},
+       {-11.510, 39.400, 4.366},
+       {-10.306, 39.165, 4.312}},
+      {{-5.666, 41.100, 4.862},
+       {-4.953, 40.450, 5.948},
+       {-5.734, 40.504, 7.247},
+       {-6.675, 41.298, 7.371}},
+      {{-5.439, 39.609, 8.202},
+       {-6.141, 39.598, 9.493},
+       {-5.962, 40.908, 10.314},
+       {-4.859, 41.483, 10.371}},
+      {{-7.053, 41.360, 10.941},
+       {-7.073, 42.574, 11.769},
+       {-7.254, 42.210, 13.248},
+       {-8.056, 41.323, 13.589}},
+      {{-6.493, 42.886, 14.109},
+       {-6.574, 42.682, 15.545},
+       {-7.983, 43.094, 15.923},
+       {-8.428, 44.177, 15.544}},
+  };
+  const auto part = [&](std::ptrdiff_t from, std::ptrdiff_t to, int first, const char* residue) {
+    return test::lines_of({strand.begin() + from, strand.begin() + to}, 'D', first, residue);
+  };
+  EXPECT_EQ(pdb_states(part(0, 4, 35, "ALA") + part(4, 5, 42, "ALA") + part(5, 6, 43, "PRO") +
+                       part(6, 8, 44, "ALA")),
+            "-B----B-");
+  // One of a helix has -0.5005.
+  const std::vector<BackboneAtoms> helix = {
+      {{-2.881, -56.788, 14.132},
+       {-1.713, -57.108, 15.398},
+       {-1.555, -58.706, 15.258},
+       {-2.421, -59.096, 14.528}},
+      {{-0.709, -59.030, 15.910},
+       {-0.392, -60.882, 15.695},
+       {-1.594, -61.660, 16.214},
+       {-1.775, -62.684, 15.444}},
+      {{-1.919, -61.134, 17.294},
+       {-3.120, -61.693, 18.044},
+       {-4.196, -61.908, 17.020},
+       {-4.958, -62.834, 17.122}},
+      {{-4.578, -61.122, 16.301},
+       {-5.299, -61.032, 15.285},
+       {-5.471, -61.835, 13.933},
+       {-6.778, -62.017, 13.576}},
+      {{-4.714, -61.945, 13.860},
+       {-3.786, -62.659, 12.755},
+       {-4.110, -64.401, 13.175},
+       {-4.310, -65.054, 12.047}},
+      {{-3.804, -64.617, 14.461},
+       {-3.661, -66.177, 14.735},
+       {-5.234, -66.398, 14.957},
+       {-5.243, -67.559, 13.995}},
+  };
+  EXPECT_EQ(pdb_states(test::lines_of(helix)), "------");
+  const std::vector<BackboneAtoms> bulge = {
+      {{-16.793, 22.609, 19.634},
+       {-15.781, 23.973, 16.128},
+       {-15.809, 24.894, 14.945},
+       {-14.871, 25.688, 19.227}},
+      {{-15.199, 23.694, 16.519},
+       {-14.849, 25.757, 15.309},
+       {-14.168, 23.650, 14.404},
+       {-11.456, 23.847, 14.962}},
+      {{-12.561, 24.560, 15.035},
+       {-11.610, 23.629, 15.850},
+       {-11.413, 21.478, 15.198},
+       {-11.648, 19.712, 14.750}},
+      {{-9.486, 22.045, 14.435},
+       {-9.205, 20.462, 15.173},
+       {-9.770, 19.983, 15.149},
+       {-9.002, 18.311, 16.122}},
+      {{-12.578, 19.372, 9.776},
+       {-13.000, 19.739, 12.247},
+       {-14.035, 21.352, 13.134},
+       {-16.232, 21.025, 11.850}},
+      {{-13.615, 19.638, 13.250},
+       {-15.364, 20.407, 13.718},
+       {-15.456, 20.369, 12.995},
+       {-16.930, 23.395, 13.924}},
+      {{-17.172, 20.796, 11.607},
+       {-19.790, 20.589, 13.066},
+       {-19.536, 21.177, 13.406},
+       {-20.367, 19.175, 12.897}},
+  };
+  EXPECT_EQ(pdb_states(test::lines_of({bulge.begin(), bulge.begin() + 4}, 'A', 45) +
+                       test::lines_of({bulge.begin() + 4, bulge.end()}, 'A', 86)),
+            "-EE--E-");
+}
+
+// gemmi does not list all modified amino acids: the backbone tells, and that it is bound.
+TEST(DsspRules, KnowModifiedResidues) {
+  const std::vector<test::BackboneAtoms> helix = test::backbone(12, -57, -47);
+  const auto part = [&](std::ptrdiff_t from, std::ptrdiff_t to, const char* residue) {
+    return test::lines_of({helix.begin() + from, helix.begin() + to}, 'A',
+                          static_cast<int>(from) + 1, residue);
+  };
+  EXPECT_EQ(pdb_states(part(0, 5, "ALA") + part(5, 6, "28J") + part(6, 12, "ALA")), "-HHHHHHHHHH-");
+  EXPECT_EQ(pdb_states(part(0, 11, "ALA") + part(11, 12, "28J")), "-HHHHHHHHHH-");
+  EXPECT_EQ(pdb_states(part(0, 1, "28J") + part(1, 12, "ALA")), "-HHHHHHHHHH-");
+  const Molecule apart =
+      read_pdb(part(0, 4, "ALA") +
+                   test::lines_of({helix.begin(), helix.begin() + 1}, 'A', 9, "28J", {9, 9, 9}),
+               "a.pdb", {});
+  EXPECT_EQ(apart.residues.back().kind, ResidueKind::other);
+}
+
 // Proline has no hydrogen to give.
 TEST(DsspRules, ProlineGivesNoBond) {
   EXPECT_EQ(pdb_states(test::lines_of(test::backbone(12, -57, -47), 'A', 1, "PRO")),

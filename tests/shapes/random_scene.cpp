@@ -70,6 +70,8 @@ decltype(Shape::geometry) SceneMaker::geometry(int kind) {
       return OpenCylinderShape{0.5 * r, -r, 0.7 * r, uniform(2, 6)};
     case 11:
       return BilinearMeshShape{{a, b, c, glm::vec3(direction())}, {{0, 1, 2, 3}}, {}, own_uvs(r)};
+    case 12:
+      return make_molecule({0.5f * a, 0.5f * b, 0.5f * c}, {0.5f * f, 0.4f * f, 0.3f * f}, 0.5 * r);
     default: {
       CsgShape csg;
       csg.operation = static_cast<CsgShape::Operation>(below(3));

@@ -45,7 +45,7 @@ class SceneMaker {
     out.reverse_orientation = below(4) == 0;
     return out;
   }
-  static constexpr int kinds = 13;
+  static constexpr int kinds = 14;
 
  private:
   Cap cap() { return below(2) == 0 ? Cap::flat : below(2) == 0 ? Cap::round : Cap::open; }

@@ -2,7 +2,10 @@
 // Copyright Caplet authors
 #include "scene_probe.h"
 
+#include <fmt/format.h>
+
 #include <map>
+#include <tuple>
 
 #include "device/detail/flatten.h"
 #include "support/scene_buffers.h"
@@ -93,13 +96,14 @@ FlatScene lower_shapes(std::vector<Shape> shapes) {
 
 namespace {
 
-cl::Kernel kernel_of(const char* name, int width, bool has_chains) {
-  static std::map<std::pair<int, bool>, Program> programs;
-  const std::pair key{width, has_chains};
+cl::Kernel kernel_of(const char* name, int width, const FlatScene& scene) {
+  static std::map<std::tuple<int, int, bool>, Program> programs;
+  const std::tuple key{width, scene.leaf_kind_bits, scene.has_chains};
   auto found = programs.find(key);
   if (found == programs.end()) {
     const std::string options =
-        "-DCAPLET_REAL_WIDTH=" + std::to_string(width) + (has_chains ? " -DCAPLET_CHAINS" : "");
+        fmt::format("-DCAPLET_REAL_WIDTH={} -DCAPLET_LEAF_KIND_BITS={}{}", width,
+                    scene.leaf_kind_bits, scene.has_chains ? " -DCAPLET_CHAINS" : "");
     found = programs
                 .emplace(key,
                          Program::from_source(
@@ -113,7 +117,7 @@ cl::Kernel kernel_of(const char* name, int width, bool has_chains) {
 }  // namespace
 
 std::vector<SceneHit> trace(const FlatScene& scene, const std::vector<RayRecord>& rays, int width) {
-  cl::Kernel kernel = kernel_of("scene_trace", width, scene.has_chains);
+  cl::Kernel kernel = kernel_of("scene_trace", width, scene);
   const Buffer<SceneHit> hits(test_device(), rays.size());
   const SceneOnDevice buffers(test_device(), scene, width);
   const auto ray_buffer = upload(test_device(), rays);
@@ -124,7 +128,7 @@ std::vector<SceneHit> trace(const FlatScene& scene, const std::vector<RayRecord>
 
 std::vector<Walk> walk(const FlatScene& scene, const std::vector<RayRecord>& rays,
                        std::uint32_t most) {
-  cl::Kernel kernel = kernel_of("scene_walk", test_width(), scene.has_chains);
+  cl::Kernel kernel = kernel_of("scene_walk", test_width(), scene);
   const Buffer<WalkStep> steps(test_device(), rays.size() * most);
   const Buffer<std::uint32_t> counts(test_device(), rays.size());
   const SceneOnDevice buffers(test_device(), scene, test_width());

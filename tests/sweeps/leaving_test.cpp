@@ -36,7 +36,8 @@ enum class Expected {
 Expected expected_of(int shape, const reference::Primitive& reference, Side side) {
   if (shape == shape_triangle || shape == shape_disk || shape == shape_partial_disk)
     return Expected::nothing;
-  if (shape == shape_csg || shape == shape_bilinear) return Expected::reference;
+  if (shape == shape_csg || shape == shape_bilinear || shape == shape_molecular_patch)
+    return Expected::reference;
   if (side == Side::outward) return Expected::nothing;
   return reference::is_solid(reference) ? Expected::one_exit : Expected::reference;
 }

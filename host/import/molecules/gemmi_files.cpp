@@ -67,6 +67,21 @@ ResidueKind residue_kind(const std::string& name) {
   return info.is_nucleic_acid() ? ResidueKind::nucleotide : ResidueKind::other;
 }
 
+/// Returns whether a residue has the backbone of an amino acid and is bound to a neighbour by it,
+/// as modified residues are that gemmi does not list. Peptide bonds are 1.33 angstroms long, and
+/// mkdssp takes up to 2.5 for one.
+bool is_in_peptide(const std::vector<gemmi::Residue>& residues, std::size_t at) {
+  const auto atom = [&](std::size_t of, const char* name) {
+    return of < residues.size() ? residues[of].find_atom(name, '*') : nullptr;
+  };
+  const auto are_bound = [](const gemmi::Atom* c, const gemmi::Atom* n) {
+    return c && n && c->pos.dist(n->pos) <= 2.5;
+  };
+  const gemmi::Atom *n = atom(at, "N"), *c = atom(at, "C");
+  return n && c && atom(at, "CA") &&
+         ((at > 0 && are_bound(atom(at - 1, "C"), n)) || are_bound(c, atom(at + 1, "N")));
+}
+
 /// Returns the alternative place of a residue's atoms that is kept: '*' all of them, '\0' only
 /// atoms without one.
 char kept_altloc(const gemmi::Residue& residue, const std::string& asked) {
@@ -133,9 +148,12 @@ class Builder {
   }
 
   void add_chain(const gemmi::Chain& chain, const std::string& altloc, bool hydrogens, bool water) {
-    for (const gemmi::Residue& source : chain.residues) {
+    for (std::size_t i = 0; i < chain.residues.size(); ++i) {
+      const gemmi::Residue& source = chain.residues[i];
       Residue residue;
       residue.kind = residue_kind(source.name);
+      if (residue.kind == ResidueKind::other && is_in_peptide(chain.residues, i))
+        residue.kind = ResidueKind::amino_acid;
       if (residue.kind == ResidueKind::water && !water) continue;
       residue.name = source.name;
       residue.number = source.seqid.str();

@@ -43,11 +43,15 @@ struct Peptide {
 struct Acceptors {
   std::array<std::int64_t, 2> peptide{-1, -1};
   std::array<double, 2> energy{0, 0};
+  /// Of equal energies the earlier peptide's counts, in whatever order they are offered.
   void offer(std::int64_t other, double of_bond) {
-    if (of_bond < energy[0]) {
+    const auto beats = [&](std::size_t at) {
+      return std::tie(of_bond, other) < std::tie(energy.at(at), peptide.at(at));
+    };
+    if (beats(0)) {
       peptide = {other, peptide[0]};
       energy = {of_bond, energy[0]};
-    } else if (of_bond < energy[1]) {
+    } else if (beats(1)) {
       peptide[1] = other;
       energy[1] = of_bond;
     }
@@ -114,12 +118,14 @@ class Dssp {
     }
   }
 
-  /// Returns the energy of the bond from the donor's N-H to the acceptor's C=O.
+  /// Returns the energy of the bond from the donor's N-H to the acceptor's C=O, to the thousandth,
+  /// as in mkdssp: one of -0.5004 is no bond.
   static double energy(const Peptide& donor, const Peptide& acceptor) {
     const double on = glm::length(acceptor.o - donor.n), ch = glm::length(acceptor.c - donor.h),
                  oh = glm::length(acceptor.o - donor.h), cn = glm::length(acceptor.c - donor.n);
     if (std::min({on, ch, oh, cn}) < kLeastDistance) return kLeastEnergy;
-    return std::max(kCoupling * (1 / on + 1 / ch - 1 / oh - 1 / cn), kLeastEnergy);
+    const double exact = kCoupling * (1 / on + 1 / ch - 1 / oh - 1 / cn);
+    return std::max(std::round(exact * 1000) / 1000, kLeastEnergy);
   }
 
   bool find_bonds() {
@@ -217,12 +223,12 @@ class Dssp {
   }
 
   /// Returns whether b goes on where a ends, with at most one peptide between them on one side and
-  /// four on the other.
+  /// four on the other. As in mkdssp both may end at the same peptide of the second side.
   bool bulge(const Ladder& a, const Ladder& b) const {
     const bool is_parallel = a.kind == BridgeKind::parallel;
     const std::int64_t along = b.i_first - a.i_last,
                        beside = is_parallel ? b.j_first - a.j_last : a.j_first - b.j_last;
-    if (a.kind != b.kind || along <= 0 || along >= 6 || beside <= 0) return false;
+    if (a.kind != b.kind || along <= 0 || along >= 6 || beside < 0) return false;
     if (!joined(a.i_first, b.i_last) ||
         !joined(std::min(a.j_first, b.j_first), std::max(a.j_last, b.j_last)))
       return false;
