@@ -118,7 +118,7 @@ struct MolecularPatch {
   double minor = 1, major = 0;
   bool of_probe = false;
   std::vector<Plane> planes;
-  // Of tori: as SurfacePatches::TorusPatch.
+  // Tori have these too; SurfacePatches::TorusPatch says what they mean.
   glm::dvec3 axis{0, 0, 1}, start{1, 0, 0};
   double phi_max = full_turn, theta_min = 0, theta_max = 0;
   glm::dvec3 ball_center{0};  // of a ball that holds it

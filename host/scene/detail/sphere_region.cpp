@@ -160,7 +160,7 @@ std::vector<std::uint32_t> bounding_planes(std::span<const SpherePlane> planes) 
   return every;
 }
 
-// What the bounding planes leave falls into connected parts. No other circle enters one that
+// The bounding planes leave connected parts of the sphere. No other circle enters one that
 // belongs to the region, so each part is hidden as a whole or not at all: its corners, or any point
 // of a circle without corners, tell which.
 SphereRegion sphere_region(std::span<const SpherePlane> planes,
