@@ -349,8 +349,10 @@ class SignChanges {
   SignChanges(std::function<double(double)> f, double shortest)
       : f_(std::move(f)), shortest_(shortest) {}
 
-  std::vector<double> between(double low, double high) {
-    search({low, f_(low)}, {high, f_(high)}, 0);
+  // Searches between neighbouring places, which are in order.
+  std::vector<double> between(const std::vector<double>& places) {
+    for (std::size_t i = 0; i + 1 < places.size(); ++i)
+      search({places[i], f_(places[i])}, {places[i + 1], f_(places[i + 1])}, 0);
     return std::move(found_);
   }
 
@@ -407,6 +409,25 @@ class SignChanges {
   std::vector<double> found_;
 };
 
+// Returns places that cut the line: both ends of its part near the patch, and ever shorter steps
+// towards the axis of a torus, where the carrier's value changes its course within a length like
+// the line's distance from the axis.
+std::vector<double> places_towards_axis(const Line& line, const MolecularPatch& patch) {
+  std::vector<double> out = {-line.reach, line.reach};
+  const dvec3 across = line.unit - glm::dot(line.unit, patch.axis) * patch.axis;
+  const double cross2 = glm::dot(across, across);
+  if (cross2 > 0) {
+    const double nearest = glm::dot(patch.center - line.foot, across) / cross2;
+    constexpr int halvings = 40;
+    for (int k = 0; k < halvings; ++k)
+      for (const double away : {-1.0, 1.0})
+        if (const double s = nearest + away * std::ldexp(line.reach, -k); std::abs(s) < line.reach)
+          out.push_back(s);
+  }
+  std::sort(out.begin(), out.end());
+  return out;
+}
+
 std::vector<Crossing> molecular_crossings(const MolecularPatch& patch, const Ray& ray) {
   const Line line = line_near(patch, ray);
   if (line.miss_distance > 0) return {};
@@ -419,7 +440,8 @@ std::vector<Crossing> molecular_crossings(const MolecularPatch& patch, const Ray
     return out;
   }
   const auto f = [&](double s) { return carrier_value(patch, at(s)); };
-  for (const double s : SignChanges(f, 0x1p-24 * line.reach).between(-line.reach, line.reach))
+  for (const double s :
+       SignChanges(f, 0x1p-24 * line.reach).between(places_towards_axis(line, patch)))
     if (keeps(patch, at(s), 0)) {
       const double step = 0x1p-26 * line.reach;
       out.push_back({line.t_foot + s / line.speed, f(s + step) > f(s - step), 0, HUGE_VAL});
@@ -433,15 +455,19 @@ double distance_to_touch(const Line& line, const MolecularPatch& patch) {
   constexpr int samples = 512;
   const auto at = [&](double s) { return line.foot + s * line.unit; };
   const auto f = [&](double s) { return carrier_value(patch, at(s)); };
-  const double step = 2 * line.reach / samples;
+  std::vector<double> places = places_towards_axis(line, patch);
+  for (int i = 1; i < samples; ++i) places.push_back((2.0 * i / samples - 1) * line.reach);
+  std::sort(places.begin(), places.end());
   double least = HUGE_VAL;
-  for (int i = 1; i < samples; ++i) {
-    double s = i * step - line.reach, here = f(s);
-    const double sign = here <= f(s - step) && here <= f(s + step)   ? 1
-                        : here >= f(s - step) && here >= f(s + step) ? -1
-                                                                     : 0;
+  for (std::size_t i = 1; i + 1 < places.size(); ++i) {
+    double s = places[i], here = f(s);
+    const double before = f(places[i - 1]), after = f(places[i + 1]);
+    const double sign = here <= before && here <= after   ? 1
+                        : here >= before && here >= after ? -1
+                                                          : 0;
     if (sign == 0) continue;
-    for (double width = 0.5 * step; width > 1e-9 * step; width *= 0.5)
+    const double step = places[i + 1] - places[i - 1];
+    for (double width = 0.25 * step; width > 1e-9 * step; width *= 0.5)
       for (const double there : {s - width, s + width})
         if (const double value_there = f(there); sign * value_there < sign * here)
           s = there, here = value_there;
