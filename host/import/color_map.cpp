@@ -33,11 +33,37 @@ glm::dvec3 viridis(double part) {
   return {decoded_value({}, c.x), decoded_value({}, c.y), decoded_value({}, c.z)};
 }
 
-Legend viridis_legend(std::string title, std::string unit, double low, double high) {
+glm::dvec3 red_white_blue(double part) {
+  const double at = 2 * std::clamp(part, 0.0, 1.0), faded = decoded_value({}, at < 1 ? at : 2 - at);
+  return at < 1 ? glm::dvec3(1, faded, faded) : glm::dvec3(faded, faded, 1);
+}
+
+Legend map_legend(std::string title, std::string unit, double low, double high, ColorMap map) {
   Legend out{std::move(title), std::move(unit), low, high, {}};
   for (int step = 0; step < map_steps; ++step)
-    out.colors.push_back(viridis(static_cast<double>(step) / (map_steps - 1)));
+    out.colors.push_back(map(static_cast<double>(step) / (map_steps - 1)));
   return out;
+}
+
+Legend names_legend(std::string title, const std::vector<Material>& all,
+                    const std::vector<std::uint32_t>& materials) {
+  Legend out{std::move(title), "", 0, 1, {}};
+  for (const std::uint32_t i : materials) {
+    out.names.push_back(all[i].name);
+    out.colors.push_back(
+        std::get<RgbSpectrum>(std::get<DiffuseMaterial>(all[i].model).reflectance).rgb);
+  }
+  return out;
+}
+
+void add_names(Legend& legend, const Legend& more) {
+  if (legend.names.empty()) return;
+  if (legend.title != more.title) legend.title.clear();
+  for (std::size_t i = 0; i < more.names.size(); ++i) {
+    if (std::ranges::find(legend.names, more.names[i]) != legend.names.end()) continue;
+    legend.names.push_back(more.names[i]);
+    legend.colors.push_back(more.colors[i]);
+  }
 }
 
 }  // namespace caplet

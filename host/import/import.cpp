@@ -151,10 +151,10 @@ void add_contents(Scene& scene, const Scene& file) {
   }
 }
 
-/// Returns the legend of a colour map.
-Legend legend_of(const ValueRange& range, const ImportOptions& options) {
+/// Returns the legend of a colour map; `unit` is that of lengths.
+Legend legend_of(const ValueRange& range, const ImportOptions& options, const std::string& unit) {
   const auto [low, high] = options.range("range").value_or(std::pair(range.low, range.high));
-  return viridis_legend(range.what, "", low, high);
+  return map_legend(range.what, range.is_length ? unit : "", low, high);
 }
 
 Scene validated(Scene scene) {
@@ -193,6 +193,17 @@ std::vector<std::string> names_of(std::span<const fs::path> paths) {
   return out;
 }
 
+/// Returns the unit of the files that state one; empty where they differ.
+std::string common_unit(const std::vector<Imported>& files) {
+  std::string out;
+  for (const Imported& file : files) {
+    const std::string& unit = file.scene.unit;
+    if (!out.empty() && !unit.empty() && unit != out) return "";
+    if (out.empty()) out = unit;
+  }
+  return out;
+}
+
 Scene joined(std::vector<Imported> files, std::span<const fs::path> paths) {
   std::optional<std::size_t> with_camera;
   for (std::size_t i = 0; i < files.size(); ++i) {
@@ -216,11 +227,12 @@ Scene joined(std::vector<Imported> files, std::span<const fs::path> paths) {
     scene.has_no_up =
         std::ranges::all_of(files, [](const Imported& file) { return file.scene.has_no_up; });
     scene.world_from_file = from.world_from_file;
-    if (std::ranges::all_of(files,
-                            [&](const Imported& file) { return file.scene.unit == from.unit; }))
-      scene.unit = from.unit;
+    scene.unit = common_unit(files);
     for (const Imported& file : files) {
-      if (!scene.legend) scene.legend = file.scene.legend;
+      if (!scene.legend)
+        scene.legend = file.scene.legend;
+      else if (file.scene.legend)
+        add_names(*scene.legend, *file.scene.legend);
       add_contents(scene, file.scene);
       if (settings) continue;
       scene.view.film.least_width =
@@ -332,6 +344,7 @@ Scene import_scenes(std::span<const fs::path> paths, const ImageReader& images,
     if (const ValueRange& seen = *of_all.seen; seen.is_there) {
       by_values.push_back(i);
       all.what = seen.what;
+      all.is_length = seen.is_length;
       all.extend(seen.low);
       all.extend(seen.high);
     }
@@ -347,7 +360,7 @@ Scene import_scenes(std::span<const fs::path> paths, const ImageReader& images,
   }
   Scene scene =
       files.size() == 1 ? presented(std::move(files.front())) : joined(std::move(files), paths);
-  if (all.is_there && !scene.legend) scene.legend = legend_of(all, options);
+  if (all.is_there && !scene.legend) scene.legend = legend_of(all, options, scene.unit);
   apply_picture_options(scene, images, options,
                         std::ranges::any_of(formats_of_files, [](const Format* format) {
                           return knows(*format, "up");

@@ -18,13 +18,11 @@ const std::vector<ImportOptionRow>& import_option_rows() {
        "(solvent-excluded) or accessible (to a solvent)",
        Of::format},
       {"color",
-       "element|chain|residue|bfactor|secondary|direction|fibre|file|scalar|scalar:NAME|type|order|"
-       "depth|"
-       "FILE",
-       "What colours tell: element, chain, residue, bfactor or secondary of molecules; direction, "
-       "fibre, "
-       "file, scalar or scalar:NAME of "
-       "fibres; type, file, order, depth or a FILE of values of neurons",
+       "element|chain|residue|bfactor|charge|'distance from ATOMS'|secondary|direction|fibre|file|"
+       "scalar|scalar:NAME|type|order|depth|FILE",
+       "What colours tell: element, chain, residue, bfactor, charge, distance from atoms or "
+       "secondary of molecules; direction, fibre, file, scalar or scalar:NAME of fibres; type, "
+       "file, order, depth or a FILE of values of neurons",
        Of::format},
       {"show", "ATOMS: STYLE [by COLOR] [opacity X]",
        "Parts of a molecule, each in its own style, between semicolons or by repetition, such as "
@@ -56,6 +54,9 @@ const std::vector<ImportOptionRow>& import_option_rows() {
        "Chemical components (mmCIF, _chem_comp_bond) whose bonds residues of their names have",
        Of::format},
       {"radius", "R", "Radius of fibres, in the file's unit", Of::format},
+      {"share", "X", "Draws this share of a file's fibres, above 0 and up to 1", Of::format},
+      {"lengths", "LOW,HIGH", "Draws fibres of these lengths, in the file's unit", Of::format},
+      {"values", "LOW,HIGH", "Draws fibres whose mean value is in this range", Of::format},
       {"groups", "visual|collision|all|N,...",
        "Which geometry of a robot is drawn: seen, touched, all, or MJCF's groups of these numbers",
        Of::format},

@@ -35,6 +35,7 @@ struct ValueRange {
   std::string what;
   double low = 0, high = 0;
   bool is_there = false;
+  bool is_length = false;  // in the file's unit
   void extend(double value);
 };
 

@@ -444,6 +444,7 @@ Scene import_swc(const std::filesystem::path& path, const ImageReader&,
     shape.where = {scene.source, 1, 0};
     scene.shapes.push_back(std::move(shape));
   }
+  scene.legend = colors.legend();
   scene.has_no_up = true;
   scene.unit = "\u00b5m";
   return scene;

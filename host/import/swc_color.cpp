@@ -233,8 +233,9 @@ SwcColors::SwcColors(Scene& scene, const std::vector<SwcSample>& samples,
   by_value_ = ValueColors(scene, what_, low, high, steps);
   if (options.seen) {
     *options.seen = range;
-    options.seen->what = by == "depth"   ? "way from the soma or root, in the file's unit"
-                         : by == "order" ? "branch order"
+    options.seen->is_length = by == "depth";
+    options.seen->what = by == "depth"   ? "Path length from the soma"
+                         : by == "order" ? "Branch order"
                                          : what_;
   }
 }
@@ -250,6 +251,14 @@ std::uint32_t SwcColors::of(const SwcSample& sample) {
   if (by_ == By::type) return of_type(sample);
   if (of_file_ < 0) of_file_ = add(file_name_, palette_color(file_), sample.line);
   return static_cast<std::uint32_t>(of_file_);
+}
+
+std::optional<Legend> SwcColors::legend() const {
+  if (by_ == By::value) return std::nullopt;
+  std::vector<std::uint32_t> materials;
+  for (const auto& [type, material] : types_) materials.push_back(material);
+  if (of_file_ >= 0) materials.push_back(static_cast<std::uint32_t>(of_file_));
+  return names_legend(by_ == By::type ? "Type" : "File", scene_.materials, materials);
 }
 
 std::uint32_t SwcColors::of_type(const SwcSample& sample) {

@@ -8,15 +8,16 @@
 #include <cmath>
 
 #include "base/check.h"
-#include "import/color_map.h"
 
 namespace caplet {
 
-ValueColors::ValueColors(Scene& scene, std::string what, double low, double high, int steps)
+ValueColors::ValueColors(Scene& scene, std::string what, double low, double high, int steps,
+                         ColorMap map)
     : scene_(&scene),
       what_(std::move(what)),
       low_(low),
       high_(high),
+      map_(map),
       index_(static_cast<std::size_t>(std::max(steps, 1)), -1) {}
 
 std::uint32_t ValueColors::add(const std::string& name, const glm::dvec3& color, int line) {
@@ -36,7 +37,7 @@ std::uint32_t ValueColors::of(double value, int line) {
   std::int64_t& index = index_[step];
   if (index < 0) {
     const double at = last > 0 ? static_cast<double>(step) / last : 0.5;
-    index = add(fmt::format("{} {:.6g}", what_, low_ + (high_ - low_) * at), viridis(at), line);
+    index = add(fmt::format("{} {:.6g}", what_, low_ + (high_ - low_) * at), map_(at), line);
   }
   return static_cast<std::uint32_t>(index);
 }

@@ -159,7 +159,7 @@ void Scene::set_color_bar(const std::string& title, const std::string& unit, dou
   if (!(low <= high) || !std::isfinite(low) || !std::isfinite(high))
     throw InputError("the ends of a colour bar are two numbers, the first not above the second");
   Data& data = changed();
-  data.model.legend = viridis_legend(valid_utf8(title), valid_utf8(unit), low, high);
+  data.model.legend = map_legend(valid_utf8(title), valid_utf8(unit), low, high);
   data.as_a_whole_in_view();
 }
 

@@ -49,20 +49,20 @@ void Mask::box(const glm::dvec2& low, const glm::dvec2& high) {
           at(x, y), static_cast<float>(overlap(low.x, high.x, x) * overlap(low.y, high.y, y)));
 }
 
+void paint(Shown& picture, std::size_t pixel, float share, const std::array<float, 3>& srgb) {
+  if (!(share > 0)) return;
+  const float under = picture.has_alpha() ? picture.alpha[pixel] : 1.0f,
+              over = share + (1 - share) * under;
+  for (std::size_t c = 0; c < 3; ++c) {
+    float& of = picture.rgb[pixel][c];
+    of = linear_from_srgb((share * srgb[c] + (1 - share) * under * srgb_from_linear(of)) / over);
+  }
+  if (picture.has_alpha()) picture.alpha[pixel] = over;
+}
+
 void paint(Shown& picture, const Mask& mask, const std::array<float, 3>& srgb) {
   const std::vector<float>& shares = mask.shares();
-  for (std::size_t i = 0; i < shares.size(); ++i) {
-    const float share = shares[i];
-    if (!(share > 0)) continue;
-    const float under = picture.has_alpha() ? picture.alpha[i] : 1.0f,
-                over = share + (1 - share) * under;
-    for (std::size_t c = 0; c < 3; ++c) {
-      const float mixed =
-          (share * srgb[c] + (1 - share) * under * srgb_from_linear(picture.rgb[i][c])) / over;
-      picture.rgb[i][c] = linear_from_srgb(mixed);
-    }
-    if (picture.has_alpha()) picture.alpha[i] = over;
-  }
+  for (std::size_t i = 0; i < shares.size(); ++i) paint(picture, i, shares[i], srgb);
 }
 
 }  // namespace caplet::post

@@ -14,6 +14,17 @@
 
 namespace caplet::post {
 
+namespace {
+
+std::array<float, 3> srgb_of(const glm::dvec3& linear) {
+  std::array<float, 3> out{};
+  for (int c = 0; c < 3; ++c)
+    out.at(static_cast<std::size_t>(c)) = srgb_from_linear(static_cast<float>(linear[c]));
+  return out;
+}
+
+}  // namespace
+
 double text_size(const Shown& picture) {
   return std::max(8.0, 0.024 * std::min(picture.width, picture.height));
 }
@@ -125,6 +136,71 @@ void draw_color_bar(Shown& picture, const Legend& legend, const std::array<float
   const double title_width = text_width(title, size);
   text(mask, {std::max(edge, picture.width - edge - title_width), top - 1.2 * size}, title, size);
   paint(picture, mask, ink);
+}
+
+void draw_names(Shown& picture, const Legend& legend, const std::array<float, 3>& ink) {
+  const double size = text_size(picture), edge = margin(picture), side = std::round(0.9 * size),
+               step = std::round(1.6 * size), top = edge + (legend.title.empty() ? 0.5 : 2) * size;
+  std::vector<std::string> names = legend.names;
+  // Rows end above the scale bar.
+  const auto rows =
+      static_cast<std::size_t>(std::max(1.0, (picture.height - top - edge - 3 * size) / step));
+  if (names.size() > rows) {
+    const std::size_t rest = names.size() - (rows - 1);
+    names.resize(rows - 1);
+    names.push_back(fmt::format("and {} more", rest));
+  }
+  double wide = text_width(legend.title, size);
+  for (const std::string& name : names) wide = std::max(wide, side + size + text_width(name, size));
+  const double left = std::max(edge, picture.width - edge - wide);
+  Mask words(picture.width, picture.height);
+  text(words, {left, top - 1.2 * size}, legend.title, size);
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const double y = top + static_cast<double>(i) * step;
+    text(words, {left + side + size, y + side}, names[i], size);
+    if (i + 1 == names.size() && names.size() < legend.names.size()) break;
+    Mask square(picture.width, picture.height);
+    square.box({left, y}, {left + side, y + side});
+    paint(picture, square, srgb_of(legend.colors.at(i)));
+  }
+  paint(picture, words, ink);
+}
+
+void draw_directions(Shown& picture, const Scene& scene, const std::array<float, 3>& ink) {
+  const double size = text_size(picture), edge = margin(picture), radius = 3 * size;
+  const glm::dmat3 camera(scene.view.camera.world_from_camera);
+  // The axes of the camera within the file: to the right, up and toward the viewer.
+  std::array<glm::dvec3, 3> axes{};
+  for (int k = 0; k < 3; ++k)
+    axes.at(static_cast<std::size_t>(k)) =
+        glm::transpose(scene.world_from_file) * ((k == 2 ? -1.0 : 1.0) * glm::normalize(camera[k]));
+  const glm::dvec2 middle(picture.width - edge - radius, edge + 2 * size + radius);
+  for (int y = 0; y < picture.height; ++y)
+    for (int x = 0; x < picture.width; ++x) {
+      const glm::dvec2 at = (glm::dvec2(x + 0.5, y + 0.5) - middle) / radius;
+      const double square = glm::dot(at, at);
+      const double share = std::clamp(radius * (1 - std::sqrt(square)) + 0.5, 0.0, 1.0);
+      const glm::dvec3 unit =
+          at.x * axes[0] - at.y * axes[1] + std::sqrt(std::max(0.0, 1 - square)) * axes[2];
+      paint(picture,
+            static_cast<std::size_t>(y) * static_cast<std::size_t>(picture.width) +
+                static_cast<std::size_t>(x),
+            static_cast<float>(share), srgb_of(direction_color(unit)));
+    }
+  Mask letters(picture.width, picture.height);
+  for (int axis = 0; axis < 3; ++axis) {
+    const glm::dvec2 way(axes[0][axis], -axes[1][axis]);
+    const std::string name(1, static_cast<char>('x' + axis));
+    const glm::dvec2 at = middle + 0.72 * radius * way * (axes[2][axis] < 0 ? -1.0 : 1.0);
+    text(letters, {at.x - 0.5 * text_width(name, 0.85 * size), at.y + 0.28 * size}, name,
+         0.85 * size);
+  }
+  paint(picture, letters, {1, 1, 1});
+  Mask title(picture.width, picture.height);
+  const std::string& words = scene.legend->title;
+  text(title, {std::max(edge, picture.width - edge - text_width(words, size)), edge + 0.8 * size},
+       words, size);
+  paint(picture, title, ink);
 }
 
 }  // namespace caplet::post

@@ -2,8 +2,6 @@
 // Copyright Caplet authors
 #include "post/overlay.h"
 
-#include <fmt/format.h>
-
 #include "base/error.h"
 #include "post/detail/parts.h"
 
@@ -20,10 +18,8 @@ void check(const Overlays& overlays, const Sight& sight, const std::string& flag
   if (overlays.scale_bar) bar_of(*overlays.scale_bar, sight, flags + "scale-bar");
   if (overlays.color_bar && !sight.scene.legend)
     throw InputError(SourceLocation{flags + "color-bar"},
-                     fmt::format("the scene's colours tell no number (those of molecules do with "
-                                 "{0}color bfactor, of neurons with "
-                                 "{0}color order or a file)",
-                                 flags));
+                     "the scene's colours have no legend: those of neurons, fibres and molecules "
+                     "have one, but for single colours and fibres each of its own");
 }
 
 void draw(Shown& picture, const LayeredImage& layers, const Sight& sight,
@@ -34,7 +30,14 @@ void draw(Shown& picture, const LayeredImage& layers, const Sight& sight,
   if (overlays.scale_bar)
     draw_scale_bar(picture, bar_of(*overlays.scale_bar, sight, "scale-bar"), ink);
   if (overlays.axes) draw_axes(picture, sight.scene, ink);
-  if (overlays.color_bar && sight.scene.legend) draw_color_bar(picture, *sight.scene.legend, ink);
+  if (!overlays.color_bar || !sight.scene.legend) return;
+  const Legend& legend = *sight.scene.legend;
+  if (legend.of_directions)
+    draw_directions(picture, sight.scene, ink);
+  else if (!legend.names.empty())
+    draw_names(picture, legend, ink);
+  else
+    draw_color_bar(picture, legend, ink);
 }
 
 }  // namespace caplet::post

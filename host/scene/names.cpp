@@ -43,6 +43,7 @@ void make_names_valid(Scene& scene) {
   if (!scene.legend) return;
   make_valid(scene.legend->title);
   make_valid(scene.legend->unit);
+  for (std::string& name : scene.legend->names) make_valid(name);
 }
 
 }  // namespace caplet

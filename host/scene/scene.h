@@ -53,12 +53,19 @@ struct Framing {
   bool is_orthographic = false;
 };
 
-/// The legend of a colour map: its colours at even steps from `low` to `high`.
+/// What colours tell: numbers, by a map's colours at even steps from `low` to `high`; names; or
+/// directions, by the share of each of the file's axes in red, green and blue.
 struct Legend {
   std::string title, unit;
   double low = 0, high = 1;
-  std::vector<glm::dvec3> colors;  // linear sRGB, as displayed
+  std::vector<glm::dvec3> colors;       // linear sRGB, as displayed
+  std::vector<std::string> names = {};  // one a colour, where colours tell names
+  bool of_directions = false;
 };
+
+/// Returns the colour of a direction by its parts along the file's axes, of any sign: linear sRGB,
+/// from 0.05 to 0.85, so that each reflects some light of every channel.
+inline glm::dvec3 direction_color(const glm::dvec3& unit) { return 0.05 + 0.8 * glm::abs(unit); }
 
 struct Scene {
   std::vector<Texture> textures;

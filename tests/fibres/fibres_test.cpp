@@ -221,6 +221,8 @@ TEST(Fibres, ColoursTellDirections) {
   };
   EXPECT_LT(glm::length(color(0) - glm::dvec3(0.85, 0.05, 0.05)), 1e-12);
   EXPECT_LT(glm::length(color(1) - glm::dvec3(0.05, 0.05, 0.85)), 1e-12);
+  ASSERT_TRUE(scene.legend);
+  EXPECT_TRUE(scene.legend->of_directions);
   // z is up.
   EXPECT_EQ(glm::dvec3(scene.shapes[0].world_from_object * glm::dvec4(0, 0, 1, 0)),
             glm::dvec3(0, 1, 0));

@@ -6,6 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <glm/geometric.hpp>
@@ -210,6 +211,61 @@ TEST(Fibres, WhatIsAskedForIsThere) {
                              testing::EndsWith("s.vtk: 's0', 's1'")));
   EXPECT_THAT(said(20), testing::EndsWith("'s18', 's19'"));
   EXPECT_THAT(said(23), testing::EndsWith("'s18', 's19', and 3 more"));
+}
+
+// Fibres of lengths 1, 2, ... along x, the f-th at y = f, whose ends' values are f and 3 f.
+std::string comb(int count) {
+  std::string points, lines, values;
+  for (int f = 0; f < count; ++f) {
+    points += fmt::format("0 {0} 0 {1} {0} 0\n", f, f + 1);
+    lines += fmt::format("2 {} {}\n", 2 * f, 2 * f + 1);
+    values += fmt::format("{} {}\n", f, 3 * f);
+  }
+  return vtk_head("ASCII") +
+         fmt::format(
+             "POINTS {} float\n{}LINES {} {}\n{}POINT_DATA {}\nSCALARS s float\n"
+             "LOOKUP_TABLE default\n{}",
+             2 * count, points, count, 3 * count, lines, 2 * count, values);
+}
+
+/// The y of what is drawn.
+std::vector<float> drawn(int count, const ImportOptions& options) {
+  const Scene scene = scene_of("c.vtk", comb(count), options);
+  std::vector<float> out;
+  for (const glm::vec3& p : std::get<CapsulesShape>(scene.shapes.at(0).geometry).p0)
+    out.push_back(p.y);
+  EXPECT_EQ(scene.contents.at(0), (std::pair<std::string, std::uint64_t>("fibres", out.size())));
+  return out;
+}
+
+TEST(FibreChoice, ByLengthAndValue) {
+  using Drawn = std::vector<float>;
+  EXPECT_EQ(drawn(5, {{{"lengths", "2,4"}}}), (Drawn{1, 2, 3}));
+  EXPECT_EQ(drawn(5, {{{"color", "scalar"}, {"values", "2,6"}}}), (Drawn{1, 2, 3}));
+  EXPECT_EQ(drawn(5, {{{"color", "scalar"}, {"values", "2,6"}, {"lengths", "4,9"}}}), (Drawn{3}));
+  const auto told = [](const ImportOptions& options) {
+    return complaint([&] { drawn(5, options); });
+  };
+  EXPECT_THAT(told({{{"values", "2,6"}}}), HasSubstr("--values: goes with --color scalar"));
+  EXPECT_THAT(told({{{"lengths", "9,12"}}}), HasSubstr("leave none of 5 fibres"));
+  EXPECT_THAT(told({{{"lengths", "9"}}}), HasSubstr("--lengths: '9' is not LOW,HIGH"));
+}
+
+// A share is even to within four deviations of a binomial count, and holds that of any smaller one.
+TEST(FibreChoice, ByShare) {
+  constexpr int count = 4000;
+  const std::vector<float> all = drawn(count, {{{"share", "1"}}}),
+                           half = drawn(count, {{{"share", "0.5"}}}),
+                           tenth = drawn(count, {{{"share", "0.1"}}});
+  EXPECT_EQ(all.size(), std::size_t{count});
+  EXPECT_NEAR(static_cast<double>(half.size()), 2000, 4 * std::sqrt(count * 0.25));
+  EXPECT_NEAR(static_cast<double>(tenth.size()), 400, 4 * std::sqrt(count * 0.09));
+  EXPECT_TRUE(std::ranges::includes(half, tenth));
+  for (const char* share : {"0", "-0.5", "1.5", "nan", "half"})
+    EXPECT_THAT(complaint([&] {
+                  drawn(5, {{{"share", share}}});
+                }),
+                AllOf(HasSubstr("--share: "), HasSubstr("no number above 0 and up to 1")));
 }
 
 }  // namespace

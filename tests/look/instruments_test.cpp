@@ -169,6 +169,50 @@ BarBox bar_box(const Shown& picture) {  // of blue 0.25
   return box;
 }
 
+// A square of each colour stands before its name, from the top in the legend's order.
+TEST(ColorBar, OfNamesListsThem) {
+  const std::vector<std::string> names = {"axon", "soma", "basal dendrite", "and 9 more",
+                                          "and 8 more"};
+  Legend legend{"Type", "", 0, 1, {{0.5, 0, 0.25}, {0, 0.5, 0.25}}};
+  legend.names = {"soma", "basal dendrite"};
+  Shown picture = white(600, 500);
+  draw_names(picture, legend, {0, 0, 0});
+  const double size = text_size(picture);
+  std::array<Box, 2> squares{Box{600, 500, 0, 0}, Box{600, 500, 0, 0}};
+  for (int y = 0; y < 500; ++y)
+    for (int x = 0; x < 600; ++x) {
+      const auto color = color_at(picture, x, y);
+      if (std::abs(color[2] - 0.25F) > 1e-4F) continue;
+      Box& box = squares.at(color[0] > 0.4F ? 0 : 1);
+      box = {std::min<double>(box.x0, x), std::min<double>(box.y0, y),
+             std::max<double>(box.x1, x + 1), std::max<double>(box.y1, y + 1)};
+    }
+  for (std::size_t i = 0; i < 2; ++i) {
+    const Box& square = squares.at(i);
+    ASSERT_LT(square.x0, square.x1) << i;
+    EXPECT_NEAR(square.x1 - square.x0, 0.9 * size, 1.5);
+    EXPECT_NEAR(square.y1 - square.y0, 0.9 * size, 1.5);
+    EXPECT_EQ(read(picture, {square.x1 + 1, square.y0 - 0.3 * size, 600, square.y1 + 0.4 * size},
+                   names, size),
+              legend.names[i]);
+  }
+  EXPECT_LT(squares[0].y1, squares[1].y0);
+  EXPECT_EQ(read(picture, {300, 0, 600, squares[0].y0 - 0.3 * size}, {"Type", "File"}, size),
+            "Type");
+  // What does not find room above the scale bar is counted: of 20 rows the last tells of the rest.
+  legend.colors.assign(30, glm::dvec3(0.5, 0, 0.25));
+  legend.names.assign(30, "soma");
+  picture = white(600, 500);
+  draw_names(picture, legend, {0, 0, 0});
+  const double edge = margin(picture), step = std::round(1.6 * size);
+  const int rows = static_cast<int>((500 - edge - 2 * size - edge - 3 * size) / step);
+  ASSERT_EQ(rows, 21);
+  const double last = edge + 2 * size + (rows - 1) * step;
+  EXPECT_EQ(read(picture, {300, last - 0.3 * size, 600, last + 1.3 * size},
+                 {"and 9 more", "and 10 more", "and 8 more", "soma"}, size),
+            "and 10 more");
+}
+
 TEST(ColorBar, SaysItsEndsAndUnit) {
   const std::vector<std::string> numbers = {"-1.25", "1.25", "4e+04", "40000", "-4e+04", "0"};
   const std::vector<std::string> titles = {"B factor", "B factor (\u00c5\u00b2)", "B factor (nm)",

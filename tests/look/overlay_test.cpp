@@ -476,6 +476,41 @@ TEST(ColorBar, HasTheMapsEndsAtItsEnds) {
   EXPECT_LE(std::abs(difference), 1);
 }
 
+// Seen along -z with y up, the ball's right is x, red, its top is y, green, and its middle z, blue.
+TEST(ColorBar, OfDirectionsIsABall) {
+  Scene scene = ball();
+  scene.legend = Legend{"Direction", "", 0, 1, {}};
+  scene.legend->of_directions = true;
+  const auto drawn = [&] {
+    Canvas on = empty_canvas(400, 400);
+    Overlays overlays;
+    overlays.color_bar = true;
+    draw(on.picture, on.layers, Sight(scene), overlays);
+    return on.picture;
+  };
+  const auto at = [](const Shown& picture, double x, double y) {
+    const double size = text_size(picture), radius = 3 * size, edge = margin(picture);
+    const int column = static_cast<int>(400 - edge - radius + x * radius),
+              row = static_cast<int>(edge + 2 * size + radius - y * radius);
+    const auto& c = picture.rgb[static_cast<std::size_t>(row * 400 + column)];
+    return glm::dvec3(c[0], c[1], c[2]);
+  };
+  const auto expected = [](double x, double y) {
+    return 0.05 + 0.8 * glm::dvec3(std::abs(x), std::abs(y), std::sqrt(1 - x * x - y * y));
+  };
+  Shown picture = drawn();
+  // A pixel is 1/29 of the radius, along which a colour changes by 1/20 here at most.
+  for (const glm::dvec2 p : {glm::dvec2(0.5, 0), {-0.5, 0.1}, {0.1, 0.5}, {0.3, -0.6}, {0.2, 0.2}})
+    EXPECT_LT(glm::length(at(picture, p.x, p.y) - expected(p.x, p.y)), 0.06) << p.x << " " << p.y;
+  EXPECT_EQ(at(picture, 1.1, 0), glm::dvec3(1));
+  EXPECT_EQ(at(picture, 0, 1.1), glm::dvec3(1));
+  // z of a file that was turned from z to y is up.
+  scene.world_from_file = {glm::dvec3(1, 0, 0), glm::dvec3(0, 0, -1), glm::dvec3(0, 1, 0)};
+  picture = drawn();
+  const glm::dvec3 up = at(picture, 0.1, 0.5), turned = expected(0.1, 0.5);
+  EXPECT_LT(glm::length(up - glm::dvec3(turned.x, turned.z, turned.y)), 0.06);
+}
+
 TEST(Ink, IsSeenOnWhatIsBehind) {
   Canvas light = empty_canvas(8, 8), dark = canvas(
                                          8, 8, {0.02f, 0.02f, 0.03f}, [](int, int) { return 0.0f; },

@@ -303,7 +303,9 @@ TEST(Cartoons, HaveTheirColors) {
   EXPECT_NEAR(rgb.x, 1, 1e-6);
   EXPECT_NEAR(rgb.y, std::pow((200 / 255.0 + 0.055) / 1.055, 2.4), 1e-6);
   EXPECT_NEAR(rgb.z, 0, 1e-6);
-  EXPECT_FALSE(scene.legend);
+  ASSERT_TRUE(scene.legend);
+  EXPECT_THAT(scene.legend->names, ElementsAre("strand", "coil"));
+  EXPECT_EQ(scene.legend->colors.at(0), rgb);
   // Other styles have these colours too.
   const Scene balls = import_scene(test::write_file("c.pdb", text), test::NoImages(),
                                    {{{"style", "spheres"}, {"color", "secondary"}}});

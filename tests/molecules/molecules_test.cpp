@@ -477,7 +477,6 @@ TEST(Drawing, ColoursTellBFactors) {
   EXPECT_EQ(scene.legend->title, "B factor");
   EXPECT_EQ(scene.legend->low, 5);
   EXPECT_EQ(scene.legend->high, 50);
-  EXPECT_FALSE(scene_of_text("b.pdb", text, {{{"color", "chain"}, {"style", "trace"}}}).legend);
 }
 
 // Where all are the same each has the middle of the map, (33, 145, 140) of matplotlib's, but for

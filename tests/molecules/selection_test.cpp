@@ -312,7 +312,6 @@ TEST(Representations, HaveTheColorAskedFor) {
 }
 
 TEST(Representations, HaveTheLegendOfTheFirstThatHasOne) {
-  EXPECT_FALSE(shown("all: sticks by element").legend);
   for (const std::string show : {"polymer: trace; ligand: spheres by bfactor",
                                  "ligand: spheres by bfactor; polymer: trace"}) {
     const Scene scene = shown(show);

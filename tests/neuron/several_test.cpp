@@ -340,10 +340,41 @@ TEST(SwcColors, HaveOneScale) {
   EXPECT_LT(glm::length(color_of_segment(asked, 1) - linear(253, 231, 37)), 0.01);
   ASSERT_TRUE(asked.legend);
   EXPECT_EQ(asked.legend->high, 3);
-  EXPECT_FALSE(several(two, color("file")).legend);
-  EXPECT_THAT(scene.legend->title, HasSubstr("way from the soma"));
+  EXPECT_EQ(scene.legend->title, "Path length from the soma");
+  EXPECT_EQ(scene.legend->unit, "\u00b5m");
   const Scene order = several({write_file("tree.swc", tree)}, color("order"));
-  EXPECT_EQ(order.legend.value().title, "branch order");
+  EXPECT_EQ(order.legend.value().title, "Branch order");
+  EXPECT_EQ(order.legend->unit, "");
+}
+
+// Names of several files are together in one legend, each once, with the material's colour.
+TEST(SwcColors, HaveALegendOfNames) {
+  const Paths two{write_file("one.swc", "1 1 0 0 0 2 -1\n2 2 3 0 0 1 1\n3 3 0 6 0 1 1\n"),
+                  write_file("two.swc", "1 1 50 0 0 2 -1\n2 7 50 12 0 1 1\n3 3 50 0 9 1 1\n")};
+  const Scene types = several(two, {});
+  ASSERT_TRUE(types.legend);
+  EXPECT_EQ(types.legend->title, "Type");
+  EXPECT_THAT(types.legend->names,
+              testing::ElementsAre("soma", "axon", "basal dendrite", "type 7"));
+  ASSERT_EQ(types.legend->colors.size(), 4U);
+  EXPECT_EQ(types.legend->colors[1], glm::dvec3(0.20, 0.62, 0.95));
+  const Scene files = several(two, color("file"));
+  ASSERT_TRUE(files.legend);
+  EXPECT_EQ(files.legend->title, "File");
+  EXPECT_THAT(files.legend->names, testing::ElementsAre("one", "two"));
+  EXPECT_NE(files.legend->colors.at(0), files.legend->colors.at(1));
+  EXPECT_TRUE(several({two[0]}, color("order")).legend->names.empty());
+}
+
+// A file without a unit leaves that of the other; two units are none.
+TEST(SeveralFiles, HaveTheUnitOfThoseThatHaveOne) {
+  const fs::path neuron_file = write_file("one.swc", neuron(0)),
+                 mesh = write_file("two.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"),
+                 molecule = write_file("three.xyz", "1\n\nC 0 0 0\n");
+  EXPECT_EQ(several({neuron_file, mesh}, {}).unit, "\u00b5m");
+  EXPECT_EQ(several({mesh, neuron_file}, {}).unit, "\u00b5m");
+  EXPECT_EQ(several({neuron_file, molecule}, {}).unit, "");
+  EXPECT_EQ(several({mesh, molecule, mesh, neuron_file}, {}).unit, "");
 }
 
 TEST(SwcColors, OfAFileForEachNeuron) {

@@ -27,6 +27,8 @@ namespace caplet {
 struct Atom {
   glm::vec3 position{0};
   float b_factor = 0;         // square angstroms; 0 where the file has none
+  float charge = 0;           // elementary charges; 0 where the file has none
+  float radius = -1;          // angstroms; negative where the file has none
   std::uint32_t residue = 0;  // index into Molecule::residues
   std::int32_t serial = 0;    // the file's number, used by its bonds
   std::uint8_t element = 0;   // atomic number; 0: unknown
@@ -76,7 +78,7 @@ struct Molecule {
   bool bonds_are_complete = false;  // no further bonds are sought by distance
   ComponentBonds components;        // those in the file
   std::map<std::string, std::vector<AssemblyPart>> assemblies;
-  bool has_b_factors = false;
+  bool has_b_factors = false, has_charges = false;
   bool states_secondary = false;  // the file has records of helices or strands
   std::uint32_t frames = 1;       // models or frames of the file
 };
@@ -86,6 +88,7 @@ struct Molecule {
 /// throw InputError with the file's places.
 Molecule read_pdb(std::string_view text, const std::string& path, const ImportOptions& options);
 Molecule read_mmcif(std::string_view text, const std::string& path, const ImportOptions& options);
+Molecule read_pqr(std::string_view text, const std::string& path, const ImportOptions& options);
 Molecule read_sdf(std::string_view text, const std::string& path, const ImportOptions& options);
 Molecule read_xyz(std::string_view text, const std::string& path, const ImportOptions& options);
 
@@ -100,8 +103,10 @@ std::optional<Molecule> read_crystal(gemmi::cif::Document& document, const std::
 std::uint8_t element_of(std::string_view symbol);
 float covalent_radius(std::uint8_t element);       // Cordero et al. 2008, doi:10.1039/b801115j
 float van_der_waals_radius(std::uint8_t element);  // Bondi 1964, Alvarez 2013, as gemmi lists them
-glm::dvec3 element_color(std::uint8_t element);    // Jmol's colours, linear sRGB
-const char* element_name(std::uint8_t element);    // "Fe"
+/// Returns the file's radius of an atom, or its element's van der Waals radius.
+float ball_radius_of(const Atom& atom);
+glm::dvec3 element_color(std::uint8_t element);  // Jmol's colours, linear sRGB
+const char* element_name(std::uint8_t element);  // "Fe"
 
 /// Reads the components of an mmCIF file, such as one of the chemical component dictionary. Throws
 /// InputError.

@@ -13,13 +13,14 @@
 namespace caplet {
 
 enum class MoleculeStyle { ball_and_stick, spheres, sticks, trace, cartoon, surface, accessible };
-enum class MoleculeColor { element, chain, residue, bfactor, secondary, fixed };
+enum class MoleculeColor { element, chain, residue, bfactor, secondary, charge, distance, fixed };
 
 struct Representation {
   std::string selection = "all";  // as selected_atoms takes it
   MoleculeStyle style = MoleculeStyle::ball_and_stick;
   MoleculeColor by = MoleculeColor::element;
   glm::dvec3 color{0};            // linear sRGB, for MoleculeColor::fixed
+  std::string from;               // for MoleculeColor::distance: from which atoms, as `selection`
   double opacity = 1;             // 0 to 1
   float probe = 1.4F;             // radius, for surfaces; angstroms
   const char* option = "--show";  // what asked for it, for errors

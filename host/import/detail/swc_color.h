@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -43,6 +44,9 @@ class SwcColors {
   SwcColors(Scene& scene, const std::vector<SwcSample>& samples, const std::filesystem::path& path,
             const ImportOptions& options);
   std::uint32_t of(const SwcSample& sample);
+  /// Returns the names of types or of the file, for what was drawn; none where colours tell
+  /// numbers.
+  std::optional<Legend> legend() const;
 
  private:
   enum class By { type, file, value };

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "import/color_map.h"
 #include "import/import_options.h"
 #include "scene/scene.h"
 
@@ -18,7 +19,8 @@ namespace caplet {
 class ValueColors {
  public:
   ValueColors() = default;
-  ValueColors(Scene& scene, std::string what, double low, double high, int steps);
+  ValueColors(Scene& scene, std::string what, double low, double high, int steps,
+              ColorMap map = viridis);
   /// Returns the material of the nearest step; values beyond the range take that of its end, NaN
   /// the grey one. `line` is the line of the file that a new material is attributed to.
   std::uint32_t of(double value, int line = 0);
@@ -29,6 +31,7 @@ class ValueColors {
   Scene* scene_ = nullptr;
   std::string what_;
   double low_ = 0, high_ = 0;
+  ColorMap map_ = viridis;
   std::vector<std::int64_t> index_;  // for each step: a material, or -1
   std::int64_t without_value_ = -1;
 };

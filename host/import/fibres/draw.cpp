@@ -8,8 +8,10 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <optional>
+#include <span>
 
 #include "base/check.h"
 #include "base/error.h"
@@ -35,6 +37,7 @@ constexpr float kThinPart =
     1.0F / 700;  // of the extent: the default radius where the format has no usual one
 constexpr double kMelanin = 0.5;     // light brown
 constexpr float kStreamline = 0.2F;  // millimetres
+constexpr double kNoMean = std::numeric_limits<double>::quiet_NaN();
 
 float radius_asked(const ImportOptions& options, float usual) {
   const std::optional<std::string> text = options.text("radius");
@@ -143,9 +146,7 @@ class Colors {
     const std::string name =
         fmt::format("{} {:.3g} {:.3g} {:.3g}", by_ == FibreColor::direction ? "direction" : "color",
                     shown.x, shown.y, shown.z);
-    // Reflectance stays between 0.05 and 0.85, so that even pure colours reflect some light of
-    // every channel.
-    const glm::dvec3 reflectance = by_ == FibreColor::direction ? 0.05 + 0.8 * shown : shown;
+    const glm::dvec3 reflectance = by_ == FibreColor::direction ? direction_color(shown) : shown;
     scene_.materials.push_back(
         {DiffuseMaterial{RgbSpectrum{reflectance}}, name, {scene_.source, 0, 0}});
   }
@@ -167,6 +168,57 @@ std::vector<float> shares_along(const glm::vec3* points, std::size_t count) {
                                     ? way[i] / way.back()
                                     : static_cast<double>(i) / static_cast<double>(count - 1));
   return out;
+}
+
+/// Which fibres are drawn.
+class FibreChoice {
+ public:
+  explicit FibreChoice(const ImportOptions& options)
+      : lengths_(options.range("lengths")), values_(options.range("values")) {
+    const std::optional<std::string> share = options.text("share");
+    if (!share) return;
+    share_ = 0;
+    if (!parse_number(*share, *share_) || !(*share_ > 0 && *share_ <= 1))
+      throw InputError({"--share"}, caplet::quoted(*share) + " is no number above 0 and up to 1");
+  }
+
+  /// `value`: the mean of the fibre's values; NaN where there are none.
+  bool keeps(std::size_t fibre, std::span<const glm::vec3> points, double value) const {
+    if (share_ && !(part_of(fibre) < *share_)) return false;
+    if (values_ && !(value >= values_->first && value <= values_->second)) return false;
+    if (!lengths_) return true;
+    double length = 0;
+    for (std::size_t i = 1; i < points.size(); ++i)
+      length += glm::length(glm::dvec3(points[i]) - glm::dvec3(points[i - 1]));
+    return length >= lengths_->first && length <= lengths_->second;
+  }
+  bool needs_values() const { return values_.has_value(); }
+
+ private:
+  /// Returns an even share of 0 to 1 by the number alone (Steele, Lea and Flood 2014, SplitMix64),
+  /// so that a smaller share is part of a larger one.
+  static double part_of(std::uint64_t fibre) {
+    std::uint64_t z = (fibre + 1) * 0x9e3779b97f4a7c15;
+    z = (z ^ z >> 30U) * 0xbf58476d1ce4e5b9;
+    z = (z ^ z >> 27U) * 0x94d049bb133111eb;
+    return static_cast<double>((z ^ z >> 31U) >> 11U) * 0x1p-53;
+  }
+
+  std::optional<double> share_;
+  std::optional<std::pair<double, double>> lengths_, values_;
+};
+
+/// Returns the mean of a fibre's values that are numbers.
+double mean_value(const FibreScalars& scalars, std::size_t fibre, std::size_t begin,
+                  std::size_t end) {
+  if (!scalars.of_points) return static_cast<double>(scalars.values[fibre]);
+  double sum = 0, count = 0;
+  for (std::size_t i = begin; i < end; ++i)
+    if (const auto value = static_cast<double>(scalars.values[i]); !std::isnan(value)) {
+      sum += value;
+      ++count;
+    }
+  return count > 0 ? sum / count : kNoMean;
 }
 
 struct Usual {
@@ -214,11 +266,20 @@ Scene scene_of(const Fibres& fibres, const std::filesystem::path& path,
   ValueColors of_scalar;
   if (by == FibreColor::scalar)
     of_scalar = scalar_colors(scene, scalars ? *scalars : *asked, options);
+  const FibreChoice choice(options);
+  if (choice.needs_values() && by != FibreColor::scalar)
+    throw InputError({"--values"}, "goes with --color scalar");
   CapsulesShape capsules;
   bool tapered = false;
-  std::size_t begin = 0;
+  std::size_t begin = 0, drawn = 0;
   for (std::size_t f = 0; f < fibres.ends.size(); ++f) {
     const std::size_t end = fibres.ends[f];
+    if (!choice.keeps(f, std::span(fibres.points).subspan(begin, end - begin),
+                      scalars ? mean_value(*scalars, f, begin, end) : kNoMean)) {
+      begin = end;
+      continue;
+    }
+    ++drawn;
     const std::vector<float> u = shares_along(fibres.points.data() + begin, end - begin);
     for (std::size_t i = begin; i < end; ++i) {
       // A fibre of one point becomes a ball.
@@ -254,6 +315,10 @@ Scene scene_of(const Fibres& fibres, const std::filesystem::path& path,
     }
     begin = end;
   }
+  if (drawn == 0)
+    throw InputError(
+        {scene.source, 0, 0},
+        fmt::format("--share, --lengths and --values leave none of {} fibres", fibres.ends.size()));
   if (!tapered) capsules.radius1 = {};
   if (!as_hair && by != FibreColor::scalar) capsules.materials = colors.materials();
   Shape shape;
@@ -262,7 +327,12 @@ Scene scene_of(const Fibres& fibres, const std::filesystem::path& path,
   shape.where = {scene.source, 0, 0};
   shape.world_from_object = world_from_file(options, usual.up);
   scene.world_from_file = glm::dmat3(shape.world_from_object);
+  scene.contents = {{"fibres", drawn}};
   scene.unit = usual.unit;
+  if (by == FibreColor::direction && !as_hair) {
+    scene.legend = Legend{"Direction", "", 0, 1, {}};
+    scene.legend->of_directions = true;
+  }
   scene.shapes.push_back(std::move(shape));
   return scene;
 }

@@ -19,6 +19,7 @@
 #include "base/log.h"
 #include "base/reading.h"
 #include "import/color_map.h"
+#include "import/detail/atom_values.h"
 #include "import/detail/cartoon.h"
 #include "import/detail/gzip_file.h"
 #include "import/detail/importers.h"
@@ -46,26 +47,20 @@ constexpr int kTraceSteps = 6;                           // capsules between two
 
 class Painter {
  public:
-  /// `secondary`: a value for each residue where `by` needs it, else none. `color`: that of all
-  /// atoms for MoleculeColor::fixed.
+  /// `secondary`: a value for each residue where the colours need it, else none. `values`: those of
+  /// atom_values.
   Painter(Scene& scene, const Molecule& molecule, const std::vector<Secondary>& secondary,
-          MoleculeColor by, const glm::dvec3& color = {})
-      : scene_(scene), molecule_(molecule), secondary_(secondary), by_(by), color_(color) {
-    if (by == MoleculeColor::bfactor) {
-      low_ = high_ = molecule.atoms.front().b_factor;
-      for (const Atom& atom : molecule.atoms) {
-        low_ = std::min(low_, atom.b_factor);
-        high_ = std::max(high_, atom.b_factor);
-      }
-      b_factors_ = ValueColors(scene, "bfactor", static_cast<double>(low_),
-                               static_cast<double>(high_), map_steps);
-    }
-  }
+          const Representation& as, AtomValues values)
+      : scene_(scene),
+        molecule_(molecule),
+        secondary_(secondary),
+        by_(as.by),
+        color_(as.color),
+        values_(std::move(values)),
+        value_colors_(scene, values_.name, values_.low, values_.high, values_.steps, values_.map) {}
 
-  /// Returns the atom's position in the range of b factors, 0 to 1.
-  float part(const Atom& atom) const {
-    return high_ > low_ ? (atom.b_factor - low_) / (high_ - low_) : 0.5F;
-  }
+  /// Returns the atom's place in the range of the values, 0 to 1.
+  float part(const Atom& atom) const { return values_.part(index_of(atom)); }
 
   std::uint32_t material(const Atom& atom) {
     const Residue& residue = molecule_.residues[atom.residue];
@@ -79,7 +74,9 @@ class Painter {
         return named(residue.name.empty() ? "residue" : residue.name,
                      [&] { return palette_color(index_.size()); });
       case MoleculeColor::bfactor:
-        return b_factors_.of(static_cast<double>(atom.b_factor));
+      case MoleculeColor::charge:
+      case MoleculeColor::distance:
+        return value_colors_.of(static_cast<double>(values_.of[index_of(atom)]));
       case MoleculeColor::secondary:
         return of_secondary(atom);
       case MoleculeColor::fixed:
@@ -88,10 +85,19 @@ class Painter {
     return 0;
   }
 
-  /// Returns the legend of b factors; none for other colours.
+  /// Returns the legend of values, or of the names of what was drawn; none of a fixed colour.
   std::optional<Legend> legend() const {
-    if (by_ != MoleculeColor::bfactor) return std::nullopt;
-    return viridis_legend("B factor", "\u00c5\u00b2", low_, high_);
+    if (shows_values(by_))
+      return map_legend(values_.title, values_.unit, values_.low, values_.high, values_.map);
+    if (by_ == MoleculeColor::fixed) return std::nullopt;
+    std::vector<std::uint32_t> materials;
+    for (const auto& [name, material] : index_) materials.push_back(material);
+    std::ranges::sort(materials);  // in the order in which they were first drawn
+    const char* title = by_ == MoleculeColor::element   ? "Element"
+                        : by_ == MoleculeColor::chain   ? ""  // names say it
+                        : by_ == MoleculeColor::residue ? "Residue"
+                                                        : "Secondary structure";
+    return names_legend(title, scene_.materials, materials);
   }
 
   std::uint32_t of_element(const Atom& atom) {
@@ -133,13 +139,17 @@ class Painter {
     return entry->second;
   }
 
+  std::size_t index_of(const Atom& atom) const {
+    return static_cast<std::size_t>(&atom - molecule_.atoms.data());
+  }
+
   Scene& scene_;
   const Molecule& molecule_;
   const std::vector<Secondary>& secondary_;
   MoleculeColor by_;
   glm::dvec3 color_;
-  float low_ = 0, high_ = 0;
-  ValueColors b_factors_;
+  AtomValues values_;
+  ValueColors value_colors_;
   std::map<std::string, std::uint32_t> index_;
 };
 
@@ -193,6 +203,7 @@ class MoleculeDrawing {
       if (!is_drawn(i)) continue;
       const Atom& atom = molecule_.atoms[i];
       const float radius = ball_radius(atom);
+      if (!(radius > 0)) continue;  // some force fields give hydrogen no size
       part(atom, " atoms").add(atom.position, atom.position, radius, radius, color_of(atom));
     }
     if (style_ != MoleculeStyle::spheres)
@@ -252,9 +263,9 @@ class MoleculeDrawing {
     std::vector<std::uint32_t> materials;
     for (std::uint32_t i = 0; i < molecule_.atoms.size(); ++i) {
       const Atom& atom = molecule_.atoms[i];
-      if (!is_chosen(i) || !is_covered(atom)) continue;
+      if (!is_chosen(i) || !is_covered(atom) || !(ball_radius_of(atom) > 0)) continue;
       centers.push_back(atom.position);
-      radii.push_back(van_der_waals_radius(atom.element));
+      radii.push_back(ball_radius_of(atom));
       materials.push_back(painter_.material(atom));
     }
     try {
@@ -284,9 +295,9 @@ class MoleculeDrawing {
   float ball_radius(const Atom& atom) const {
     switch (style_) {
       case MoleculeStyle::spheres:
-        return van_der_waals_radius(atom.element);
+        return ball_radius_of(atom);
       case MoleculeStyle::accessible:
-        return is_covered(atom) ? van_der_waals_radius(atom.element) + probe_ : kStickRadius;
+        return is_covered(atom) ? ball_radius_of(atom) + probe_ : kStickRadius;
       case MoleculeStyle::ball_and_stick:
         return kBall * van_der_waals_radius(atom.element);
       default:
@@ -464,6 +475,8 @@ void check_asked(const Molecule& molecule, const Representation& as) {
   const auto [style, by] = std::pair(as.style, as.by);
   if (by == MoleculeColor::bfactor && !molecule.has_b_factors)
     throw InputError({"--color"}, "the file has no b factors");
+  if (by == MoleculeColor::charge && !molecule.has_charges)
+    throw InputError({"--color"}, "the file has no charges");
   if (style == MoleculeStyle::trace &&
       std::ranges::none_of(molecule.residues, [](const Residue& r) { return r.trace_atom >= 0; }))
     throw InputError({as.option},
@@ -520,6 +533,10 @@ Imported import_molecule(const std::filesystem::path& path, const ImportOptions&
       options, molecule.atoms.size() > kMostInDetail ? MoleculeStyle::spheres
                                                      : MoleculeStyle::ball_and_stick);
   for (const Representation& as : representations) check_asked(molecule, as);
+  if (options.text("range") && std::ranges::none_of(representations, [](const Representation& as) {
+        return shows_values(as.by);
+      }))
+    throw InputError({"--range"}, "goes with colours by bfactor, charge or distance");
   const bool has_bonds = std::ranges::any_of(
       representations, [](const Representation& as) { return as.style != MoleculeStyle::spheres; });
   const std::vector<Bond> bonds =
@@ -532,18 +549,22 @@ Imported import_molecule(const std::filesystem::path& path, const ImportOptions&
     if (secondary.empty()) secondary = asked_secondary(molecule, by_file, scene.source);
     return secondary;
   };
-  std::map<std::tuple<MoleculeColor, double, double, double>, Painter> painters;
+  std::map<std::tuple<MoleculeColor, double, double, double, std::string>, Painter> painters;
   std::vector<MoleculeDrawing> drawings;
   for (const Representation& as : representations) {
     if (as.style == MoleculeStyle::cartoon || as.by == MoleculeColor::secondary) with_secondary();
     std::vector<bool> chosen = selected_atoms(molecule, as.selection, with_secondary);
     if (std::ranges::find(chosen, true) == chosen.end())
       log::warn("{}: --show '{}' selects no atoms", scene.source, as.selection);
-    const std::tuple key(as.by, as.color.x, as.color.y, as.color.z);
-    Painter& painter =
-        painters.try_emplace(key, scene, molecule, secondary, as.by, as.color).first->second;
-    drawings.emplace_back(molecule, bonds, secondary, std::move(chosen), as, painter);
-    if (!scene.legend) scene.legend = painter.legend();
+    const std::tuple key(as.by, as.color.x, as.color.y, as.color.z, as.from);
+    auto painter = painters.find(key);
+    if (painter == painters.end())
+      painter = painters
+                    .try_emplace(key, scene, molecule, secondary, as,
+                                 atom_values(molecule, as, options, with_secondary))
+                    .first;
+    drawings.emplace_back(molecule, bonds, secondary, std::move(chosen), as, painter->second);
+    if (shows_values(as.by) && !scene.legend) scene.legend = painter->second.legend();
   }
   const std::optional<std::string> assembly = options.text("assembly");
   if (assembly && *assembly != "none") {
@@ -554,6 +575,13 @@ Imported import_molecule(const std::filesystem::path& path, const ImportOptions&
       for (Shape& shape : drawing.shapes(scene, kept)) scene.shapes.push_back(std::move(shape));
     if (scene.shapes.empty() && options.text("show"))
       throw InputError({"--show"}, "selects none of the file's atoms, or nothing that is drawn");
+  }
+  for (const auto& [key, painter] : painters) {
+    const std::optional<Legend> legend = painter.legend();
+    if (legend && scene.legend)
+      add_names(*scene.legend, *legend);
+    else if (legend)
+      scene.legend = legend;
   }
   scene.contents = contents_of(molecule);
   scene.has_no_up = true;
@@ -572,6 +600,10 @@ Imported import_pdb(const std::filesystem::path& path, const ImageReader&,
 Imported import_mmcif(const std::filesystem::path& path, const ImageReader&,
                       const ImportOptions& options) {
   return import_molecule(path, options, read_mmcif);
+}
+Imported import_pqr(const std::filesystem::path& path, const ImageReader&,
+                    const ImportOptions& options) {
+  return import_molecule(path, options, read_pqr);
 }
 Imported import_sdf(const std::filesystem::path& path, const ImageReader&,
                     const ImportOptions& options) {

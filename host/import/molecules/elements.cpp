@@ -57,6 +57,9 @@ float covalent_radius(std::uint8_t element) {
   return element == 6 ? carbon : gemmi::covalent_radius(el_of(element));
 }
 float van_der_waals_radius(std::uint8_t element) { return gemmi::vdw_radius(el_of(element)); }
+float ball_radius_of(const Atom& atom) {
+  return atom.radius >= 0 ? atom.radius : van_der_waals_radius(atom.element);
+}
 const char* element_name(std::uint8_t element) {
   return element == 0 ? "unknown" : gemmi::element_name(el_of(element));
 }

@@ -19,6 +19,7 @@
 
 #include "base/error.h"
 #include "base/spelling.h"
+#include "import/detail/gemmi_structure.h"
 #include "import/detail/molecule.h"
 #include "import/detail/secondary.h"
 #include "import/detail/text_file.h"
@@ -188,6 +189,7 @@ class Builder {
     one.residue = static_cast<std::uint32_t>(out_.residues.size());
     one.serial = atom.serial;
     one.altloc = atom.altloc;
+    one.charge = atom.charge;
     one.element = element_of(atom.element.name());
     if (one.element == 0) one.element = element_of(atom.name);
     const auto index = static_cast<std::uint32_t>(out_.atoms.size());
@@ -200,6 +202,7 @@ class Builder {
       by_address_.try_emplace(address_key(chain.name, source.seqid.str() + source.name, atom.name),
                               index);
     out_.has_b_factors |= one.b_factor != 0;
+    out_.has_charges |= one.charge != 0;
     out_.atoms.push_back(one);
     out_.atom_names.push_back(atom.name);
   }
@@ -463,11 +466,16 @@ std::vector<SecondaryRange> secondary_categories(gemmi::cif::Block& block) {
 
 }  // namespace
 
+Molecule molecule_of(gemmi::Structure& structure, const std::string& path,
+                     const ImportOptions& options, std::vector<SecondaryRange> secondary) {
+  return Builder(structure, path, options, std::move(secondary)).build();
+}
+
 Molecule read_pdb(std::string_view text, const std::string& path, const ImportOptions& options) {
   return read_by_gemmi(path, [&] {
     const std::string whole = with_whole_distances(text);
     gemmi::Structure structure = gemmi::read_pdb_from_memory(whole.data(), whole.size(), path);
-    Molecule out = Builder(structure, path, options, secondary_records(structure)).build();
+    Molecule out = molecule_of(structure, path, options, secondary_records(structure));
     add_conect(text, out);
     out.assemblies = assemblies_of_remarks(text, path);
     return out;
@@ -491,7 +499,7 @@ Molecule read_mmcif(std::string_view text, const std::string& path, const Import
         secondary.push_back(std::move(range));
     gemmi::Structure structure = gemmi::make_structure_from_doc(
         std::move(document), true);  // const& before gemmi 0.6, then &&
-    Molecule out = Builder(structure, path, options, std::move(secondary)).build();
+    Molecule out = molecule_of(structure, path, options, std::move(secondary));
     out.components = std::move(components);
     return out;
   });

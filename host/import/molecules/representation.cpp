@@ -21,8 +21,8 @@ namespace {
 // These are in the order of MoleculeStyle and MoleculeColor.
 constexpr std::initializer_list<const char*> style_names = {
     "ball-and-stick", "spheres", "sticks", "trace", "cartoon", "surface", "accessible"};
-constexpr std::initializer_list<const char*> color_names = {"element", "chain", "residue",
-                                                            "bfactor", "secondary"};
+constexpr std::initializer_list<const char*> color_names = {"element", "chain",     "residue",
+                                                            "bfactor", "secondary", "charge"};
 
 MoleculeColor usual_color(MoleculeStyle style) {
   switch (style) {
@@ -47,19 +47,43 @@ float asked_probe(const ImportOptions& options) {
   return static_cast<float>(radius);
 }
 
+/// What --color says of a molecule.
+struct AskedColor {
+  MoleculeColor by;
+  std::string from;  // for MoleculeColor::distance
+};
+
+std::optional<AskedColor> asked_color(const ImportOptions& options) {
+  const std::optional<std::string> text = options.text("color");
+  if (!text) return std::nullopt;
+  const std::string_view distance = "distance from ";
+  if (text->starts_with(distance)) {
+    const std::string from(trimmed(std::string_view(*text).substr(distance.size())));
+    if (!from.empty()) return AskedColor{MoleculeColor::distance, from};
+  }
+  if (text->starts_with("distance"))
+    throw InputError({"--color"}, "'distance from' and a selection of atoms are needed");
+  return AskedColor{static_cast<MoleculeColor>(options.choice("color", color_names, 0)), ""};
+}
+
+void set_color(Representation& out, const std::optional<AskedColor>& asked) {
+  out.by = asked ? asked->by : usual_color(out.style);
+  if (asked) out.from = asked->from;
+}
+
 /// Reads one representation of --show.
 class RepresentationText {
  public:
   explicit RepresentationText(std::string_view text) : text_(text) {}
 
-  Representation read(std::optional<MoleculeColor> color) {
+  Representation read(const std::optional<AskedColor>& color) {
     const std::size_t colon = text_.rfind(':');
     if (colon == text_.npos) fail("':' and a style are missing after the selection");
     Representation out;
     out.selection = trimmed(text_.substr(0, colon));
     words_ = words_of(text_.substr(colon + 1));
     out.style = static_cast<MoleculeStyle>(named(style_names, "a style"));
-    out.by = color.value_or(usual_color(out.style));
+    set_color(out, color);
     while (at_ < words_.size()) {
       if (words_[at_] == "by") {
         ++at_;
@@ -97,6 +121,13 @@ class RepresentationText {
       out.by = MoleculeColor::fixed;
       out.color = *color;
       ++at_;
+    } else if (at_ < words_.size() && words_[at_] == "distance") {
+      ++at_;
+      if (at_ == words_.size() || words_[at_++] != "from") fail("'from' is missing after distance");
+      out.by = MoleculeColor::distance;
+      for (; at_ < words_.size() && words_[at_] != "opacity"; ++at_)
+        out.from += (out.from.empty() ? "" : " ") + std::string(words_[at_]);
+      if (out.from.empty()) fail("atoms are missing after 'distance from'");
     } else {
       out.by = static_cast<MoleculeColor>(named(color_names, "what a color tells"));
     }
@@ -123,9 +154,7 @@ std::vector<Representation> asked_representations(const ImportOptions& options,
   const std::optional<std::string> show = options.text("show");
   if (show && options.text("style"))
     throw InputError({"--style"}, "--show states the style of each representation");
-  std::optional<MoleculeColor> color;
-  if (options.text("color"))
-    color = static_cast<MoleculeColor>(options.choice("color", color_names, 0));
+  const std::optional<AskedColor> color = asked_color(options);
   const float probe = asked_probe(options);
   std::vector<Representation> out;
   if (!show) {
@@ -133,7 +162,7 @@ std::vector<Representation> asked_representations(const ImportOptions& options,
     all.probe = probe;
     all.style = static_cast<MoleculeStyle>(
         options.choice("style", style_names, static_cast<std::size_t>(automatic)));
-    all.by = color.value_or(usual_color(all.style));
+    set_color(all, color);
     all.option = "--style";
     return {all};
   }

@@ -7,7 +7,9 @@
 
 #include <cmath>
 #include <unordered_map>
+#include <utility>
 
+#include "base/check.h"
 #include "base/error.h"
 #include "base/quotes.h"
 #include "import/detail/molecule_lines.h"
@@ -102,12 +104,41 @@ class SdfReader : MoleculeLines {
       for (int axis = 0; axis < 3; ++axis)
         p[axis] = fixed<double>(text, 10 * static_cast<std::size_t>(axis), 10, "coordinate");
       add_atom(p, text.size() > 31 ? trimmed(text.substr(31, 3)) : std::string_view(), 1);
+      // Codes 1 to 7 mean charges of +3 to -3, but 4, a radical, none.
+      if (text.size() <= 36 || trimmed(text.substr(36, 3)).empty()) continue;
+      if (const int code = fixed<int>(text, 36, 3, "charge"); code >= 1 && code <= 7)
+        set_charge(i + 1, 4 - code, 37);
     }
     for (std::uint32_t i = 0; i < bonds; ++i) {
       const std::string_view text = line();
       add_bond(fixed<std::uint32_t>(text, 0, 3, "first atom"),
                fixed<std::uint32_t>(text, 3, 3, "second atom"), 1);
     }
+    read_properties();
+  }
+
+  /// Reads the charges of V2000's properties: "M  CHG", a count, and as often an atom and its
+  /// charge, in four columns each. They replace the charges of the lines of atoms.
+  void read_properties() {
+    for (bool is_first = true; !text_.empty() && !text_.starts_with("$$$$");) {
+      const std::string_view text = line();
+      if (text.starts_with("M  END")) return;
+      if (!text.starts_with("M  CHG")) continue;
+      if (std::exchange(is_first, false))
+        for (Atom& atom : out_.atoms) atom.charge = 0;
+      const auto count = fixed<std::uint32_t>(text, 6, 3, "number of charges");
+      for (std::size_t i = 0; i < count; ++i)
+        set_charge(fixed<std::uint32_t>(text, 9 + 8 * i, 4, "atom"),
+                   fixed<int>(text, 13 + 8 * i, 4, "charge"), 10 + 8 * i);
+    }
+  }
+
+  void set_charge(std::uint32_t atom, int charge, std::size_t column) {
+    if (atom < 1 || atom > out_.atoms.size())
+      fail(column, fmt::format("a charge of atom {}: there are {}", atom, out_.atoms.size()));
+    if (std::abs(charge) > 15) fail(column, fmt::format("a charge of {}: at most 15", charge));
+    out_.atoms[atom - 1].charge = static_cast<float>(charge);
+    out_.has_charges |= charge != 0;
   }
 
   /// Returns a line "M  V30 ..." without that prefix, joined with those that follow if it ends in
@@ -143,6 +174,9 @@ class SdfReader : MoleculeLines {
         by_number[number<std::uint32_t>(words[0])] = static_cast<std::uint32_t>(out_.atoms.size());
         add_atom({number<double>(words[2]), number<double>(words[3]), number<double>(words[4])},
                  words[1], 1);
+        for (const std::string_view word : words)
+          if (word.starts_with("CHG="))
+            set_charge(narrow<std::uint32_t>(out_.atoms.size()), number<int>(word.substr(4)), 1);
       } else {
         if (words.size() < 4) fail(1, "a bond is number, type and two atoms");
         const auto a = by_number.find(number<std::uint32_t>(words[2])),

@@ -6,6 +6,8 @@
 // ("Properties=...").
 #include <fmt/format.h>
 
+#include <optional>
+
 #include "base/error.h"
 #include "base/quotes.h"
 #include "import/detail/molecule_lines.h"
@@ -16,6 +18,7 @@ namespace {
 
 struct Columns {
   std::size_t species = 0, position = 1;
+  std::optional<std::size_t> charge;
 };
 
 /// Parses "Properties=species:S:1:pos:R:3:...": a name, a kind and a number of columns each.
@@ -36,6 +39,8 @@ Columns columns_of(std::string_view comment) {
   for (std::size_t i = 0; i + 2 < fields.size(); i += 3) {
     if (fields[i] == "species") columns.species = column;
     if (fields[i] == "pos") columns.position = column;
+    for (const char* name : {"charge", "charges", "initial_charges"})
+      if (fields[i] == name) columns.charge = column;
     std::size_t count = 0;
     (void)parse_number(fields[i + 2], count);
     column += std::min<std::size_t>(count, 1000);
@@ -110,7 +115,13 @@ class XyzReader : MoleculeLines {
       const NumberError error = parse_float(word, position[axis]);
       if (error != NumberError::none) fail(0, describe(error, word));
     }
-    const Atom atom = next_atom(position, words[columns.species]);
+    Atom atom = next_atom(position, words[columns.species]);
+    if (columns.charge) {
+      if (words.size() <= *columns.charge) fail(0, "the charge is missing");
+      const NumberError error = parse_float(words[*columns.charge], atom.charge);
+      if (error != NumberError::none) fail(0, describe(error, words[*columns.charge]));
+      out_.has_charges = true;
+    }
     if (atom.hydrogen() && !options_.yes("hydrogens", true)) return;
     add(atom);
   }

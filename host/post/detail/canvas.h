@@ -41,7 +41,8 @@ class Mask {
   std::vector<float> share_;
 };
 
-/// Paints the mask in a colour, sRGB from 0 to 1, blended in sRGB.
+/// Paints a share of a pixel, or the mask, in a colour: sRGB from 0 to 1, blended in sRGB.
+void paint(Shown& picture, std::size_t pixel, float share, const std::array<float, 3>& srgb);
 void paint(Shown& picture, const Mask& mask, const std::array<float, 3>& srgb);
 
 /// Text is in DejaVu Sans. `size`: the height of capitals; `at` is the start of the baseline.

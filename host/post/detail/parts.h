@@ -24,6 +24,10 @@ void draw_outline(Shown& picture, const LayeredImage& layers, double width,
 void draw_scale_bar(Shown& picture, const BarOnPicture& bar, const std::array<float, 3>& ink);
 void draw_axes(Shown& picture, const Scene& scene, const std::array<float, 3>& ink);
 void draw_color_bar(Shown& picture, const Legend& legend, const std::array<float, 3>& ink);
+/// Draws a square for each of the legend's names, and how many did not find room.
+void draw_names(Shown& picture, const Legend& legend, const std::array<float, 3>& ink);
+/// Draws a ball with the colour of each direction, as the camera sees it.
+void draw_directions(Shown& picture, const Scene& scene, const std::array<float, 3>& ink);
 
 /// Return the height of capitals for the size of the picture, in pixels, and the margin.
 double text_size(const Shown& picture);
