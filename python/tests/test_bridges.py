@@ -103,7 +103,7 @@ def test_robots_of_the_data(path, rng):
     state = mujoco.MjData(model)
     mujoco.mj_forward(model, state)
     scene = caplet.from_mujoco(model, state)
-    shown = [i for i in range(model.ngeom) if model.geom_group[i] in (0, 1, 2) and caplet.bridges.mujoco._rgba(model, i)[3] > 0]
+    shown = [i for i in range(model.ngeom) if model.geom_group[i] in (0, 1, 2) and caplet.bridges.mujoco_looks.rgba_of(model, i)[3] > 0]
     assert scene.info["geom"].tolist() == shown
     for number, geom in enumerate(shown):
         assert np.abs(scene.shape(number).transform[:3, 3] - state.geom_xpos[geom]).max() < 1e-6

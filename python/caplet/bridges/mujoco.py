@@ -1,25 +1,19 @@
 # SPDX-License-Identifier: Apache-2.0
 # Copyright Caplet authors
 """Robots: MuJoCo's models, every geom as its exact solid."""
+import os
+import struct
+import tempfile
+import zlib
+
 import numpy as np
 
-from .. import cameras, lights as light_types, materials
+from .. import cameras, lights as light_types
 from ..errors import InputError
 from ..scene import Scene
+from .mujoco_looks import Looks, rgba_of
 
-_DEFAULT_RGBA = (0.5, 0.5, 0.5, 1.0)  # of a geom that names none
 _FAR = 100  # of an endless plane: so many times the model's extent to each side
-
-
-def _linear(screen):
-    screen = np.clip(np.asarray(screen, dtype=np.float64), 0, 1)
-    return np.where(screen <= 0.04045, screen / 12.92, ((screen + 0.055) / 1.055)**2.4)
-
-
-def _rgba(model, geom):
-    """MuJoCo's own rule: the geom's colour, or that of its material where it names none."""
-    own, material = model.geom_rgba[geom], model.geom_matid[geom]
-    return model.mat_rgba[material] if material >= 0 and tuple(np.float32(own)) == tuple(np.float32(_DEFAULT_RGBA)) else own
 
 
 def _transforms(data):
@@ -35,10 +29,17 @@ def _name(mujoco, model, geom):
 
 
 def _mesh_of(model, geom):
+    """Vertices, faces, and texture coordinates of the vertices or None. Vertices are doubled where faces give them other ones."""
     mesh = model.geom_dataid[geom]
     first, count = model.mesh_vertadr[mesh], model.mesh_vertnum[mesh]
     begin, faces = model.mesh_faceadr[mesh], model.mesh_facenum[mesh]
-    return model.mesh_vert[first:first + count], model.mesh_face[begin:begin + faces]
+    vertices, corners = model.mesh_vert[first:first + count], model.mesh_face[begin:begin + faces]
+    start = model.mesh_texcoordadr[mesh]
+    if start < 0:
+        return vertices, corners, None
+    pairs = np.stack([corners, model.mesh_facetexcoord[begin:begin + faces]], axis=-1).reshape(-1, 2)
+    kept, which = np.unique(pairs, axis=0, return_inverse=True)
+    return vertices[kept[:, 0]], which.reshape(-1, 3), model.mesh_texcoord[start + kept[:, 1]]
 
 
 def _height_field(model, geom):
@@ -60,12 +61,20 @@ def _height_field(model, geom):
     return np.concatenate([upper, lower]), np.concatenate([surface, surface[:, ::-1] + far, sides])
 
 
-def _add(scene, mujoco, model, geom, options, far):
+def _add_triangles(scene, looks, geom, vertices, faces, texcoords, options):
+    uv = looks.uv(geom, vertices, texcoords)
+    if "alpha" not in options:
+        return scene.add_mesh(vertices, faces, uv=uv, **options)
+    more = {} if uv is None else {"uv": uv}
+    return scene.add("trianglemesh", P=vertices, indices=np.asarray(faces).reshape(-1), **more, **options)
+
+
+def _add(scene, mujoco, model, geom, options, far, looks):
     kind, size = int(model.geom_type[geom]), np.asarray(model.geom_size[geom], dtype=np.float64)
     if kind == int(mujoco.mjtGeom.mjGEOM_SPHERE):
         return scene.add("sphere", radius=size[0], **options)
     if kind == int(mujoco.mjtGeom.mjGEOM_CAPSULE):
-        return scene.add_capsules((0, 0, -size[1]), (0, 0, size[1]), size[0], **options)
+        return scene.add("capsule", p0=(0, 0, -size[1]), p1=(0, 0, size[1]), radius=size[0], **options)
     if kind == int(mujoco.mjtGeom.mjGEOM_CYLINDER):
         return scene.add("cylinder", p0=(0, 0, -size[1]), p1=(0, 0, size[1]), radius=size[0], **options)
     if kind == int(mujoco.mjtGeom.mjGEOM_BOX):
@@ -75,12 +84,14 @@ def _add(scene, mujoco, model, geom, options, far):
         return scene.add("sphere", radius=1, **options)
     if kind == int(mujoco.mjtGeom.mjGEOM_PLANE):
         x, y = (half if half > 0 else far for half in size[:2])
-        return scene.add("trianglemesh", P=[(-x, -y, 0), (x, -y, 0), (x, y, 0), (-x, y, 0)], indices=[0, 1, 2, 0, 2, 3],
-                         onesided=True, **options)  # as MuJoCo's: nothing from below
+        corners = np.array([(-x, -y, 0), (x, -y, 0), (x, y, 0), (-x, y, 0)])
+        uv = looks.uv(geom, corners)
+        more = {} if uv is None else {"uv": uv}
+        return scene.add("trianglemesh", P=corners, indices=[0, 1, 2, 0, 2, 3], onesided=True, **more, **options)  # as MuJoCo's
     if kind == int(mujoco.mjtGeom.mjGEOM_HFIELD):
-        return scene.add_mesh(*_height_field(model, geom), **options)
+        return _add_triangles(scene, looks, geom, *_height_field(model, geom), None, options)
     if kind in (int(mujoco.mjtGeom.mjGEOM_MESH), int(mujoco.mjtGeom.mjGEOM_SDF)):
-        return scene.add_mesh(*_mesh_of(model, geom), **options)
+        return _add_triangles(scene, looks, geom, *_mesh_of(model, geom), options)
     raise InputError(f"geom {geom}: MuJoCo's geom type {kind} is not known")
 
 
@@ -99,16 +110,43 @@ def _camera(scene, mujoco, model, data, camera):
     scene.camera = cameras.perspective(fov=model.cam_fovy[number], transform=place)
 
 
-def _lights(scene, mujoco, model, data):
-    """MuJoCo's lights do not fade with the distance: theirs is as strong as meant at the model's middle."""
+def _png(image):
+    """The bytes of a file of 8-bit RGB."""
+    height, width, _ = image.shape
+    rows = np.concatenate([np.zeros((height, 1), dtype=np.uint8), image.reshape(height, -1)], axis=1)
+
+    def part(kind, data):
+        return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+    header = struct.pack(">2I5B", width, height, 8, 2, 0, 0, 0)
+    return b"\x89PNG\r\n\x1a\n" + part(b"IHDR", header) + part(b"IDAT", zlib.compress(rows.tobytes())) + part(b"IEND", b"")
+
+
+def _is_directional(mujoco, model, light):
+    if hasattr(model, "light_type"):
+        return int(model.light_type[light]) == int(mujoco.mjtLightType.mjLIGHT_DIRECTIONAL)
+    return bool(model.light_directional[light])  # before MuJoCo 3.3
+
+
+def _lights(scene, mujoco, model, data, sky):
+    """MuJoCo's lights do not fade with the distance: theirs is as strong as meant at the model's middle. The sky, if there is one, takes the
+    place of the ambient light; the headlight comes from the scene's camera."""
     scene.remove_lights()
-    ambient = np.asarray(model.vis.headlight.ambient) + model.light_ambient.sum(axis=0)
-    scene.add_light(light_types.infinite(L=tuple(ambient + 1e-6)))
-    for i in range(model.nlight):
-        if not model.light_active[i]:
-            continue
+    head = model.vis.headlight
+    active = np.asarray(model.light_active, dtype=bool)
+    ambient = np.asarray(head.ambient) * (head.active != 0) + model.light_ambient[active].sum(axis=0)
+    if sky is None:
+        scene.add_light(light_types.infinite(L=tuple(ambient + 1e-6)))
+    else:
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "sky.png")
+            with open(path, "wb") as file:
+                file.write(_png(sky[0]))
+            scene.add_light(light_types.infinite(filename=path, scale=sky[1]))
+    if head.active and np.any(head.diffuse):
+        scene.add_light(light_types.distant(L=tuple(np.pi * np.asarray(head.diffuse)), from_=(0, 0, 0), to=tuple(scene.camera[:3, 2])))
+    for i in np.flatnonzero(active & model.light_diffuse.any(axis=1)):
         strength, at, way = np.pi * model.light_diffuse[i], data.light_xpos[i], data.light_xdir[i]
-        if int(model.light_type[i]) == int(mujoco.mjtLightType.mjLIGHT_DIRECTIONAL):
+        if _is_directional(mujoco, model, i):
             scene.add_light(light_types.distant(L=tuple(strength), from_=(0, 0, 0), to=tuple(way)))
             continue
         away = np.sum((np.asarray(at) - model.stat.center)**2)
@@ -124,10 +162,12 @@ def from_mujoco(model, data=None, groups=(0, 1, 2), camera=None, lights="studio"
     """A scene of a MuJoCo model as it stands: every geom of these groups is one shape, by its name, in MuJoCo's units.
 
     model, data: mujoco.MjModel and MjData (None: the model's initial pose). groups: geom groups that are shown; None: all. camera:
-    one of the model's, by name or number; None: one that looks at the model's middle, z up. lights: "studio", or "model" for the model's own.
+    one of the model's, by name or number; None: one that looks at the model's middle, z up. lights: "studio", or "model" for the model's
+    own lights, headlight and sky.
 
-    Spheres, capsules, cylinders, boxes and ellipsoids are exact; planes, meshes and height fields are triangles. Colours are taken as
-    a screen's; what is quite transparent is left out. scene.info["geom"]: the geom of each shape, so that
+    Spheres, capsules, cylinders, boxes and ellipsoids are exact; planes, meshes and height fields are triangles. Materials and textures
+    are those of the program's reader of MJCF (docs/formats/robots.md); cube textures of meshes and height fields stay where they are
+    when these move. What is quite transparent is left out. scene.info["geom"]: the geom of each shape, so that
     scene.info["geom"][image.object_id] is a segmentation; scene.info["moving"]: shapes of bodies that are not fixed to the world.
     update_mujoco(scene, data) moves all of it.
     """
@@ -135,32 +175,28 @@ def from_mujoco(model, data=None, groups=(0, 1, 2), camera=None, lights="studio"
     if data is None:
         data = mujoco.MjData(model)
         mujoco.mj_forward(model, data)
-    scene, places, made, geoms = Scene(), _transforms(data), {}, []
+    if lights not in ("studio", "model"):
+        raise InputError(f'lights: "studio" or "model" is needed, not {lights!r}')
+    scene, places, looks, geoms = Scene(), _transforms(data), Looks(mujoco, model), []
     far = _FAR * max(float(model.stat.extent), 1e-3)
     for geom in range(model.ngeom):
-        rgba = np.asarray(_rgba(model, geom), dtype=np.float64)
-        if (groups is not None and model.geom_group[geom] not in groups) or rgba[3] == 0:
+        if (groups is not None and model.geom_group[geom] not in groups) or rgba_of(model, geom)[3] <= 0:
             continue
-        color = tuple(_linear(rgba[:3]))
-        if color not in made:
-            made[color] = materials.diffuse(reflectance=color)
-        options = {"name": _name(mujoco, model, geom), "transform": places[geom], "material": made[color]}
-        _add(scene, mujoco, model, geom, options, far)
+        options = {"name": _name(mujoco, model, geom), "transform": places[geom], **looks.options(geom, places[geom])}
+        _add(scene, mujoco, model, geom, options, far, looks)
         geoms.append(geom)
     scene.info["geom"] = np.array(geoms, dtype=np.int64)
     scene.info["moving"] = np.flatnonzero(model.body_weldid[model.geom_bodyid[scene.info["geom"]]] != 0)
     scene.info["scale"] = {i: np.diag([*model.geom_size[geom], 1]) for i, geom in enumerate(geoms)
                            if model.geom_type[geom] == int(mujoco.mjtGeom.mjGEOM_ELLIPSOID)}
-    if lights == "model":
-        _lights(scene, mujoco, model, data)
-    elif lights != "studio":
-        raise InputError(f'lights: "studio" or "model" is needed, not {lights!r}')
     if camera is not None:
         _camera(scene, mujoco, model, data, camera)
     elif geoms:  # MuJoCo's z is up
         center, extent = np.asarray(model.stat.center, dtype=np.float64), max(float(model.stat.extent), 1e-6)
         scene.look_at(center + 1.5 * extent * np.array([0.6, -0.7, 0.35]), center, (0, 0, 1))
         scene.fov = 45
+    if lights == "model":
+        _lights(scene, mujoco, model, data, looks.sky())
     return scene
 
 
