@@ -770,8 +770,11 @@ def load(path, **options):
     options: what the program takes as --NAME VALUE of a file and its picture, with _ for -: view="top" or a direction, up="z",
     projection="orthographic", light="flat", background="white", least_width=1.5, style="sticks",
     show=["polymer: cartoon", "ligand: sticks"]... no_outside=True, for scenes of strangers: the file may name others in its own
-    folder and below it alone.
+    folder and below it alone. The package xacro, where it is installed, expands `.xacro` files of robots.
     """
+    if os.fspath(path).endswith(".xacro"):
+        from .bridges.xacro import load_xacro
+        return load_xacro(os.fspath(path), lambda file: load(file, **options), bool(options.get("no_outside")))
     try:
         return Scene(_caplet.load(os.fspath(path), {name.replace("_", "-"): _option(value) for name, value in options.items()}))
     except InputError as error:

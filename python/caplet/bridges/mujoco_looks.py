@@ -223,8 +223,9 @@ class Looks:
         name = self.mujoco.mj_id2name(model, self.mujoco.mjtObj.mjOBJ_MATERIAL, material) or f"material {material}"
         specular, shininess, mirror = (float(np.clip(field[material], 0, 1)) for field in
                                        (model.mat_specular, model.mat_shininess, model.mat_reflectance))
-        metallic, roughness = (float(getattr(model, field)[material]) if hasattr(model, field) else -1
-                               for field in ("mat_metallic", "mat_roughness"))
+        metallic, roughness = float(model.mat_metallic[material]), float(model.mat_roughness[material])
+        if not hasattr(model, "light_type") and roughness == 1:  # before MuJoCo 3.3.3: not given, and metallic neither where it is 1
+            metallic, roughness = -1 if metallic == 1 else metallic, -1
         if specular > 0 or metallic >= 0:
             root = np.sqrt(0.08 * specular)
             out = materials.principled(
