@@ -128,8 +128,10 @@ def _is_directional(mujoco, model, light):
 
 
 def _lights(scene, mujoco, model, data, sky):
-    """MuJoCo's lights do not fade with the distance: theirs is as strong as meant at the model's middle. The sky, if there is one, takes the
-    place of the ambient light; the headlight comes from the scene's camera."""
+    """MuJoCo's lights do not fade with the distance: theirs is as strong as meant at the model's middle.
+
+    sky: of Looks.sky; it takes the place of the ambient light. The headlight comes from the scene's camera.
+    """
     scene.remove_lights()
     head = model.vis.headlight
     active = np.asarray(model.light_active, dtype=bool)
@@ -143,7 +145,8 @@ def _lights(scene, mujoco, model, data, sky):
                 file.write(_png(sky[0]))
             scene.add_light(light_types.infinite(filename=path, scale=sky[1]))
     if head.active and np.any(head.diffuse):
-        scene.add_light(light_types.distant(L=tuple(np.pi * np.asarray(head.diffuse)), from_=(0, 0, 0), to=tuple(scene.camera[:3, 2])))
+        strength = tuple(np.pi * np.asarray(head.diffuse))
+        scene.add_light(light_types.distant(L=strength, from_=(0, 0, 0), to=tuple(scene.camera[:3, 2])))
     for i in np.flatnonzero(active & model.light_diffuse.any(axis=1)):
         strength, at, way = np.pi * model.light_diffuse[i], data.light_xpos[i], data.light_xdir[i]
         if _is_directional(mujoco, model, i):
@@ -161,14 +164,16 @@ def _lights(scene, mujoco, model, data, sky):
 def from_mujoco(model, data=None, groups=(0, 1, 2), camera=None, lights="studio"):
     """A scene of a MuJoCo model as it stands: every geom of these groups is one shape, by its name, in MuJoCo's units.
 
-    model, data: mujoco.MjModel and MjData (None: the model's initial pose). groups: geom groups that are shown; None: all. camera:
-    one of the model's, by name or number; None: one that looks at the model's middle, z up. lights: "studio", or "model" for the model's
-    own lights, headlight and sky.
+    model, data: mujoco.MjModel and MjData (None: the model's initial pose). groups: geom groups that are shown; None: all.
+    camera: one of the model's, by name or number; None: one that looks at the model's middle, z up. lights: "studio", or
+    "model" for the model's own lights, headlight and sky.
 
-    Spheres, capsules, cylinders, boxes and ellipsoids are exact; planes, meshes and height fields are triangles. Materials and textures
-    are those of the program's reader of MJCF (docs/formats/robots.md); cube textures of meshes and height fields stay where they are
-    when these move. What is quite transparent is left out. scene.info["geom"]: the geom of each shape, so that
-    scene.info["geom"][image.object_id] is a segmentation; scene.info["moving"]: shapes of bodies that are not fixed to the world.
+    Spheres, capsules, cylinders, boxes and ellipsoids are exact; planes, meshes and height fields are triangles. Materials and
+    textures are those of the program's reader of MJCF (docs/formats/robots.md); what has an alpha of 0 is left out. Cube
+    textures of meshes and height fields stay where they are when these move.
+
+    scene.info["geom"]: the geom of each shape, so that scene.info["geom"][image.object_id] is a segmentation;
+    scene.info["moving"]: shapes of bodies that are not fixed to the world.
     update_mujoco(scene, data) moves all of it.
     """
     import mujoco

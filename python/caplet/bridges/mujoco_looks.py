@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 # Copyright Caplet authors
-"""How MuJoCo's geoms look: materials, textures and skies, as the program's own reader of MJCF makes them (docs/formats/robots.md).
+"""How MuJoCo's geoms look: their materials, textures and skies are the program's own (docs/formats/robots.md).
 
-All textures that can are mapped by the shapes' own uv, so that they move with the shapes.
+Textures are mapped by the shapes' own uv where that is possible, so that they move with the shapes.
 """
 import numpy as np
 
@@ -165,8 +165,10 @@ class Looks:
         return out
 
     def uv(self, geom, points, texcoords=None):
-        """(n, 2) of the points (n, 3) of a plane, mesh or height field, in its space, or of a mesh's own coordinates as MuJoCo has them.
-        None: it needs none."""
+        """(n, 2) of the points (n, 3) of a plane, mesh or height field, in its space; None where it needs none.
+
+        texcoords: a mesh's own coordinates (n, 2), as MuJoCo has them; they replace the points'.
+        """
         texture = self.texture(self.model.geom_matid[geom])
         if texture < 0 or self._is_cube(texture):
             return None
@@ -189,7 +191,8 @@ class Looks:
             across = np.ascontiguousarray(image[::-1, ::-1].swapaxes(0, 1))
             right, left = {"uscale": x}, {"uscale": -x, "udelta": x}
             top, bottom, whole = {"vscale": 0, "vdelta": 1}, {"vscale": 0, "vdelta": 1 - y}, {"vscale": y, "vdelta": 1 - y}
-            return [mapped(across, uscale=-y, udelta=1, vscale=0, vdelta=0), mapped(across, uscale=y, udelta=1 - y, vscale=0, vdelta=x),
+            return [mapped(across, uscale=-y, udelta=1, vscale=0, vdelta=0),
+                    mapped(across, uscale=y, udelta=1 - y, vscale=0, vdelta=x),
                     mapped(**right, **bottom), mapped(**left, **top), mapped(**left, **whole), mapped(**right, **whole)]
         if self._is(geom, "CAPSULE"):  # v covers the whole profile, the texture the side
             _, size = self._size(geom)
@@ -203,19 +206,24 @@ class Looks:
         is_uniform = bool(self.model.mat_texuniform[self.model.geom_matid[geom]])
         texels, over = faces.shape[1], 1 if is_uniform else size
         stretched = texels * size.max() / size.min() if is_uniform else texels
-        for name, points, detail in (("SPHERE", _sphere, texels), ("ELLIPSOID", _sphere, stretched), ("CAPSULE", _capsule, texels),
-                                     ("CYLINDER", _cylinder, texels), ("BOX", _box, stretched)):
+        solids = {"SPHERE": (_sphere, texels), "ELLIPSOID": (_sphere, stretched), "CAPSULE": (_capsule, texels),
+                  "CYLINDER": (_cylinder, texels), "BOX": (_box, stretched)}
+        for name, (points, detail) in solids.items():
             if self._is(geom, name):
                 wrap = "clamp" if name == "BOX" else "repeat"
-                return [textures.imagemap(pixels=_seen(faces, at / over), filter="trilinear", wrap=wrap) for at in points(size, detail)]
+                return [textures.imagemap(pixels=_seen(faces, at / over), filter="trilinear", wrap=wrap)
+                        for at in points(size, detail)]
         v, u = _shares(_power_of_two(4 * texels), _power_of_two(2 * texels))  # by angles from z and around it
         around = _turned(np.sin(np.pi * u), np.cos(np.pi * u), v)
         place = place @ np.linalg.inv(self._file_from_geom(geom)) @ np.diag([*np.broadcast_to(over, 3), 1])
         return [textures.imagemap(pixels=_seen(faces, around), filter="trilinear", mapping="spherical", transform=place)]
 
     def _surface(self, material, rgba, texture=None):
-        """MuJoCo's specular and shininess are an interface whose reflectance at right angles is 0.08 specular, and whose GGX roughness is
-        that of Phong's exponent 128 shininess; reflectance is the share of a mirror."""
+        """MuJoCo's specular and shininess are an interface whose reflectance at right angles is 0.08 specular, and whose GGX
+        roughness is that of Phong's exponent 128 shininess; its reflectance is the share of a mirror.
+
+        texture: of the colour, which it replaces.
+        """
         color = tuple(linear(rgba[:3])) if texture is None else texture
         if material < 0:
             return materials.diffuse(reflectance=color)
@@ -224,7 +232,7 @@ class Looks:
         specular, shininess, mirror = (float(np.clip(field[material], 0, 1)) for field in
                                        (model.mat_specular, model.mat_shininess, model.mat_reflectance))
         metallic, roughness = float(model.mat_metallic[material]), float(model.mat_roughness[material])
-        if not hasattr(model, "light_type") and roughness == 1:  # before MuJoCo 3.3.3: not given, and metallic neither where it is 1
+        if not hasattr(model, "light_type") and roughness == 1:  # older ones have 1 where a file says nothing
             metallic, roughness = -1 if metallic == 1 else metallic, -1
         if specular > 0 or metallic >= 0:
             root = np.sqrt(0.08 * specular)
@@ -238,7 +246,7 @@ class Looks:
         return out
 
     def options(self, geom, place):
-        """What Scene.add takes besides of a geom at `place` (4 x 4): material, and alpha and emission where it has them.
+        """What Scene.add takes of a geom at `place` (4 x 4) besides its shape: material; alpha and emission where it has them.
 
         A cube texture of a plane, mesh or height field is placed in the world, and stays there.
         """
@@ -268,8 +276,10 @@ class Looks:
         return {**out, "material": made[0] if len(made) == 1 else made}
 
     def sky(self):
-        """(image, scale): the model's first sky, bytes (n, 2 n, 3) by latitude and longitude, z up, and what scales its radiance to a mean of
-        at most 0.35; None where it has none."""
+        """(image, scale) of the model's first sky; None where it has none.
+
+        image: bytes (n, 2 n, 3) by latitude and longitude, z up. scale: makes the mean of its radiance 0.35 at most.
+        """
         skies = np.flatnonzero(self.model.tex_type == int(self.mujoco.mjtTexture.mjTEXTURE_SKYBOX))
         if not len(skies):
             return None

@@ -27,8 +27,10 @@ def _file_of(name, folder):
 
 
 def expanded(path):
-    """URDF text of a xacro file, whose arguments have their defaults; its meshes are named by absolute paths. A file that xacro refuses is
-    an InputError, and a missing package a ModuleNotFoundError that names it."""
+    """The bytes of the URDF file that a xacro file describes. Arguments have their defaults; meshes are named by absolute paths.
+
+    A file that xacro refuses is an InputError, a missing package a ModuleNotFoundError that names it.
+    """
     xacro = package("xacro", "load of .xacro files")
     if not os.path.isfile(path):
         raise wrong(path, "no such file")
@@ -46,7 +48,7 @@ def expanded(path):
 
 
 def load_xacro(path, read, no_outside=False):
-    """What `read` makes of the URDF file that a xacro file is expanded to. Its mistakes are told with lines of the expanded text."""
+    """What `read` makes of the URDF file that a xacro file describes. Mistakes are told with lines of the expanded text."""
     if no_outside:
         raise wrong(path, "no_outside: macros may read any file, so xacro files of strangers are not read")
     text = expanded(path)
