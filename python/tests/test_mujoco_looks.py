@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 import caplet
-from caplet import cameras, lights
+from caplet import cameras
 
 mujoco = pytest.importorskip("mujoco")
 
