@@ -502,6 +502,14 @@ TEST(ColorBar, OfDirectionsIsABall) {
   // A pixel is 1/29 of the radius, along which a colour changes by 1/20 here at most.
   for (const glm::dvec2 p : {glm::dvec2(0.5, 0), {-0.5, 0.1}, {0.1, 0.5}, {0.3, -0.6}, {0.2, 0.2}})
     EXPECT_LT(glm::length(at(picture, p.x, p.y) - expected(p.x, p.y)), 0.06) << p.x << " " << p.y;
+  // A camera that is turned by 45 degrees around its view sees y along the diagonal.
+  const double half = std::sqrt(0.5);
+  scene.view.camera.world_from_camera[0] = {half, half, 0, 0};
+  scene.view.camera.world_from_camera[1] = {-half, half, 0, 0};
+  const Shown slanted = drawn();
+  EXPECT_LT(glm::length(at(slanted, 0.6, 0.6) - expected(0, 0.6 / half)), 0.06);
+  EXPECT_LT(glm::length(at(slanted, -0.6, 0.6) - expected(0.6 / half, 0)), 0.06);
+  scene.view.camera.world_from_camera = ball().view.camera.world_from_camera;
   EXPECT_EQ(at(picture, 1.1, 0), glm::dvec3(1));
   EXPECT_EQ(at(picture, 0, 1.1), glm::dvec3(1));
   // z of a file that was turned from z to y is up.
