@@ -507,8 +507,8 @@ TEST(ColorBar, OfDirectionsIsABall) {
   scene.view.camera.world_from_camera[0] = {half, half, 0, 0};
   scene.view.camera.world_from_camera[1] = {-half, half, 0, 0};
   const Shown slanted = drawn();
-  EXPECT_LT(glm::length(at(slanted, 0.6, 0.6) - expected(0, 0.6 / half)), 0.06);
-  EXPECT_LT(glm::length(at(slanted, -0.6, 0.6) - expected(0.6 / half, 0)), 0.06);
+  EXPECT_LT(glm::length(at(slanted, 0.35, 0.35) - expected(0, 0.35 / half)), 0.06);
+  EXPECT_LT(glm::length(at(slanted, -0.35, 0.35) - expected(0.35 / half, 0)), 0.06);
   scene.view.camera.world_from_camera = ball().view.camera.world_from_camera;
   EXPECT_EQ(at(picture, 1.1, 0), glm::dvec3(1));
   EXPECT_EQ(at(picture, 0, 1.1), glm::dvec3(1));

@@ -113,8 +113,6 @@ AtomValues atom_values(const Molecule& molecule, const Representation& as,
   if (as.by == MoleculeColor::charge) {
     out.high = std::max(std::abs(out.low), std::abs(out.high));
     out.low = -out.high;
-  } else if (as.by == MoleculeColor::distance) {
-    out.low = 0;
   }
   if (const auto asked = options.range("range")) std::tie(out.low, out.high) = *asked;
   return out;
