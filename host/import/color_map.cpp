@@ -45,8 +45,9 @@ Legend map_legend(std::string title, std::string unit, double low, double high, 
   return out;
 }
 
-Legend names_legend(std::string title, const std::vector<Material>& all,
-                    const std::vector<std::uint32_t>& materials) {
+std::optional<Legend> names_legend(std::string title, const std::vector<Material>& all,
+                                   const std::vector<std::uint32_t>& materials) {
+  if (materials.empty()) return std::nullopt;
   Legend out{std::move(title), "", 0, 1, {}};
   for (const std::uint32_t i : materials) {
     out.names.push_back(all[i].name);

@@ -4,8 +4,11 @@
 // Colour maps.
 #pragma once
 
+#include <cstdint>
 #include <glm/vec3.hpp>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "scene/scene.h"
 
@@ -29,9 +32,10 @@ inline constexpr int map_steps = 64;
 Legend map_legend(std::string title, std::string unit, double low, double high,
                   ColorMap map = viridis);
 
-/// Returns the legend of names: those of the materials, which are diffuse and of one colour.
-Legend names_legend(std::string title, const std::vector<Material>& all,
-                    const std::vector<std::uint32_t>& materials);
+/// Returns the legend of names: those of the materials, which are diffuse and of one colour; none
+/// where there are no materials.
+std::optional<Legend> names_legend(std::string title, const std::vector<Material>& all,
+                                   const std::vector<std::uint32_t>& materials);
 
 /// Adds the names that `legend` lacks, if both tell names; without a title where theirs differ.
 void add_names(Legend& legend, const Legend& more);

@@ -160,7 +160,7 @@ def test_outlines_depth_cues_and_axes_are_drawn(saved):
 @pytest.mark.parametrize("overlays, says", [
     (dict(scale_bar="long"), "scale-bar.*'long'"), (dict(scale_bar=-1), "scale-bar"), (dict(scale_bar=float("nan")), "scale-bar"),
     (dict(scale_bar="9999"), "pixels"), (dict(outline=0), "outline"), (dict(outline=1000), "64"), (dict(outline="wide"), "outline"), (dict(depth_cue=2), "depth-cue"),
-    (dict(depth_cue=float("inf")), "depth-cue"), (dict(axes="x"), "switch"), (dict(axes=[1]), "axes"), (dict(outline=""), "outline"), (dict(color_bar=True), "tell no number")])
+    (dict(depth_cue=float("inf")), "depth-cue"), (dict(axes="x"), "switch"), (dict(axes=[1]), "axes"), (dict(outline=""), "outline"), (dict(color_bar=True), "have no legend")])
 def test_wrong_overlays_are_told_and_nothing_is_written(tmp_path, overlays, says):
     image = caplet.render(balls(), spp=1)
     with pytest.raises(caplet.InputError, match=says) as caught:

@@ -109,7 +109,9 @@ TEST_F(Library, FormatsTellTheirOptions) {
   EXPECT_EQ(formats_of["pose"], (Names{"mjcf", "urdf"}));
   EXPECT_EQ(formats_of["groups"], (Names{"mjcf", "urdf"}));
   EXPECT_EQ(formats_of["assembly"], (Names{"mmcif", "pdb"}));
-  EXPECT_EQ(formats_of["range"], (Names{"swc", "trk", "trx", "vtk", "vtp"}));
+  EXPECT_EQ(formats_of["range"],
+            (Names{"mmcif", "pdb", "pqr", "sdf", "swc", "trk", "trx", "vtk", "vtp", "xyz"}));
+  EXPECT_EQ(formats_of["values"], (Names{"trk", "trx", "vtk", "vtp"}));
 }
 
 TEST_F(Library, AChangedCopyLeavesTheFirstAsItWas) {

@@ -333,6 +333,10 @@ TEST(NameLegends, TellWhatIsDrawn) {
   EXPECT_EQ(two->title, "");
   EXPECT_THAT(two->names, testing::UnorderedElementsAre("C", "N", "chain B"));
   EXPECT_FALSE(legend({{{"show", "all: spheres by #ff0000"}}}));
+  // What selects nothing has no names.
+  const auto one = legend({{{"show", "chain C: spheres by chain; chain A: spheres by element"}}});
+  EXPECT_EQ(one->title, "Element");
+  EXPECT_THAT(one->names, testing::ElementsAre("N", "C"));
   // Numbers come before names.
   EXPECT_EQ(
       legend({{{"show", "chain A: spheres; chain B: spheres by distance from chain A"}}})->title,

@@ -29,8 +29,8 @@ struct AtomValues {
 bool shows_values(MoleculeColor by);
 
 /// Returns the numbers that the representation's colours show. The range is that of --range, else
-/// that of all atoms; of charges its middle is 0. `secondary` is as
-/// selected_atoms takes it. Throws InputError where no atom is selected to measure distances from.
+/// that of all atoms; of charges its middle is 0. `secondary` is as selected_atoms takes it. Throws
+/// InputError where no atom is selected to measure distances from.
 AtomValues atom_values(const Molecule& molecule, const Representation& as,
                        const ImportOptions& options,
                        const std::function<const std::vector<Secondary>&()>& secondary);
