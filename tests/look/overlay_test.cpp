@@ -512,11 +512,11 @@ TEST(ColorBar, OfDirectionsIsABall) {
   scene.view.camera.world_from_camera = ball().view.camera.world_from_camera;
   EXPECT_EQ(at(picture, 1.1, 0), glm::dvec3(1));
   EXPECT_EQ(at(picture, 0, 1.1), glm::dvec3(1));
-  // z of a file that was turned from z to y is up.
-  scene.world_from_file = {glm::dvec3(1, 0, 0), glm::dvec3(0, 0, -1), glm::dvec3(0, 1, 0)};
+  // A file's x, y and z are turned to y, z and x.
+  scene.world_from_file = {glm::dvec3(0, 1, 0), glm::dvec3(0, 0, 1), glm::dvec3(1, 0, 0)};
   picture = drawn();
   const glm::dvec3 up = at(picture, 0.1, 0.5), turned = expected(0.1, 0.5);
-  EXPECT_LT(glm::length(up - glm::dvec3(turned.x, turned.z, turned.y)), 0.06);
+  EXPECT_LT(glm::length(up - glm::dvec3(turned.y, turned.z, turned.x)), 0.06);
 }
 
 TEST(Ink, IsSeenOnWhatIsBehind) {
