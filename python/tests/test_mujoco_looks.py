@@ -9,7 +9,7 @@ from caplet import cameras
 
 mujoco = pytest.importorskip("mujoco")
 
-# Of each face of a cube by OpenGL: the axis that it lies on and its sign, and the directions right and down in its image.
+# OpenGL numbers a cube's faces so: each lies on this axis with this sign, and its image runs right and down in these directions.
 FACES = [(0, 1, (0, 0, -1), (0, -1, 0)), (0, -1, (0, 0, 1), (0, -1, 0)), (1, 1, (1, 0, 0), (0, 0, 1)),
          (1, -1, (1, 0, 0), (0, 0, -1)), (2, 1, (1, 0, 0), (0, -1, 0)), (2, -1, (-1, 0, 0), (0, -1, 0))]
 
