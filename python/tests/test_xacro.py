@@ -31,11 +31,12 @@ def test_macros_are_expanded(tmp_path):
 
 
 @pytest.mark.parametrize("name, at", [("part.obj", "a/urdf/part.obj"), ("package://robot/meshes/part.obj", "a/meshes/part.obj"),
-                                      ("package://robot/meshes/part.obj", "robot/meshes/part.obj")])
+                                      ("package://robot/meshes/part.obj", "robot/meshes/part.obj"),
+                                      ("file://{}/far/part.obj", "far/part.obj")])
 def test_meshes_are_found_from_the_file(tmp_path, name, at):
     pytest.importorskip("xacro")
     written(tmp_path / at, TRIANGLE)
-    path = written(tmp_path / "a/urdf/robot.xacro", ROBOT % f'<mesh filename="{name}"/>')
+    path = written(tmp_path / "a/urdf/robot.xacro", ROBOT % f'<mesh filename="{name.format(tmp_path)}"/>')
     scene = caplet.load(path, up="y")
     assert scene.primitives == {"triangle": 1, "sphere": 2} and np.isclose(scene.bounds[1, 2], 3)
 

@@ -38,8 +38,6 @@ def expanded(path):
         document = xacro.process_file(path)
     except Exception as problem:  # what macros evaluate may raise anything
         raise wrong(path, f"xacro: {problem}") from problem
-    if document.documentElement.tagName != "robot":
-        raise wrong(path, f"the root element is <{document.documentElement.tagName}>, not <robot>")
     folder = os.path.dirname(os.path.abspath(path))
     for mesh in document.getElementsByTagName("mesh"):
         if mesh.getAttribute("filename"):
