@@ -87,7 +87,7 @@ void Denoising::run() {
     std::optional<Cleaned> done;
     std::string error;
     try {
-      const bool is_complete = denoise(image.image, [&] {
+      const bool is_complete = denoise(image.image, DenoiseQuality::quick, [&] {
         const std::lock_guard again(mutex_);
         return number_ == number;
       });

@@ -42,6 +42,7 @@ class Denoise : public testing::Test {
   ~Denoise() override {
     ::unsetenv("CAPLET_OIDN");
     ::unsetenv("FAKE_OIDN_FAILS");
+    ::unsetenv("FAKE_OIDN_QUALITY");
   }
 };
 
@@ -73,6 +74,14 @@ TEST_F(Denoise, WithoutBothGuidesColorsStandAlone) {
     EXPECT_THAT(image.find("R")->floats, ElementsAre(0.5f, 5));
     EXPECT_THAT(image.find("B")->floats, ElementsAre(1.5f, 15));
   }
+}
+
+TEST_F(Denoise, AQuickPictureIsAskedForAsBalanced) {
+  LayeredImage image = image_of({"R", "G", "B"});
+  EXPECT_THROW(denoise(image, DenoiseQuality::quick), RunError);
+  ::setenv("FAKE_OIDN_QUALITY", "5", 1);
+  EXPECT_TRUE(denoise(image, DenoiseQuality::quick));
+  EXPECT_THAT(image.find("R")->floats, ElementsAre(0.5f, 5));
 }
 
 TEST_F(Denoise, WhatFailsIsToldAndChangesNothing) {

@@ -29,10 +29,14 @@ using testing::HasSubstr;
 
 class Denoised : public testing::Test {
  protected:
-  Denoised() { ::setenv("CAPLET_OIDN", CAPLET_FAKE_OIDN, 1); }
+  Denoised() {
+    ::setenv("CAPLET_OIDN", CAPLET_FAKE_OIDN, 1);
+    ::setenv("FAKE_OIDN_QUALITY", "5", 1);
+  }
   ~Denoised() override {
     ::unsetenv("CAPLET_OIDN");
     ::unsetenv("FAKE_OIDN_FAILS");
+    ::unsetenv("FAKE_OIDN_QUALITY");
   }
 };
 

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Stands in for Open Image Denoise, with the functions that are used of it, and says by numbers what
-// it was asked: albedo comes back doubled, normals tripled, and colour as colour / 2 + albedo / 4 +
-// normal / 8. With FAKE_OIDN_FAILS each filter fails.
+// Stands in for Open Image Denoise, with the functions that are used of it, and says by numbers
+// what it was asked: albedo comes back doubled, normals tripled, and colour as colour / 2 + albedo
+// / 4 + normal / 8. Guides are to be asked for with quality 5 (balanced), colour with 6 (high) or
+// what FAKE_OIDN_QUALITY says. With FAKE_OIDN_FAILS each filter fails.
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdlib.h>
@@ -18,6 +19,7 @@ typedef struct {
   float *color, *albedo, *normal, *output;
   size_t pixels;
   bool hdr, clean, is_ready;
+  int quality;
   bool (*ask)(void*, double);
   void* user;
 } Filter;
@@ -68,6 +70,9 @@ void oidnSetFilterBool(Filter* filter, const char* name, bool value) {
   if (strcmp(name, "hdr") == 0) filter->hdr = value;
   if (strcmp(name, "cleanAux") == 0) filter->clean = value;
 }
+void oidnSetFilterInt(Filter* filter, const char* name, int value) {
+  if (strcmp(name, "quality") == 0) filter->quality = value;
+}
 void oidnSetFilterProgressMonitorFunction(Filter* filter, bool (*ask)(void*, double), void* user) {
   filter->ask = ask;
   filter->user = user;
@@ -80,8 +85,10 @@ void oidnExecuteFilter(Filter* filter) {
   }
   if (getenv("FAKE_OIDN_FAILS")) filter->device->error = "as it was told to";
   const bool is_guided = filter->albedo && filter->normal;
-  if (!filter->output || !filter->is_ready || filter->hdr != (filter->color != NULL) ||
-      filter->clean != (filter->color && is_guided)) {
+  const char* asked = getenv("FAKE_OIDN_QUALITY");
+  const int quality = !filter->color ? 5 : asked ? atoi(asked) : 6;
+  if (!filter->output || !filter->is_ready || filter->quality != quality ||
+      filter->hdr != (filter->color != NULL) || filter->clean != (filter->color && is_guided)) {
     filter->device->error = "unexpected settings of the filter";
     return;
   }
@@ -89,8 +96,8 @@ void oidnExecuteFilter(Filter* filter) {
     if (!filter->color)
       filter->output[i] = filter->albedo ? 2 * filter->albedo[i] : 3 * filter->normal[i];
     else
-      filter->output[i] = filter->color[i] / 2 +
-                          (is_guided ? filter->albedo[i] / 4 + filter->normal[i] / 8 : 0.0f);
+      filter->output[i] =
+          filter->color[i] / 2 + (is_guided ? filter->albedo[i] / 4 + filter->normal[i] / 8 : 0.0f);
   }
 }
 void oidnReleaseFilter(Filter* filter) { free(filter); }
