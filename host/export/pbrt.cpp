@@ -34,8 +34,7 @@ class SceneWriter {
 
   void write() {
     // This lists every field of the scene, so that a new one does not compile without its
-    // statement. Some only describe the file or pictures and have no statement: its axes, its
-    // contents and the legend of its colours.
+    // statement. What only describes the file has none: its contents.
     const auto& [textures, materials, media, shapes, objects, instances, lights, view, source,
                  automatic_camera, has_no_up, framing, world_from_file, unit, legend, contents] =
         scene_;
@@ -266,7 +265,23 @@ class SceneWriter {
     if (scene_.framing.toward_viewer) out.vector("view", *scene_.framing.toward_viewer);
     if (scene_.framing.up) out.vector("up", *scene_.framing.up);
     if (!scene_.unit.empty()) out.text("unit", scene_.unit);
+    if (const glm::dmat3& a = scene_.world_from_file; a != glm::dmat3(1))
+      out.numbers("float", "fileaxes",
+                  {a[0].x, a[0].y, a[0].z, a[1].x, a[1].y, a[1].z, a[2].x, a[2].y, a[2].z});
+    if (scene_.legend) write_legend(*scene_.legend, out);
     out.write(stream_);
+  }
+
+  void write_legend(const Legend& legend, Statement& out) {
+    const auto& [title, unit, low, high, colors, names, of_directions] = legend;
+    out.text("legend", title);
+    if (!unit.empty()) out.text("legendunit", unit);
+    out.numbers("float", "legendrange", {low, high});
+    if (!colors.empty())
+      out.list("float", "legendcolors", 3 * colors.size(),
+               [&](Text& text, std::size_t i) { text << colors[i / 3][static_cast<int>(i % 3)]; });
+    if (!names.empty()) out.texts("legendnames", names);
+    if (of_directions) out.boolean("legenddirections", true);
   }
 
   void write_film(const FilmSettings& film) {

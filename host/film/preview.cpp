@@ -134,6 +134,11 @@ void write_preview(const fs::path& path, int width, int height,
                                              static_cast<int>(bytes.size() / pixels), bytes));
 }
 
+std::string png_bytes(const Shown& shown) {
+  return image_files::encode_8bit("figure.png", shown.width, shown.height,
+                                  shown.has_alpha() ? 4 : 3, bytes_of(shown));
+}
+
 void check_preview_alpha(const fs::path& path, const std::string& flag) {
   if (!image_files::can_write_alpha(path))
     throw InputError(SourceLocation{flag}, fmt::format("'{}' holds no transparency (try .png)",

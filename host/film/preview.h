@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "film/image.h"
@@ -40,6 +41,9 @@ Shown shown(const LayeredImage& image);
 
 /// Applies the sRGB transfer: 3 bytes a pixel, 4 where there is alpha.
 std::vector<std::uint8_t> bytes_of(const Shown& shown);
+
+/// Returns the bytes of a PNG file of bytes_of. Throws RunError.
+std::string png_bytes(const Shown& shown);
 
 /// Returns 3 bytes a pixel; transparent parts lie over black.
 std::vector<std::uint8_t> preview_rgb8(const LayeredImage& image);

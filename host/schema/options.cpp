@@ -35,7 +35,16 @@ constexpr std::array camera_rows = {
     Row{{"noup", "an automatic camera may turn the scene within the picture"}, "bool", "false"},
     Row{{"view", "direction towards an automatic camera"}, "vector3"},
     Row{{"up", "direction that is up for an automatic camera"}, "vector3"},
-    Row{{"unit", "unit of lengths, for scale bars"}, "string"}};
+    Row{{"unit", "unit of lengths, for scale bars"}, "string"},
+    Row{{"fileaxes", "the axes that are drawn: x, y and z, each a column of a rotation"}, "float"},
+    Row{{"legend", "title of the colours' legend"}, "string"},
+    Row{{"legendunit", "unit of the legend's values"}, "string"},
+    Row{{"legendrange", "values of the first and the last colour"}, "float"},
+    Row{{"legendcolors", "linear sRGB, as displayed, three numbers a colour", 0, 1}, "float"},
+    Row{{"legendnames", "names of the colours, where they tell no values"}, "string"},
+    Row{{"legenddirections", "colours tell directions along the axes that are drawn"},
+        "bool",
+        "false"}};
 
 constexpr std::array film_rows = {
     Row{{"filename", "where the picture is written"}, "string", "pbrt.exr"},

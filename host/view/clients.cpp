@@ -65,6 +65,12 @@ std::vector<ClientId> Clients::take(ClientId id, const Message& message, const s
       client.ask(*form);
     } else if (std::holds_alternative<Snapshot>(message)) {
       client.wants_snapshot = true;
+    } else if (const MakeFigure* figure = std::get_if<MakeFigure>(&message)) {
+      client.figure = *figure;
+      client.wants_figure = false;
+    } else if (std::holds_alternative<EndFigure>(message)) {
+      client.figure.reset();
+      client.wants_figure = false;
     } else {
       wish(id, message, text);
     }
@@ -107,7 +113,8 @@ bool Clients::wait_for_work(bool has_more) {
   std::unique_lock lock(mutex_);
   changed_.wait(lock, [&] {
     return ended_ || is_called_ || denoise_ || wanted_number_ != taken_number_ ||
-           !wishes_.empty() || any(&Client::waits) || (has_more && any(&Client::is_seen));
+           !wishes_.empty() || any(&Client::waits) || any(&Client::has_figure) ||
+           (has_more && any(&Client::is_seen));
   });
   is_called_ = false;
   return !ended_;
@@ -144,6 +151,22 @@ std::optional<Clients::Asked> Clients::take_question(bool has_snapshot) {
   if (!has_snapshot) return {};
   client.wants_snapshot = false;
   return Asked{id, {}};
+}
+
+std::optional<Clients::AskedFigure> Clients::take_figure() {
+  const std::lock_guard lock(mutex_);
+  const auto found =
+      std::ranges::find_if(clients_, [](const auto& client) { return client.second.has_figure(); });
+  if (found == clients_.end()) return {};
+  auto& [id, client] = *found;
+  client.wants_figure = true;
+  return AskedFigure{id, *std::exchange(client.figure, {})};
+}
+
+bool Clients::wants_figure(ClientId id) {
+  const std::lock_guard lock(mutex_);
+  const auto found = clients_.find(id);
+  return !ended_ && found != clients_.end() && found->second.wants_figure;
 }
 
 bool Clients::is_seen() {

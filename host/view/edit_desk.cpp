@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "post/overlay_options.h"
 #include "view/detail/scene_text.h"
 #include "view/forms.h"
 
@@ -50,6 +51,8 @@ void EditDesk::prepare_greeting(bool read_only) {
   nlohmann::ordered_json out = told_scene();
   out["parts"] = told_parts();
   out["lists"] = lists_text();
+  for (const post::OverlayRow& row : post::overlay_rows())
+    out["overlays"].push_back({{"name", row.name}, {"values", row.values}, {"help", row.help}});
   out["home"] = camera_text(films_.look());
   out["read_only"] = read_only;
   out["can_undo"] = editor_.can_undo();

@@ -12,6 +12,7 @@
 #include "film/exr_bytes.h"
 #include "film/sample_plan.h"
 #include "report/denoised.h"
+#include "view/detail/figure.h"
 #include "view/detail/shown_view.h"
 #include "view/detail/snapshot.h"
 
@@ -154,6 +155,11 @@ Picture EyeFilms::picture(std::size_t eye) {
 
 std::string EyeFilms::snapshot() {
   return exr_bytes(develop(film(0), live_.scene().view.film, session_options_.layers));
+}
+
+std::string EyeFilms::figure(const MakeFigure& asked,
+                             const std::function<bool(double share)>& goes_on) {
+  return figure_png(live_.scene(), editor_.view(), asked, session_.device(0), goes_on);
 }
 
 }  // namespace caplet::view

@@ -46,6 +46,23 @@ Ask ask(const json& of) {
   return out;
 }
 
+MakeFigure figure(const json& of) {
+  constexpr std::size_t most_drawn = 16, longest = 100;
+  MakeFigure out;
+  out.number = number(field(of, "number"), "number", 0, 1e15);
+  out.look = look(of);
+  out.look.separation = 0;
+  out.samples = whole(of, "samples", 1, most_figure_samples);
+  out.denoise = truth(of, "denoise");
+  if (!field(of, "background").is_null()) out.background = text(of, "background", longest);
+  const json& drawn = field(of, "drawn");
+  if (!drawn.is_object() || drawn.size() > most_drawn)
+    refuse("drawn", fmt::format("is no object of at most {} texts", most_drawn));
+  for (const auto& [name, value] : drawn.items())
+    out.drawn.emplace_back(name, text(drawn, name.c_str(), longest));
+  return out;
+}
+
 Change change(const json& of) {
   const json& what = field(of, "what");
   if (what == "move") return Move{ids(of), matrix(of, "matrix")};
@@ -105,6 +122,8 @@ Message parse_message(std::string_view text) {
   if (type == "seen") return Seen{truth(message, "seen")};
   if (type == "ask") return ask(message);
   if (type == "snapshot") return Snapshot{};
+  if (type == "figure") return figure(message);
+  if (type == "end_figure") return EndFigure{};
   if (type == "describe")
     return Describe{number(field(message, "number"), "number", 0, 1e15), id(message, "id"),
                     id(message, "primitive")};
@@ -118,8 +137,8 @@ Message parse_message(std::string_view text) {
   if (type == "discard") return Discard{};
   if (type == "kept") return Kept{truth(message, "restore")};
   refuse("type",
-         "is none of look, denoise, seen, ask, snapshot, describe, form, edit, undo, save, discard "
-         "and kept");
+         "is none of look, denoise, seen, ask, snapshot, figure, end_figure, describe, form, edit, "
+         "undo, save, discard and kept");
 }
 
 }  // namespace caplet::view

@@ -10,6 +10,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -45,6 +46,17 @@ struct Ask {
 };
 /// Asks for the full picture as an EXR file.
 struct Snapshot {};
+/// Asks for a figure: a picture of its own size with what is drawn on it, as a PNG file.
+struct MakeFigure {
+  double number = 0;  // returned with what is told of it
+  ShowView look;
+  int samples = 0;  // of a pixel
+  bool denoise = false;
+  std::optional<std::string> background;  // a colour, or "transparent"; none: the scene's
+  std::vector<std::pair<std::string, std::string>> drawn;  // overlays (post/overlay_options.h)
+};
+/// Ends the page's figure, unfinished.
+struct EndFigure {};
 /// Asks for a description of a thing: transform, surfaces, and the capsule `primitive` if it has
 /// some.
 struct Describe {
@@ -105,14 +117,16 @@ struct Kept {
   bool restore = false;  // replay them as far as possible; else forget them
 };
 
-using Message = std::variant<ShowView, Denoise, Seen, Ask, Snapshot, Describe, Form, Edit, Undo,
-                             Save, Discard, Kept>;
+using Message = std::variant<ShowView, Denoise, Seen, Ask, Snapshot, MakeFigure, EndFigure,
+                             Describe, Form, Edit, Undo, Save, Discard, Kept>;
 
 /// The longest file name, in bytes.
 inline constexpr std::size_t longest_name = 200;
 
 /// The largest picture that the page may ask for, in pixels per side.
 inline constexpr int most_page_pixels = 4096;
+/// The most samples of a figure's pixel.
+inline constexpr int most_figure_samples = 16384;
 
 /// Parses a message. Throws InputError that names the wrong field.
 Message parse_message(std::string_view text);

@@ -6,14 +6,17 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 
+#include "base/clock.h"
 #include "base/error.h"
 
 namespace caplet::view {
 
 namespace {
 
-constexpr double rest_seconds = 1;  // after which a picture is denoised
+constexpr double rest_seconds = 1;           // after which a picture is denoised
+constexpr double figure_told_seconds = 0.2;  // between what a page is told of its figure
 
 /// Thrown when a new view is requested, to abandon the picture in progress.
 struct Superseded {};
@@ -45,6 +48,8 @@ void RenderLoop::work() {
     const bool has_changed = tools_.desk.make_all(tools_.server);
     const std::optional<ShowView> look = tools_.clients.take_look();
     if (has_changed || look) begin(look.value_or(tools_.films.look()));
+    while (const std::optional<Clients::AskedFigure> asked = tools_.clients.take_figure())
+      make_figure(*asked);
     if (tools_.films.has_more() && tools_.clients.is_seen()) step();
     if (tools_.denoising) denoise();
   } catch (const Superseded&) {
@@ -105,6 +110,27 @@ void RenderLoop::denoise() {
     if (now > before && (now >= 2 * before || !films.has_more()))
       return denoising.begin(films.noisy(eye));
   }
+}
+
+void RenderLoop::make_figure(const Clients::AskedFigure& asked) try {
+  Clock::time_point told = Clock::now();
+  const auto tell = [&](double share) {
+    told = Clock::now();
+    tools_.server.send(
+        asked.from,
+        text_of({{"type", "figuring"}, {"number", asked.figure.number}, {"share", share}}));
+  };
+  tell(0);
+  std::string png = tools_.films.figure(asked.figure, [&](double share) {
+    if (seconds_since(told) > figure_told_seconds) tell(share);
+    return tools_.clients.wants_figure(asked.from);
+  });
+  if (!png.empty())
+    tools_.server.send(asked.from, std::make_shared<const std::string>(std::move(png)), true);
+} catch (const InputError& error) {
+  tools_.server.send(asked.from, error_text(error.what(), asked.figure.number));
+} catch (const RunError& error) {  // the device may have no room for a second scene
+  tools_.server.send(asked.from, error_text(error.what(), asked.figure.number));
 }
 
 void RenderLoop::answer_all() {

@@ -584,6 +584,20 @@ class Maker {
     if (random_.one_in(2)) scene_.framing.toward_viewer = random_.direction();
     if (random_.one_in(2)) scene_.framing.up = random_.direction();
     if (random_.one_in(2)) scene_.unit = "\xc2\xb5m";
+    if (random_.one_in(2)) {
+      scene_.world_from_file = glm::dmat3(0);
+      const std::size_t first = random_.below(3);
+      for (std::size_t i = 0; i < 3; ++i)
+        scene_.world_from_file[static_cast<int>(i)][static_cast<int>((first + i) % 3)] = 1;
+    }
+    if (random_.one_in(2)) {
+      Legend legend{"a \"title\"", "\xc2\xb5m", -1.5, random_.uniform(0, 9), {}};
+      for (std::size_t i = random_.below(4); i < 4; ++i)
+        legend.colors.emplace_back(random_.uniform(0, 1), 0.25, random_.uniform(0, 1));
+      if (random_.one_in(2)) legend.names.assign(legend.colors.size(), "a name");
+      legend.of_directions = random_.one_in(3);
+      scene_.legend = legend;
+    }
     if (random_.one_in(2)) scene_.view.film.backdrop = Backdrop{};
     if (random_.one_in(2))
       scene_.view.film.backdrop =

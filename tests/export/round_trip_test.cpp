@@ -80,6 +80,17 @@ TEST(RoundTrip, EveryRowOfEveryList) {
     EXPECT_EQ(read.framing.toward_viewer, scene.framing.toward_viewer);
     EXPECT_EQ(read.framing.up, scene.framing.up);
     EXPECT_EQ(read.unit, scene.unit);
+    EXPECT_EQ(read.world_from_file, scene.world_from_file);
+    ASSERT_EQ(read.legend.has_value(), scene.legend.has_value());
+    if (scene.legend) {
+      EXPECT_EQ(read.legend->title, scene.legend->title);
+      EXPECT_EQ(read.legend->unit, scene.legend->unit);
+      EXPECT_EQ(read.legend->low, scene.legend->low);
+      EXPECT_EQ(read.legend->high, scene.legend->high);
+      EXPECT_EQ(read.legend->colors, scene.legend->colors);
+      EXPECT_EQ(read.legend->names, scene.legend->names);
+      EXPECT_EQ(read.legend->of_directions, scene.legend->of_directions);
+    }
     EXPECT_EQ(read.view.film.least_width, scene.view.film.least_width);
     ASSERT_EQ(read.view.film.backdrop.has_value(), scene.view.film.backdrop.has_value());
     if (scene.view.film.backdrop) {

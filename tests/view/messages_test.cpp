@@ -50,6 +50,44 @@ TEST(Messages, AskAndSee) {
   EXPECT_TRUE(std::holds_alternative<Snapshot>(parse_message(R"({"type":"snapshot"})")));
 }
 
+std::string figure(const std::string& rest) {
+  std::string out = look("separation", "1");
+  out.replace(out.find("look"), 4, "figure");
+  out.back() = ',';
+  return out + R"("number":5,"denoise":true)" + rest + "}";
+}
+
+TEST(Messages, AskForFigures) {
+  const MakeFigure asked = std::get<MakeFigure>(parse_message(
+      figure(R"(,"samples":32,"background":"white","drawn":{"axes":"","scale-bar":"5 um"})")));
+  EXPECT_EQ(asked.number, 5);
+  EXPECT_EQ(asked.look.width, 640);
+  EXPECT_EQ(asked.look.separation, 0);
+  EXPECT_EQ(asked.samples, 32);
+  EXPECT_TRUE(asked.denoise);
+  EXPECT_EQ(asked.background, "white");
+  EXPECT_EQ(asked.drawn, (std::vector<std::pair<std::string, std::string>>{{"axes", ""},
+                                                                           {"scale-bar", "5 um"}}));
+  EXPECT_EQ(
+      std::get<MakeFigure>(parse_message(figure(R"(,"samples":1,"background":null,"drawn":{})")))
+          .background,
+      std::nullopt);
+  EXPECT_TRUE(std::holds_alternative<EndFigure>(parse_message(R"({"type":"end_figure"})")));
+  std::string many;
+  for (int i = 0; i < 17; ++i) many += fmt::format(R"({}"{}":"")", i ? "," : "", i);
+  for (const auto& [rest, field] :
+       {std::pair<std::string, std::string>(R"("samples":0,"background":null,"drawn":{})",
+                                            "samples"),
+        {R"("samples":16385,"background":null,"drawn":{})", "samples"},
+        {R"("samples":1,"background":5,"drawn":{})", "background"},
+        {fmt::format(R"("samples":1,"background":"{:x>101}","drawn":{{}})", ""), "background"},
+        {R"("samples":1,"background":null,"drawn":[])", "drawn"},
+        {R"("samples":1,"background":null,"drawn":{"axes":true})", "axes"},
+        {fmt::format(R"("samples":1,"background":null,"drawn":{{{}}})", many), "drawn"},
+        {R"("samples":1,"drawn":{})", "background"}})
+    EXPECT_EQ(refusal(figure("," + rest)).substr(0, field.size() + 1), field + ":") << rest;
+}
+
 TEST(Messages, NameTheFieldThatIsWrong) {
   for (const auto& [name, value] : {std::pair("width", "0"),
                                     {"width", "4097"},

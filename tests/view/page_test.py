@@ -732,6 +732,14 @@ def figures(program, scenes, out):
         shown.resize(1280, 800)
         shown.until("64 samples", lambda: shown.samples() >= 64, 300)
         shot("viewer-neuron")
+        shown.find("export-button").click()
+        shown.find("figure-open").click()
+        shown.script("document.getElementById('figure-background').value = 'white'")
+        for name in ("scale-bar", "color-bar"):
+            shown.find(f"figure-{name}").click()
+        shown.find("figure-go").click()
+        shown.until("the figure", lambda: shown.find("figure-save").is_enabled(), 300)
+        shot("viewer-figure")
 
 
 CASES = [converges, camera, picks, picks_everywhere, edits, saves, keeps, asks_about_older_changes, asks_before_changes_are_lost, read_only, keeps_strangers_out, comes_back, two_pages]

@@ -5,6 +5,7 @@
 
 usage: page_tools_test.py PROGRAM SCENES FOLDER [NAME...]   as page_test.py
 """
+import base64
 import json
 import math
 import pathlib
@@ -249,6 +250,80 @@ LAYOUT = """const box = (id) => document.getElementById(id).getBoundingClientRec
     return { rows: new Set(tops.map(Math.round)).size, share: covered / stage.width / stage.height, panel: document.getElementById('panel').checkVisibility(), stage: stage.width, tops: tops.length };"""
 
 
+FIGURE = """const done = arguments[0], image = document.getElementById('figure-image'), canvas = document.createElement('canvas');
+image.decode().then(() => {
+  canvas.width = image.naturalWidth; canvas.height = image.naturalHeight;
+  const brush = canvas.getContext('2d');
+  brush.drawImage(image, 0, 0);
+  done([canvas.width, canvas.height, [...brush.getImageData(0, 0, canvas.width, canvas.height).data]]);
+});"""
+
+
+def figure(program, scenes, out):
+    """A figure is the picture that the command beside it makes of the saved scene; it can be ended; fields say what is wrong."""
+    with work(program, out) as at:
+        shown = at.shown
+        shown.press(Keys.ARROW_LEFT)  # a view that is not the file's
+
+        def fill(name, words):
+            field = shown.find(name)
+            field.clear()
+            field.send_keys(words)
+
+        shown.find("export-button").click()
+        shown.find("figure-open").click()
+        shown.until("the dialog", lambda: shown.find("figure").is_displayed())
+        box = shown.find("stage").rect
+        assert abs(int(shown.find("figure-width").get_property("value")) / int(shown.find("figure-height").get_property("value")) - box["width"] / box["height"]) < 0.01
+        fill("figure-width", "0")
+        assert "from 1 to 4096" in shown.text("figure-width-error") and shown.text("figure-command") == ""
+        fill("figure-width", "192")
+        fill("figure-height", "2*54")
+        fill("figure-samples", "16384")
+        shown.find("figure-go").click()
+        shown.until("progress", lambda: "Rendering, " in shown.text("figure-said"))
+        shown.find("figure-go").click()
+        assert shown.text("figure-said") == "Ended." and not shown.find("figure-save").is_enabled()
+        fill("figure-samples", "4")
+        fill("figure-background", "nowhere.png")
+        shown.find("figure-go").click()
+        shown.until("a refusal", lambda: "nowhere.png" in shown.text("figure-said"))
+        fill("figure-background", "white")
+        for name, value in (("axes", None), ("outline", "2"), ("depth-cue", None)):
+            shown.find(f"figure-{name}").click()
+            if value:
+                fill(f"figure-{name}-value", value)
+        shown.find("figure-go").click()
+        shown.until("the figure", lambda: shown.find("figure-save").is_enabled())
+        width, height, made = shown.driver.execute_async_script(FIGURE)
+        shown.picture(out / "figure.png")
+        command = shown.text("figure-command").split()
+        assert command == f"caplet render forms.pbrt --size 192x108 --spp 4 --background white --outline=2 --depth-cue --axes -o forms.png".split(), command
+        shown.find("figure-close").click()
+        shown.find("menu-button").click()
+        shown.find("menu-save").click()
+        shown.until("the saving dialog", lambda: shown.find("keeping").is_displayed())
+        shown.find("save_camera").click()
+        fill("save_name", "figured.pbrt")
+        shown.find("save_now").click()
+        shown.until("the file", lambda: (out / "figured.pbrt").exists())
+        subprocess.run([program, *command[1:2], out / "figured.pbrt", *command[3:-1], out / "figured.png", "-q"], check=True)
+        again = shown.driver.execute_async_script("""const done = arguments[1], image = new Image();
+image.src = arguments[0];
+image.decode().then(() => {
+  const canvas = document.createElement('canvas');
+  canvas.width = image.naturalWidth; canvas.height = image.naturalHeight;
+  const brush = canvas.getContext('2d');
+  brush.drawImage(image, 0, 0);
+  done([...brush.getImageData(0, 0, canvas.width, canvas.height).data]);
+});""", "data:image/png;base64," + base64.b64encode((out / "figured.png").read_bytes()).decode())
+        assert (width, height) == (192, 108) and len(again) == len(made)
+        apart = [abs(a - b) for a, b in zip(made, again)]
+        # The file has the camera in decimal numbers, so that single samples may pass an edge on the other side.
+        assert sum(d > 0 for d in apart) <= 0.001 * len(apart), (sum(d > 0 for d in apart), max(apart))
+        assert made[:4] == [255, 255, 255, 255], made[:4]
+
+
 def screens(program, scenes, out):
     """Wide, middle and phone, dark and light: one row of buttons, the panel beside, over or below the picture; axe-core finds nothing."""
     found = sorted(pathlib.Path(program).resolve().parents[2].glob("python-env/lib/*/site-packages/axe_core_python/axe.min.js"))
@@ -378,7 +453,7 @@ def modules(program, scenes, out):
         assert abs(x - box["width"] / 2) < 1 and abs(y - box["height"] / 2) < 1, (x, y, box)
 
 
-CASES = [modules, tools, measures, inspects, numbers, never_waits, links, screens]
+CASES = [modules, tools, measures, inspects, numbers, never_waits, links, figure, screens]
 
 
 if __name__ == "__main__":

@@ -2,6 +2,8 @@
 // Copyright Caplet authors
 #include "import/detail/pbrt/options.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -9,6 +11,9 @@
 #include <glm/geometric.hpp>
 #include <glm/gtc/constants.hpp>
 #include <glm/matrix.hpp>
+#include <optional>
+#include <string>
+#include <tuple>
 #include <utility>
 
 #include "base/log.h"
@@ -88,6 +93,63 @@ Framing framing_of(Parameters& parameters, bool is_orthographic) {
       parameters.error(name, "has no direction");
   }
   return framing;
+}
+
+/// Reads the axes that are drawn, which are a rotation to 1e-6.
+glm::dmat3 file_axes_of(Parameters& parameters) {
+  glm::dmat3 out(1);
+  const Parameter* axes = parameters.values("fileaxes", {"float"});
+  if (!axes) return out;
+  if (axes->numbers.size() != 9) {
+    parameters.error("fileaxes", "takes 9 values, not " + std::to_string(axes->numbers.size()));
+    return out;
+  }
+  for (int i = 0; i < 9; ++i) out[i / 3][i % 3] = axes->numbers[static_cast<std::size_t>(i)];
+  const glm::dmat3 rest = glm::transpose(out) * out - glm::dmat3(1);
+  double most = std::abs(glm::determinant(out) - 1);
+  for (int i = 0; i < 9; ++i) most = std::max(most, std::abs(rest[i / 3][i % 3]));
+  if (!(most <= 1e-6)) {
+    parameters.error("fileaxes", "is no rotation");
+    return glm::dmat3(1);
+  }
+  return out;
+}
+
+/// Reads the legend of the colours; none without a title.
+std::optional<Legend> legend_of(Parameters& parameters) {
+  Legend out;
+  out.unit = parameters.text("legendunit", "");
+  out.of_directions = parameters.boolean("legenddirections", false);
+  if (const Parameter* range = parameters.values("legendrange", {"float"})) {
+    const std::vector<double>& v = range->numbers;
+    if (v.size() == 2 && std::isfinite(v[0]) && std::isfinite(v[1]))
+      std::tie(out.low, out.high) = std::pair(v[0], v[1]);
+    else
+      parameters.error("legendrange", "is not two finite numbers");
+  }
+  const Parameter* colors = parameters.values("legendcolors", {"float"});
+  if (colors) {
+    const std::vector<double>& v = colors->numbers;
+    if (v.size() % 3 != 0 || !std::ranges::all_of(v, [](double c) { return c >= 0 && c <= 1; }))
+      parameters.error("legendcolors", "is no list of colours, three numbers from 0 to 1 each");
+    else
+      for (std::size_t i = 0; i < v.size(); i += 3)
+        out.colors.emplace_back(v[i], v[i + 1], v[i + 2]);
+  }
+  if (const Parameter* names = parameters.values("legendnames", {"string"}))
+    out.names = names->strings;
+  if (!parameters.has("legend")) return std::nullopt;
+  out.title = parameters.text("legend", "");
+  if (out.colors.empty() && !out.of_directions) {
+    if (!colors) parameters.error("legend", "needs legendcolors, or legenddirections");
+    return std::nullopt;
+  }
+  if (!out.names.empty() && out.names.size() != out.colors.size()) {
+    parameters.error("legendnames", fmt::format("has {} names for {} colours", out.names.size(),
+                                                out.colors.size()));
+    return std::nullopt;
+  }
+  return out;
 }
 
 /// Reads the background. The path of an image is resolved here; `images` reads it if it is given.
@@ -230,6 +292,8 @@ void set_camera(const std::string& type, Parameters& parameters,
   scene.has_no_up = parameters.boolean("noup", false);
   scene.framing = framing_of(parameters, is_orthographic(camera) && scene.automatic_camera);
   scene.unit = parameters.text("unit", "");
+  scene.world_from_file = file_axes_of(parameters);
+  scene.legend = legend_of(parameters);
   parameters.finish();
   scene.view.camera = camera;
 }

@@ -74,6 +74,14 @@ class Clients {
   };
   /// Returns the next question, of the pages in order. A snapshot waits until `has_snapshot`.
   std::optional<Asked> take_question(bool has_snapshot);
+  struct AskedFigure {
+    ClientId from = 0;
+    MakeFigure figure;
+  };
+  /// Returns the next figure that a page waits for.
+  std::optional<AskedFigure> take_figure();
+  /// Returns whether the page still waits for the figure that was taken.
+  bool wants_figure(ClientId id);
   /// Returns whether a page is visible.
   bool is_seen();
   /// Returns whether the picture in progress is out of date.
@@ -96,8 +104,11 @@ class Clients {
     std::array<std::shared_ptr<const Picture>, 2> shown;  // for both eyes
     std::deque<Question> asked;
     bool wants_snapshot = false;
+    std::optional<MakeFigure> figure;  // not begun
+    bool wants_figure = false;         // begun, and not ended
 
     bool waits() const { return !asked.empty() || wants_snapshot; }
+    bool has_figure() const { return figure.has_value(); }
     void ask(Question question);
   };
 

@@ -64,6 +64,8 @@ class EyeFilms {
   NoisyImage noisy(std::size_t eye);
   /// Returns the picture of the first eye as the bytes of an EXR file.
   std::string snapshot();
+  /// Renders a figure, as figure_png does.
+  std::string figure(const MakeFigure& asked, const std::function<bool(double share)>& goes_on);
 
  private:
   void look_with(const ShowView& look, int scale, std::size_t eye);

@@ -50,6 +50,7 @@ class RenderLoop {
   void work();
   void begin(const ShowView& look);
   void step();
+  void make_figure(const Clients::AskedFigure& asked);
   void answer_all();
   void show(Picture picture);
   void denoise();

@@ -12,7 +12,7 @@ export const texts = {
   panel: "Panel", pages: "Parameters", page_names: { object: "Object", material: "Material", light: "Light", camera: "Camera", render: "Render" }, edge: "Width of the panel", grip: "Height of the panel",
   nothing_chosen: "Nothing is selected. Click a thing in the picture or in the list.", chosen: (names) => names.length === 1 ? names[0] : `${names.length} things`,
   exposure: "Exposure", curve: "Tone", curves: { film: "film", srgb: "sRGB", linear: "linear" }, display: "Display",
-  denoise: "Denoise", export: "Export", png: "Picture as shown (PNG)", exr: "All layers (EXR)", things: "Scene", search: "Search by name", lens: "Lens",
+  denoise: "Denoise", export: "Export", figure_open: "Figure…", png: "Picture as shown (PNG)", exr: "All layers (EXR)", things: "Scene", search: "Search by name", lens: "Lens",
   parallel: "Orthographic", stereo: "Two eyes", stereos: { off: "off", sbs: "side by side", "over-under": "over-under", anaglyph: "anaglyph (red, cyan)" }, separation: "Interocular distance", convergence: "Convergence distance (0: far)", fov: "Field of view, degrees", radius: "Lens radius", focus: "Focus distance",
   duplicate: "Duplicate", delete: "Delete", back: "Undo", again: "Redo", surface: "Surface", material: "Material",
   move: "Move by", turn: "Turn about axis", scale: "Scale by", p0: "End 0", p1: "End 1", radius0: "Radius 0", radius1: "Radius 1",
@@ -60,6 +60,12 @@ export const texts = {
     restored: (n) => `Unsaved changes of an earlier session (${n}) are here again.`,
     old: (n) => `An earlier session left unsaved changes (${n}), but the file is another one since.`,
     forget_asks: (n) => `Forget these changes (${n}) for good?`,
+  },
+  figure: {
+    title: "Figure", width: "Width, pixels", height: "Height, pixels", samples: "Samples per pixel", denoise: "Denoise", background: "Background", own_background: "the scene's",
+    drawn: { "scale-bar": "Scale bar", outline: "Outlines", "depth-cue": "Depth cue", axes: "Axes", "color-bar": "Legend" },
+    render: "Render", stop: "Stop", save: "Save PNG", done: "Share of the figure that is done", waits: "Rendering…", share: (s) => `Rendering, ${Math.floor(100 * s)} %`, ended: "Ended.", shown: "The figure",
+    command: "The same from a shell, when the scene is saved with this view as its camera:",
   },
   // The help lists what mouse and touch do, then the actions of keys.js.
   mouse: [["drag, one finger", "orbit"], ["right or Shift drag, two fingers", "pan"], ["wheel, pinch, + −", "come nearer, go away"], ["Ctrl wheel", "zoom (field of view)"],

@@ -4,6 +4,7 @@ import { Camera, add, dot, length, mul, sub, unit } from "./camera.js";
 import { tell } from "./dialog.js";
 import { Panel, dress, menu } from "./dock.js";
 import { Edits } from "./edit.js";
+import { Figure } from "./figure.js";
 import { Forms } from "./forms.js";
 import { Gizmo } from "./gizmo.js";
 import { icon } from "./icons.js";
@@ -91,12 +92,17 @@ const keep = new Keep({
   title: (unsaved) => { if (scene) document.title = `${unsaved ? "• " : ""}${scene.name} - Caplet`; $("name").textContent = `${unsaved ? "• " : ""}${scene?.name ?? ""}`; },
 });
 
+const figure = new Figure({
+  ask: (message, done) => { waiting.set(++number, done); say({ ...message, number }); }, stop: () => say({ type: "end_figure" }),
+  look: () => view_message(1, 1), size: () => [stage.clientWidth, stage.clientHeight], save: (blob, name) => save(blob, name), file: () => keep.name.value.trim() || keep.now.name || scene.name,
+});
+
 let lost_since = 0;
 function connect() {
   const opened = new WebSocket(location.href.replace(/^http/, "ws").replace(/[^/]*$/, "") + "socket");
   opened.binaryType = "arraybuffer";
   let turn = Promise.resolve(), came = false;
-  opened.onopen = () => { socket = opened; came = true; $("lost").hidden = true; lost_since = 0; waiting.clear(); under_asked = false; edits.reset(); say({ type: "seen", seen: !document.hidden }); };
+  opened.onopen = () => { socket = opened; came = true; $("lost").hidden = true; lost_since = 0; waiting.clear(); under_asked = false; edits.reset(); figure.lost(); say({ type: "seen", seen: !document.hidden }); };
   opened.onmessage = ({ data }) => {
     turn = turn.then(() => typeof data === "string" ? told(JSON.parse(data)) : binary(data)).catch((error) => console.error(error));
   };
@@ -119,6 +125,7 @@ function told(message) {
     waiting.get(message.number)?.({ error: message.text });
     return void waiting.delete(message.number);
   }
+  if (message.type === "figuring") return figure.told(message);
   if (message.type === "saved") return keep.saved(message);
   if (message.type === "save_asks") return keep.asks(message);
   if (message.type === "edited") return edited(message);
@@ -128,6 +135,7 @@ function told(message) {
 }
 
 async function binary(data) {
+  if (figure.take(data)) return;
   const is_right = data.byteLength >= 40 && new DataView(data).getUint32(28, true) & 4;
   if (await (is_right ? right_picture : picture).take(data)) return draw();
   save(new Blob([data], { type: "image/x-exr" }), `${scene.name}.exr`);
@@ -183,6 +191,7 @@ function begin(message) {
   edits.read_only = scene.read_only;
   document.body.classList.toggle("read-only", scene.read_only);
   denoises(scene.denoise);
+  figure.begin(scene.overlays, scene.denoise, scene.samples);
   forms.begin(scene.lists);
   forms.told(scene.parts);
   forms.reset();
@@ -227,13 +236,15 @@ function show_lens() {
   put("focus", +camera.focal_distance.toPrecision(6));
 }
 
+const view_message = (width, height) => ({ type: "look", width, height, world_from_camera: camera.matrix(), fov: camera.fov, lens_radius: camera.lens_radius, focal_distance: camera.focal_distance, orthographic: camera.parallel ? camera.half() : 0, separation: camera.separation, convergence: camera.convergence });
+
 let looked = "";
 function look() {
   if (!camera) return;
   const scale = window.devicePixelRatio || 1, most = 4096;
   const [across, down] = share(camera.separation > 0 ? $("stereo").value : "off");
   const width = Math.min(most, Math.max(1, Math.round(stage.clientWidth * scale / across))), height = Math.min(most, Math.max(1, Math.round(stage.clientHeight * scale / down)));
-  const message = { type: "look", width, height, world_from_camera: camera.matrix(), fov: camera.fov, lens_radius: camera.lens_radius, focal_distance: camera.focal_distance, orthographic: camera.parallel ? camera.half() : 0, separation: camera.separation, convergence: camera.convergence };
+  const message = view_message(width, height);
   const text = JSON.stringify(message);
   edits.draw();
   draw_notes();
@@ -504,6 +515,7 @@ $("redo").onclick = () => undo(future, past);
 $("exposure").oninput = () => { $("stops").value = $("exposure").value; draw(); };
 $("curve").onchange = draw;
 $("denoise").onclick = () => { const on = $("denoise").getAttribute("aria-pressed") !== "true"; denoises(on); say({ type: "denoise", on }); };
+$("figure-open").onclick = () => { if (camera) figure.open(); };
 $("exr").onclick = () => say({ type: "snapshot" });
 $("png").onclick = () => picture_canvas.toBlob((blob) => save(blob, `${scene.name}.png`));
 $("panel-button").onclick = () => panel.toggle();
