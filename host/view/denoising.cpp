@@ -92,8 +92,8 @@ void Denoising::run() {
         return number_ == number;
       });
       if (is_complete) {
-        put_under(image.image, image.backdrop);
-        done = Cleaned{image.samples, shown_of(image.image, false).color};
+        if (!is_put_under_by_page(image.backdrop)) put_under(image.image, image.backdrop);
+        done = Cleaned{image.samples, shown_of(image.image, false, false).color};
       }
     } catch (const std::exception& problem) {
       error = problem.what();

@@ -139,9 +139,11 @@ NoisyImage EyeFilms::noisy(std::size_t eye) {
 
 Picture EyeFilms::picture(std::size_t eye) {
   PictureFlaws flaws;
-  const LayeredImage image =
-      develop(film(eye), live_.scene().view.film, session_options_.layers, flaws);
-  Picture out = shown_of(image, is_full());
+  FilmSettings settings = live_.scene().view.film;
+  const bool has_alpha = is_put_under_by_page(settings.backdrop);
+  if (has_alpha) settings.backdrop.reset();
+  const LayeredImage image = develop(film(eye), settings, session_options_.layers, flaws);
+  Picture out = shown_of(image, is_full(), has_alpha);
   const std::optional<double> noise = flaws.noise.in(live_.scene().view.sampler.space());
   out.noise = static_cast<float>(noise.value_or(0));
   noise_[eye] = noise.value_or(std::numeric_limits<double>::infinity());

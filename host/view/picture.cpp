@@ -15,7 +15,8 @@ namespace caplet::view {
 namespace {
 
 constexpr std::uint32_t magic = 0x464c5043;  // "CPLF"
-constexpr std::uint32_t flag_whole = 1, flag_ids = 2, flag_right = 4, flag_denoised = 8;
+constexpr std::uint32_t flag_whole = 1, flag_ids = 2, flag_right = 4, flag_denoised = 8,
+                        flag_alpha = 16;
 
 void put(std::string& out, std::uint32_t value) {
   for (int i = 0; i < 4; ++i) out.push_back(static_cast<char>(value >> (8 * i) & 0xffu));
@@ -37,10 +38,13 @@ int tiles_of(const Picture& picture) {
 
 bool differ(const Picture& a, const Picture& b, const Tile& tile) {
   for (int y = tile.y0; y < tile.y1; ++y) {
-    const auto first = 3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(a.width) +
-                            static_cast<std::size_t>(tile.x0));
-    const auto count = 3 * static_cast<std::size_t>(tile.x1 - tile.x0);
-    if (std::memcmp(&a.color[first], &b.color[first], count * sizeof a.color[0]) != 0) return true;
+    const std::size_t first = static_cast<std::size_t>(y) * static_cast<std::size_t>(a.width) +
+                              static_cast<std::size_t>(tile.x0),
+                      count = static_cast<std::size_t>(tile.x1 - tile.x0);
+    constexpr std::size_t bytes = sizeof a.color[0];
+    if (std::memcmp(&a.color[3 * first], &b.color[3 * first], 3 * count * bytes) != 0) return true;
+    if (!a.alpha.empty() && std::memcmp(&a.alpha[first], &b.alpha[first], count * bytes) != 0)
+      return true;
   }
   return false;
 }
@@ -85,7 +89,7 @@ std::uint16_t to_half(float value) {
 
 std::string packed(const Picture& now, const Picture* before) {
   const bool same_size = before && before->width == now.width && before->height == now.height &&
-                         before->scale == now.scale;
+                         before->scale == now.scale && before->alpha.size() == now.alpha.size();
   const bool ids =
       !now.objects.empty() && (!before || before->view != now.view || before->scale != 1);
   std::vector<std::uint32_t> tiles;
@@ -93,15 +97,16 @@ std::string packed(const Picture& now, const Picture* before) {
     if (!same_size || differ(now, *before, tile_of(now, i)))
       tiles.push_back(static_cast<std::uint32_t>(i));
   std::vector<std::uint16_t> color;
-  for (std::size_t c = 0; c < 3; ++c)
+  for (std::size_t c = 0; c < (now.alpha.empty() ? 3U : 4U); ++c)
     for (const std::uint32_t number : tiles) {
       const Tile tile = tile_of(now, static_cast<int>(number));
       for (int y = tile.y0; y < tile.y1; ++y)
-        for (int x = tile.x0; x < tile.x1; ++x)
-          color.push_back(
-              now.color[3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(now.width) +
-                             static_cast<std::size_t>(x)) +
-                        c]);
+        for (int x = tile.x0; x < tile.x1; ++x) {
+          const std::size_t pixel =
+              static_cast<std::size_t>(y) * static_cast<std::size_t>(now.width) +
+              static_cast<std::size_t>(x);
+          color.push_back(c < 3 ? now.color[3 * pixel + c] : now.alpha[pixel]);
+        }
     }
   std::string data;
   for (const std::uint32_t number : tiles) put(data, number);
@@ -119,7 +124,8 @@ std::string packed(const Picture& now, const Picture* before) {
   put(out, now.samples);
   put(out, std::bit_cast<std::uint32_t>(now.noise));
   put(out, (same_size ? 0u : flag_whole) | (ids ? flag_ids : 0u) |
-               (now.eye == 1 ? flag_right : 0u) | (now.is_denoised ? flag_denoised : 0u));
+               (now.eye == 1 ? flag_right : 0u) | (now.is_denoised ? flag_denoised : 0u) |
+               (now.alpha.empty() ? 0u : flag_alpha));
   put(out, static_cast<std::uint32_t>(tiles.size()));
   put(out, static_cast<std::uint32_t>(data.size()));
   return out + deflated(data);

@@ -22,7 +22,9 @@ struct Picture {
   bool is_denoised = false;  // the colours are without noise, and may be of fewer samples
   float noise =
       0;  // root mean square of the standard error of a pixel's luminance, over the mean luminance
-  std::vector<std::uint16_t> color;       // R G B of each pixel, linear, half floats
+  std::vector<std::uint16_t> color;  // R G B of each pixel, linear, half floats
+  // Coverage of each pixel, half floats, where the page puts the backdrop under it; else empty.
+  std::vector<std::uint16_t> alpha;
   std::vector<std::uint32_t> objects;     // object.id of each pixel
   std::vector<std::uint32_t> primitives;  // primitive.id of each pixel
 };

@@ -8,6 +8,7 @@
 #include "present/present.h"
 #include "scene/bounds.h"
 #include "scene/edit.h"
+#include "view/detail/snapshot.h"
 
 namespace caplet::view {
 
@@ -37,6 +38,12 @@ Json camera_text(const ShowView& look) {
           {"orthographic", look.orthographic},
           {"separation", look.separation},
           {"convergence", look.convergence}};
+}
+
+Json backdrop_text(const std::optional<Backdrop>& backdrop) {
+  if (!is_put_under_by_page(backdrop)) return nullptr;
+  if (backdrop->kind == Backdrop::Kind::transparent) return "transparent";
+  return to_json(backdrop->color);
 }
 
 Json scene_text(const Scene& scene, const std::string& device, std::uint32_t samples,

@@ -2,13 +2,18 @@
 // Copyright Caplet authors
 #include "view/detail/snapshot.h"
 
+#include <algorithm>
 #include <array>
 
 #include "film/chromaticities.h"
 
 namespace caplet::view {
 
-Picture shown_of(const LayeredImage& image, bool ids) {
+bool is_put_under_by_page(const std::optional<Backdrop>& backdrop) {
+  return backdrop && backdrop->kind != Backdrop::Kind::image;
+}
+
+Picture shown_of(const LayeredImage& image, bool ids, bool has_alpha) {
   Picture out;
   out.width = image.data_width;
   out.height = image.data_height;
@@ -23,6 +28,9 @@ Picture shown_of(const LayeredImage& image, bool ids) {
     for (std::size_t c = 0; c < 3; ++c)
       out.color[3 * i + c] =
           to_half(static_cast<float>(m[3 * c] * r[i] + m[3 * c + 1] * g[i] + m[3 * c + 2] * b[i]));
+  if (has_alpha)
+    for (const float coverage : image.find("A")->floats)
+      out.alpha.push_back(to_half(std::clamp(coverage, 0.0f, 1.0f)));
   if (ids) {
     out.objects = image.find("object.id")->uints;
     out.primitives = image.find("primitive.id")->uints;

@@ -390,6 +390,10 @@ MODULES = """const done = arguments[0], out = {};
   out.soft = [...picture.linear()];
   picture.samples = 2;
   out.hard = [...picture.linear()];
+  const covered = new Picture(), light = { 0.25: 0x3400, 3: 0x4200 };
+  Object.assign(covered, { width: 4, height: 1, samples: 2, color: new Uint16Array(12), alpha: Uint16Array.of(half[0.5], half[0], half[1], half[0.5]) });
+  covered.color.set([light[0.25], light[0.25], 0, 0, 0, 0, half[1], 0, 0, light[3], light[3], light[3]]);
+  out.under = [[0, "film", [1, 1, 1]], [1, "srgb", [1, 1, 1]], [0, "film", [0.25, 0.5, 1]], [0, "srgb", "transparent"]].map((how) => [...covered.shown(...how)]);
   const all = KEYS.flatMap(([, ...keys]) => keys);
   out.twice = all.filter((key, i) => all.indexOf(key) !== i);
   out.unnamed = KEYS.map(([action]) => action).filter((action) => !texts.actions[action]);
@@ -413,6 +417,23 @@ def modules(program, scenes, out):
         assert [t["share"] for t in got["times"]] == [4 / 64, 20 / 64, 1, 1 / 64, 0], got["times"]
         # A sixteenth, and 3 seconds later a quarter: 3 / (3 / 16) seconds for one, three quarters of it left.
         assert got["noises"] == [{"share": 1 / 16, "seconds": None}, {"share": 1 / 4, "seconds": 12}], got["noises"]
+        def film(v):  # docs/output.md, "Previews"
+            m = max(v)
+            to = 1 - math.exp(-(2 * m - 1)) / 2
+            white = 1 - 1 / (1 + (m - to) / 8)
+            return v if m <= 0.5 else [c * to / m * (1 - white) + to * white for c in v]
+
+        def bytes_of(v):
+            return [round(255 * (12.92 * c if c <= 0.0031308 else 1.055 * c**(1 / 2.4) - 0.055)) for c in v]
+
+        # Coverage 1/2, 0, 1 and 1/2; light of shapes, multiplied by it; a checker's first square is dark.
+        pixels = [(0.5, [0.25, 0.25, 0]), (0, [0, 0, 0]), (1, [1, 0, 0]), (0.5, [3, 3, 3])]
+        for shown_as, (stops, curve, under) in zip(got["under"], [(0, film, [1, 1, 1]), (1, list, [1, 1, 1]), (0, film, [0.25, 0.5, 1]), (0, list, [0.32] * 3)]):
+            for i, (a, light) in enumerate(pixels):
+                shapes = curve([2**stops * c / a for c in light]) if a else light
+                wanted = bytes_of([a * min(1, s) + (1 - a) * u for s, u in zip(shapes, under)])
+                now = shown_as[4 * i:4 * i + 4]
+                assert max(abs(p - q) for p, q in zip(now, wanted)) <= 1 and now[3] == 255, (stops, curve, i, now, wanted)  # steps of 1/4096
         hard, soft = got["hard"], got["soft"]
         assert hard == [v for i in range(63) for v in (1, i % 2, 0)], hard[:12]
         for i in range(63):

@@ -15,7 +15,7 @@ namespace {
 /// What a client has, by docs/viewer.md.
 struct Shown {
   int width = 0, height = 0;
-  std::vector<std::uint16_t> color;
+  std::vector<std::uint16_t> color, alpha;
   std::vector<std::uint32_t> objects, primitives;
   std::size_t tiles = 0;
 };
@@ -40,6 +40,7 @@ void take(Shown& shown, const std::string& message) {
     shown.width = width;
     shown.height = height;
     shown.color.assign(static_cast<std::size_t>(3 * width * height), 0xffff);
+    shown.alpha.assign(flags & 16u ? static_cast<std::size_t>(width * height) : 0, 0xffff);
   }
   shown.tiles = tiles;
   std::vector<std::size_t> pixels;
@@ -56,12 +57,14 @@ void take(Shown& shown, const std::string& message) {
   };
   std::size_t at = 4 * tiles;
   unsigned value = 0;
-  for (std::size_t k = 0; k < 3 * pixels.size(); ++k) {
-    value = (value + (byte(at + k) << 8 | byte(at + 3 * pixels.size() + k))) & 0xffffu;
-    shown.color[3 * pixels[k % pixels.size()] + k / pixels.size()] =
+  const std::size_t words = (flags & 16u ? 4 : 3) * pixels.size();
+  for (std::size_t k = 0; k < words; ++k) {
+    value = (value + (byte(at + k) << 8 | byte(at + words + k))) & 0xffffu;
+    const std::size_t pixel = pixels[k % pixels.size()], channel = k / pixels.size();
+    (channel < 3 ? shown.color[3 * pixel + channel] : shown.alpha[pixel]) =
         static_cast<std::uint16_t>(value);
   }
-  at += 6 * pixels.size();
+  at += 2 * words;
   if (!(flags & 2u)) {
     EXPECT_EQ(at, data.size());
     return;
@@ -110,6 +113,33 @@ TEST(Packed, IsWhatItWas) {
     EXPECT_EQ(shown.objects, picture.objects);
     EXPECT_EQ(shown.primitives, picture.primitives);
   }
+}
+
+void add_alpha(Picture& picture) {
+  for (std::size_t i = 0; i < picture.color.size() / 3; ++i)
+    picture.alpha.push_back(to_half(static_cast<float>(i % 5) / 4));
+}
+
+TEST(Packed, HasCoverageWhereThereIsSome) {
+  const Picture bare = some(200, 130, 7);
+  Picture covered = bare;
+  add_alpha(covered);
+  Shown shown;
+  take(shown, packed(bare, nullptr));
+  EXPECT_TRUE(shown.alpha.empty());
+  take(shown, packed(covered, &bare));
+  EXPECT_EQ(shown.tiles, 12u);
+  EXPECT_EQ(shown.color, covered.color);
+  EXPECT_EQ(shown.alpha, covered.alpha);
+  Picture now = covered;
+  now.alpha[199] ^= 8u;
+  take(shown, packed(now, &covered));
+  EXPECT_EQ(shown.tiles, 1u);
+  EXPECT_EQ(shown.color, now.color);
+  EXPECT_EQ(shown.alpha, now.alpha);
+  take(shown, packed(bare, &now));
+  EXPECT_EQ(shown.tiles, 12u);
+  EXPECT_TRUE(shown.alpha.empty());
 }
 
 TEST(Packed, HasTheTilesThatDifferAlone) {

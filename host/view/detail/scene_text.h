@@ -5,6 +5,7 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 
 #include "scene/scene.h"
@@ -21,6 +22,10 @@ nlohmann::ordered_json to_json(const glm::dvec3& v);
 
 /// The page sends cameras in the same form (messages.h).
 nlohmann::ordered_json camera_text(const ShowView& look);
+
+/// Returns what the page puts under pictures: "transparent", a displayed colour (linear sRGB), or
+/// null for nothing.
+nlohmann::ordered_json backdrop_text(const std::optional<Backdrop>& backdrop);
 
 /// Returns name, bounds (bounds_or_unit_of), shapes and instances by their object.id, materials,
 /// the device's name, and the samples per pixel and the noise (0: any) of a finished picture.

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 // Decodes the program's pictures (docs/viewer.md) and displays them.
-const TILE = 64, WHOLE = 1, IDS = 2, DENOISED = 8;
+const TILE = 64, WHOLE = 1, IDS = 2, DENOISED = 8, ALPHA = 16;
+
+const CHECKS = [[0.32, 0.32, 0.32], [0.6, 0.6, 0.6]];  // under what is transparent
 
 const float_of_half = new Float32Array(65536);
 for (let h = 0; h < 65536; ++h) {
@@ -40,7 +42,7 @@ async function inflated(bytes) {
 }
 
 export class Picture {
-  constructor() { this.width = this.height = 0; this.color = null; this.objects = this.primitives = null; this.view = 0; this.scale = 1; this.samples = 0; this.noise = 0; this.is_denoised = false; }
+  constructor() { this.width = this.height = 0; this.color = this.alpha = null; this.objects = this.primitives = null; this.view = 0; this.scale = 1; this.samples = 0; this.noise = 0; this.is_denoised = false; }
 
   // Takes a message; messages must be passed in order, one at a time.
   async take(buffer) {
@@ -48,7 +50,7 @@ export class Picture {
     if (at(0) !== 0x464c5043) return false;
     const [view, width, height, scale, samples] = [at(1), at(2), at(3), at(4), at(5)], flags = at(7), count = at(8);
     const data = await inflated(new Uint8Array(buffer, 40));
-    if (flags & WHOLE) { this.width = width; this.height = height; this.color = new Uint16Array(3 * width * height); }
+    if (flags & WHOLE) { this.width = width; this.height = height; this.color = new Uint16Array(3 * width * height); this.alpha = flags & ALPHA ? new Uint16Array(width * height) : null; }
     if (view !== this.view || scale !== this.scale) this.objects = this.primitives = null;
     Object.assign(this, { view, scale, samples, noise: head.getFloat32(24, true), is_denoised: (flags & DENOISED) > 0 });
     const tiles = new DataView(data.buffer, data.byteOffset, 4 * count), across = Math.ceil(width / TILE);
@@ -60,16 +62,18 @@ export class Picture {
       pixels += (boxes[i][2] - x) * (boxes[i][3] - y);
     }
     let place = 4 * count, word = 0;
-    const high = place, low = place + 3 * pixels;
+    const channels = flags & ALPHA ? 4 : 3, high = place, low = place + channels * pixels;
     let k = 0;
-    for (let c = 0; c < 3; ++c)
+    for (let c = 0; c < channels; ++c) {
+      const [to, step, first] = c < 3 ? [this.color, 3, c] : [this.alpha, 1, 0];
       for (const [x0, y0, x1, y1] of boxes)
         for (let y = y0; y < y1; ++y)
-          for (let x = x0, o = 3 * (y * width + x0) + c; x < x1; ++x, ++k, o += 3) {
+          for (let x = x0, o = step * (y * width + x0) + first; x < x1; ++x, ++k, o += step) {
             word = word + (data[high + k] << 8 | data[low + k]) & 65535;
-            this.color[o] = word;
+            to[o] = word;
           }
-    place += 6 * pixels;
+    }
+    place += 2 * channels * pixels;
     if (flags & IDS) {
       const n = width * height;
       for (const name of ["objects", "primitives"]) {
@@ -102,10 +106,12 @@ export class Picture {
     return out;
   }
 
-  // Returns R G B A bytes for the screen. "film": as in the program's previews (docs/output.md).
-  shown(exposure, curve) {
-    const n = this.width * this.height, out = new Uint8ClampedArray(4 * n), gain = 2 ** exposure, color = this.linear();
+  // Returns R G B A bytes for the screen. "film": as in the program's previews (docs/output.md). `backdrop`, a colour as it
+  // is displayed or "transparent", lies under the light of shapes by their coverage; exposure and curve are those of shapes.
+  shown(exposure, curve, backdrop) {
+    const n = this.width * this.height, out = new Uint8ClampedArray(4 * n), color = this.linear(), { alpha } = this;
     for (let i = 0; i < n; ++i) {
+      const a = alpha ? float_of_half[alpha[i]] : 1, gain = a > 0 ? 2 ** exposure / a : 0;
       let r = gain * color[3 * i], g = gain * color[3 * i + 1], b = gain * color[3 * i + 2];
       if (curve === "film") {
         const m = Math.max(r, g, b);
@@ -113,6 +119,10 @@ export class Picture {
           const to = 1 - Math.exp(-(2 * m - 1)) / 2, white = 1 - 1 / (1 + (m - to) / 8), s = to / m * (1 - white), w = to * white;
           r = r * s + w; g = g * s + w; b = b * s + w;
         }
+      }
+      if (a < 1) {
+        const [u, v, w] = backdrop === "transparent" ? CHECKS[(i % this.width >> 3) + (i / this.width >> 3) & 1] : backdrop ?? [0, 0, 0];
+        r = a * Math.min(1, r) + (1 - a) * u; g = a * Math.min(1, g) + (1 - a) * v; b = a * Math.min(1, b) + (1 - a) * w;
       }
       if (curve === "linear") {
         out[4 * i] = 255 * r; out[4 * i + 1] = 255 * g; out[4 * i + 2] = 255 * b;

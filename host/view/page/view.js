@@ -161,6 +161,7 @@ function edited(message) {
     fill_tree();
   }
   scene.samples = message.samples;
+  scene.backdrop = message.backdrop;
   if (message.home) scene.home = message.home;
   forms.told(message.parts);
   edits.refresh();
@@ -298,7 +299,7 @@ const has_right = () => right_picture.view === picture.view && right_picture.wid
 function draw() {
   const { width, height } = picture;
   if (!scene || !width) return;
-  const shown = (of) => of.shown(+$("exposure").value, $("curve").value);
+  const shown = (of) => of.shown(+$("exposure").value, $("curve").value, scene.backdrop);
   const [across, down, bytes] = arranged(layout(), width, height, shown(picture), has_right() ? shown(right_picture) : null);
   picture_canvas.width = across;
   picture_canvas.height = down;
