@@ -2,8 +2,11 @@
 // Copyright Caplet authors
 //
 // `caplet convert`: converts any scene file to pbrt text.
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 #include <memory>
+#include <nlohmann/json.hpp>
 
 #include "base/atomic_file.h"
 #include "base/interrupt.h"
@@ -12,6 +15,8 @@
 #include "cli/description.h"
 #include "cli/options.h"
 #include "export/export.h"
+#include "lower/lower.h"
+#include "report/summary.h"
 
 namespace caplet::cli {
 
@@ -21,7 +26,7 @@ struct ConvertFlags {
   std::vector<std::string> scenes;
   std::string output;
   ImportOptions import_options;
-  bool quiet = false;
+  bool quiet = false, json = false;
 };
 
 void run_convert(const ConvertFlags& options) {
@@ -29,6 +34,8 @@ void run_convert(const ConvertFlags& options) {
   const std::filesystem::path output = output_named(options.output);
   Outputs outputs;
   outputs.add("OUT.pbrt", output);
+  if (options.json && is_stream(output))
+    throw InputError(SourceLocation{"--json"}, "does not go with a scene on stdout");
   if (output.extension() != ".pbrt" && !is_stream(output))
     throw InputError(SourceLocation{"OUT.pbrt"},
                      "'" + output.string() + "': scenes are written as pbrt text, to a file .pbrt");
@@ -37,6 +44,10 @@ void run_convert(const ConvertFlags& options) {
   outputs.check_inputs();
   write_scene(scene, output, interrupt_requested);
   if (!is_stream(output)) log::info("wrote {}", output.string());
+  if (!options.json) return;
+  nlohmann::ordered_json told{{"wrote", output.string()}};
+  told.update(report::scene_summary(scene, lower(scene)));
+  fmt::print("{}", report::to_text(told));
 }
 
 }  // namespace
@@ -52,6 +63,7 @@ void add_convert(CLI::App& app) {
               scene_extensions() + "), then the scene file to write; -: to stdout")
       ->required()
       ->type_name("SCENE");
+  command->add_flag("--json", o->json, "Print what was written as JSON, as `caplet info --json`");
   command->add_flag("-q,--quiet", o->quiet, "Only warnings and errors");
   add_import_options(*command, o->import_options);
   command->footer(footer_with({"caplet convert molecule.pdb --style sticks molecule.pbrt"},

@@ -360,8 +360,10 @@ RenderResult written(const Work& work, RenderResult result, report::RunSeconds& 
   if (!work.files.deep.empty()) write_deep(work, result);
   if (work.files.pictures.empty() && work.files.previews.empty()) return result;
   PictureFlaws flaws;
-  BandedImage picture = bands_of(work, result, flaws);
   Stopwatch phase;
+  BandedImage picture = bands_of(work, result, flaws);
+  const double developed = phase.lap();
+  if (work.scene.view.film.denoise) seconds.denoise += developed;
   const post::Overlays& overlays = work.options.overlays;
   report::Finish finish{overlays.layers(), work.layers, {}};
   if (overlays.any())
@@ -411,12 +413,14 @@ RenderResult stereo_pictures(const Work& both, report::RunSeconds& seconds) {
       throw RunError("interrupted before there was a view for both eyes; nothing is written");
   }
   PictureFlaws flaws;
+  Stopwatch phase;
   BandedImage left = bands_of(both, results[0], flaws);
   const BandedImage right = bands_of(both, results[1], flaws);
+  const double developed = phase.lap();
+  if (both.scene.view.film.denoise) seconds.denoise += developed;
   left.whole.metadata["caplet.stereo_separation"] = fmt::format("{}", stereo.separation);
   if (stereo.convergence)
     left.whole.metadata["caplet.stereo_convergence"] = fmt::format("{}", *stereo.convergence);
-  Stopwatch phase;
   each_pair(both.files, [&](const fs::path& exr, const fs::path& preview) {
     report::write_stereo_pictures(exr, preview, left, right, layout_of(both.options),
                                   channels_of(both),

@@ -190,6 +190,10 @@ void add_reports(CLI::App& command, RenderFlags& o) {
   command
       .add_option("--stats", o.stats, "Write times, ray counts and memory as JSON; -: to stdout")
       ->type_name("FILE.json");
+  command
+      .add_flag_callback(
+          "--json", [&o] { o.stats = "-"; }, "Print what --stats writes")
+      ->excludes("--stats");
   command.add_flag("-q,--quiet", o.quiet, "No progress, only warnings and errors");
   command.add_option("--batch", o.batch_paths, "Paths a batch (the picture does not depend on it)")
       ->group("");

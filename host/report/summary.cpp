@@ -126,6 +126,7 @@ nlohmann::ordered_json run_summary(const RunSeconds& seconds, const RenderResult
   out["seconds"] = {{"load", seconds.load},       {"build", seconds.build},
                     {"compile", seconds.compile}, {"render", seconds.render},
                     {"write", seconds.write},     {"total", seconds.total}};
+  if (seconds.denoise > 0) out["seconds"]["denoise"] = seconds.denoise;
   out["first_pass_seconds"] = result.first_pass_seconds;
   out["compile_seconds"] = nlohmann::ordered_json::object();
   for (const auto& [stage, stage_seconds] : result.stage_compile_seconds)

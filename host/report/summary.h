@@ -24,7 +24,7 @@ std::uint64_t peak_process_bytes();
 nlohmann::ordered_json scene_summary(const Scene& scene, const FlatScene& flat);
 
 struct RunSeconds {
-  double load = 0, build = 0, compile = 0, render = 0, write = 0, total = 0;
+  double load = 0, build = 0, compile = 0, render = 0, denoise = 0, write = 0, total = 0;
 };
 
 /// Returns seconds, samples_per_pixel, rays, device, peak_bytes and more (docs/cli.md).

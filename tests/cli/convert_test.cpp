@@ -5,6 +5,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <nlohmann/json.hpp>
+
 #include "film/image.h"
 #include "program.h"
 #include "support/data.h"
@@ -35,6 +37,21 @@ TEST(Convert, WritesTextOfTheSamePicture) {
   const test::Result piped = test::run_program({"convert", "-q", "out.pbrt", "-"}, folder);
   EXPECT_EQ(piped.code, 0) << piped.err;
   EXPECT_EQ(piped.out, test::read_file(folder / "out.pbrt"));
+}
+
+TEST(Convert, TellsMachinesWhatItWrote) {
+  const auto folder = test::folder_with_scene();
+  const test::Result done =
+      test::run_program({"convert", "scene.pbrt", "out.pbrt", "--json", "-q"}, folder);
+  EXPECT_EQ(done.code, 0) << done.err;
+  nlohmann::json told = nlohmann::json::parse(done.out);
+  EXPECT_EQ(told.at("wrote"), "out.pbrt");
+  told.erase("wrote");
+  const test::Result info = test::run_program({"info", "scene.pbrt", "--json"}, folder);
+  EXPECT_EQ(told, nlohmann::json::parse(info.out));
+  const test::Result both = test::run_program({"convert", "scene.pbrt", "-", "--json"}, folder);
+  EXPECT_EQ(both.code, 2);
+  EXPECT_THAT(both.err, HasSubstr("--json: does not go with a scene on stdout"));
 }
 
 TEST(Convert, NeuronsKeepTheirFraming) {

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <nlohmann/json.hpp>
 #include <stdexcept>
 
 #include "film/image.h"
@@ -84,6 +85,19 @@ TEST(Denoised, PicturesKeepTheNoisyOne) {
   expect_done(run(folder, {"render", "scene.pbrt", "-o", "all.exr", "--size", "600x900", "--spp",
                            "1", "--denoise"}));
   expect_denoised(read_exr(folder / "all.exr"), read_exr(folder / "plain.exr"), 0);
+}
+
+TEST(Denoised, StatsTellItsTime) {
+  const fs::path folder = folder_with_scene();
+  const Result done =
+      run(folder, {"render", "scene.pbrt", "-q", "--denoise", "-o", "all.exr", "--json"});
+  expect_done(done);
+  const auto seconds = nlohmann::json::parse(done.out).at("seconds");
+  EXPECT_GT(seconds.at("denoise").get<double>(), 0);
+  double sum = 0;
+  for (const auto& [name, value] : seconds.items())
+    if (name != "total") sum += value.get<double>();
+  EXPECT_LE(sum, seconds.at("total").get<double>());
 }
 
 TEST(Denoised, ABackdropKeepsItsDetails) {

@@ -180,6 +180,19 @@ TEST_F(Options, StatsTellHowLongWritingTook) {
             seconds.at("total").get<double>());
 }
 
+TEST_F(Options, JsonIsTheStatsOnStdout) {
+  const test::Result told = test::run_program(
+      {"render", "scene.pbrt", "-q", "--spp", "2", "-o", "out.exr", "--json"}, folder_);
+  EXPECT_EQ(told.code, 0) << told.err;
+  const auto stats = nlohmann::json::parse(told.out);
+  EXPECT_EQ(stats.at("samples_per_pixel"), 2);
+  EXPECT_EQ(stats.at("seconds").count("denoise"), 0u);
+  const test::Result both = test::run_program(
+      {"render", "scene.pbrt", "-o", "out.exr", "--json", "--stats", "a.json"}, folder_);
+  EXPECT_EQ(both.code, 2);
+  EXPECT_THAT(both.err, HasSubstr("--stats"));
+}
+
 // The noise is that of G, also where the picture is written twice.
 TEST_F(Options, StatsStateTheNoise) {
   picture({"--stats", "stats.json"});
