@@ -14,6 +14,7 @@
 #include "base/reading.h"
 #include "base/spelling.h"
 #include "import/color_map.h"
+#include "import/detail/placement.h"
 #include "import/picture_options.h"
 #include "present/lights.h"
 #include "present/present.h"
@@ -180,6 +181,14 @@ void open_again(Imported& file) {
   file.is_lit = is_lit(file.scene);
 }
 
+/// Moves a file's shapes. It is framed and lit anew.
+void place(Imported& file, const glm::dmat4& placement, const fs::path& path) {
+  open_again(file);
+  if (file.has_camera || !file.scene.lights.empty() || !file.scene.media.empty())
+    log::warn("{}: its shapes alone are moved, not its camera, lights and media", path.string());
+  place(file.scene, placement);
+}
+
 /// Returns names that tell the files apart.
 std::vector<std::string> names_of(std::span<const fs::path> paths) {
   std::map<std::string, int> count;
@@ -322,8 +331,15 @@ Scene import_scene(const fs::path& path, const ImageReader& images, const Import
   return import_scenes(std::span(&path, 1), images, options);
 }
 
-Scene import_scenes(std::span<const fs::path> paths, const ImageReader& images,
+Scene import_scenes(std::span<const fs::path> given, const ImageReader& images,
                     const ImportOptions& options) {
+  std::vector<fs::path> paths;
+  std::vector<std::optional<glm::dmat4>> placements;
+  for (const fs::path& one : given) {
+    const PlacedFile placed = placed_file(one);
+    paths.push_back(placed.path);
+    placements.push_back(placed.placement);
+  }
   std::vector<const Format*> formats_of_files;
   for (const fs::path& path : paths) {
     const Fence fence(path, options);
@@ -358,6 +374,8 @@ Scene import_scenes(std::span<const fs::path> paths, const ImageReader& images,
     of_all.set("range", fmt::format("{},{}", all.low, all.high));
     for (const std::size_t i : std::exchange(by_values, {})) files[i] = read(i, of_all);
   }
+  for (std::size_t i = 0; i < paths.size(); ++i)
+    if (placements[i]) place(files[i], *placements[i], paths[i]);
   Scene scene =
       files.size() == 1 ? presented(std::move(files.front())) : joined(std::move(files), paths);
   if (all.is_there && !scene.legend) scene.legend = legend_of(all, options, scene.unit);

@@ -55,8 +55,8 @@ Scene import_scene(const std::filesystem::path& path, const ImageReader& images,
 /// Reads several files of any formats as one scene. Their contents keep their coordinates, and
 /// names of shapes begin with that of their file. At most one may bring a camera, whose film,
 /// sampler and integrator are then used; without one the camera frames everything, and studio light
-/// is added if no file brings light. An option applies to all files whose format knows it. Throws
-/// InputError.
+/// is added if no file brings light. FILE@translate=X,Y,Z@rotate=DEGREES,X,Y,Z@scale=S moves a
+/// file's shapes. An option applies to all files whose format knows it. Throws InputError.
 Scene import_scenes(std::span<const std::filesystem::path> paths, const ImageReader& images,
                     const ImportOptions& options = {});
 

@@ -40,6 +40,12 @@ std::vector<std::string> materials_of(const Scene& scene) {
   return out;
 }
 
+glm::dvec3 first_vertex(const Scene& scene, std::size_t shape) {
+  const Shape& of = scene.shapes.at(shape);
+  const auto& mesh = std::get<TriangleMeshShape>(of.geometry);
+  return glm::dvec3(of.world_from_object * glm::dvec4(mesh.positions.at(1), 1));
+}
+
 /// A soma and a dendrite of two segments, `x` to the right.
 std::string neuron(int x) {
   const std::string at = std::to_string(x);
@@ -92,6 +98,61 @@ TEST(SeveralFiles, AreFramedTogether) {
   EXPECT_EQ(again.view.camera.world_from_camera, scene.view.camera.world_from_camera);
   EXPECT_EQ(std::get<InfiniteLight>(again.lights[0].model).world_from_light,
             std::get<InfiniteLight>(scene.lights[0].model).world_from_light);
+}
+
+// The second corner of the triangle is (1, 0, 0).
+TEST(SeveralFiles, AreMovedStepByStep) {
+  const fs::path a = write_file("a.swc", neuron(0)), b = write_file("b.off", triangle);
+  const auto corner = [&](const std::string& steps) {
+    const Scene scene = several({a, fs::path(b.string() + steps)});
+    EXPECT_THAT(scene.shapes.back().name, HasSubstr("b"));
+    return first_vertex(scene, scene.shapes.size() - 1);
+  };
+  const auto expect_near = [](const glm::dvec3& is, const glm::dvec3& wanted) {
+    EXPECT_LT(glm::distance(is, wanted), 1e-12) << is.x << ' ' << is.y << ' ' << is.z;
+  };
+  expect_near(corner(""), {1, 0, 0});
+  expect_near(corner("@translate=1,2,-3.5"), {2, 2, -3.5});
+  expect_near(corner("@scale=2"), {2, 0, 0});
+  expect_near(corner("@scale=-2,3,4"), {-2, 0, 0});
+  expect_near(corner("@rotate=90,0,0,2"), {0, 1, 0});
+  expect_near(corner("@scale=2@translate=1,0,0@rotate=90,0,0,1"), {0, 3, 0});
+  expect_near(corner("@rotate=90,0,0,1@translate=1,0,0@scale=2"), {2, 2, 0});
+  // Neurons are moved whole, and the camera frames what is where.
+  const Scene moved = several({a, fs::path(a.string() + "@translate=1000,0,0")});
+  EXPECT_EQ(
+      moved.shapes.back().world_from_object[3].x - moved.shapes.front().world_from_object[3].x,
+      1000);
+  EXPECT_GT(glm::distance(glm::dvec3(moved.view.camera.world_from_camera[3]), glm::dvec3(0)), 500);
+  const Scene alone = several({fs::path(b.string() + "@translate=0,0,50")});
+  expect_near(first_vertex(alone, 0), {1, 0, 50});
+  EXPECT_TRUE(alone.automatic_camera);
+}
+
+TEST(SeveralFiles, WhatMovesThemIsSaidIfItIsWrong) {
+  const std::string b = write_file("b.off", triangle).string();
+  for (const auto& [steps, why] :
+       {std::pair("@translate=1,2", "'@translate=1,2': wants three numbers"),
+        {"@translate=1,2,x", "wants three numbers, such as @translate=10,0,0"},
+        {"@translate=1,2,inf", "wants three numbers"},
+        {"@rotate=90,0,0,0", "wants degrees and an axis"},
+        {"@rotate=90", "wants degrees and an axis"},
+        {"@scale=0", "wants a factor or three, none of them 0"},
+        {"@scale=1,0,1", "none of them 0"},
+        {"@scale=1,1,0", "none of them 0"},
+        {"@scale=1,1", "wants a factor or three"},
+        {"@scale", "wants a factor or three"},
+        {"@tranlate=1,2,3", "'@tranlate=1,2,3': is no step; the nearest is '@translate='"},
+        {"@translate=1,2,3@", "'@': is no step"}}) {
+    const std::string said = complaint([&] { several({fs::path(b + steps)}); });
+    EXPECT_THAT(said, HasSubstr(why)) << steps;
+    EXPECT_THAT(said, HasSubstr(b + steps)) << steps;
+  }
+  // Names may have the sign.
+  const fs::path odd = write_file("c@scale=2.off", triangle);
+  EXPECT_EQ(first_vertex(several({odd}), 0), glm::dvec3(1, 0, 0));
+  EXPECT_THAT(complaint([&] { several({odd.parent_path() / "d@e" / "no.off"}); }),
+              HasSubstr("no.off"));
 }
 
 TEST(SeveralFiles, OfOneNameAreNumbered) {
