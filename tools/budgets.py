@@ -191,6 +191,8 @@ def cell(figures):
 
 
 def table(figures, targets):
+    valid = [t for t in targets if all(cell(row) == "valid" for (_, _, target), row in figures.items() if target == t)]
+    targets = [t for t in targets if t not in valid]
     lines = ["| stage | " + " | ".join(targets) + " |", "|---|" + "---|" * len(targets)]
     for name in SETS:
         stages = {stage for one, stage, _ in figures if one == name}
@@ -198,6 +200,7 @@ def table(figures, targets):
             lines.append(f"| *{TITLES[name]}* |" + " |" * len(targets))
         for stage in sorted(stages):
             lines.append(f"| {stage} | " + " | ".join(cell(figures.get((name, stage, t), {})) for t in targets) + " |")
+    lines += ["", f"{' and '.join(valid)} of all stages is valid."] if valid else []
     return "\n".join(lines)
 
 
