@@ -152,6 +152,11 @@ class Tables(unittest.TestCase):
         self.assertIn("left out: needs root", row)
         self.assertEqual(row.count("|"), page.row(FINE).count("|"))
 
+    def test_a_driver_is_named_once(self):
+        rows = page.table([FINE, {**FINE, "encoding": "single"}, {**FINE, "package": "2026.2.0"}]).splitlines()[2:]
+        self.assertEqual([row.split(" | ")[0].startswith("| the same") for row in rows], [False, True, False], rows)
+        self.assertEqual(rows[1].count("|"), rows[0].count("|"))
+
     def test_the_page_keeps_what_stands_around_the_tables(self):
         with tempfile.TemporaryDirectory() as folder:
             file = pathlib.Path(folder) / "page.md"

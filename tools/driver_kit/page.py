@@ -97,8 +97,12 @@ def cells(facts):
     return out
 
 
-def row(facts):
-    return "| " + " | ".join(cell.replace("|", "/").replace("\n", " ") for cell in cells(facts)) + " |"
+def row(facts, before=None):
+    """`before`: the facts of the row above, whose driver is not named again."""
+    first, *rest = cells(facts)
+    if before and driver_name(before) == first:
+        first = "the same"
+    return "| " + " | ".join(cell.replace("|", "/").replace("\n", " ") for cell in (first, *rest)) + " |"
 
 
 def is_wrong(facts):
@@ -127,7 +131,7 @@ def of_pictures(results):
 def table(results):
     """One row a driver and encoding."""
     head = ["| " + " | ".join(COLUMNS) + " |", "|---" * len(COLUMNS) + "|"]
-    return "\n".join([*head, *map(row, results)])
+    return "\n".join([*head, *map(row, results, [None, *results])])
 
 
 def tables(results):
