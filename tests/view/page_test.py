@@ -734,7 +734,7 @@ def figures(program, scenes, out):
         shot("viewer-neuron")
         shown.find("export-button").click()
         shown.find("figure-open").click()
-        shown.script("document.getElementById('figure-background').value = 'white'")
+        shown.script("for (const [id, text] of Object.entries({ background: 'white', width: 1200, height: 900 })) document.getElementById(`figure-${id}`).value = text")
         for name in ("scale-bar", "color-bar"):
             shown.find(f"figure-{name}").click()
         shown.find("figure-go").click()
