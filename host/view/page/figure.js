@@ -127,7 +127,7 @@ export class Figure {
     for (const input of this.dialog.querySelectorAll("input")) input.readOnly = is_busy;
   }
 
-  // What the program tells of the figure: the share that is done.
+  // The program tells the share that is done.
   told({ share }) { if (this.is_busy) { this.done.value = share; this.said.textContent = words.share(share); } }
 
   // The figure as a PNG file; returns whether this is one.
