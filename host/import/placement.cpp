@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "base/reading.h"
 #include "base/spelling.h"
 
 namespace caplet {
@@ -71,8 +72,7 @@ PlacedFile placed_file(const fs::path& given) {
   const std::string text = given.string();
   const std::size_t slash = text.rfind('/'),
                     at = text.find('@', slash == std::string::npos ? 0 : slash);
-  std::error_code error;
-  if (at == std::string::npos || fs::exists(given, error)) return {given, std::nullopt};
+  if (at == std::string::npos || is_there(given, {text})) return {given, std::nullopt};
   glm::dmat4 placement(1);
   std::string_view rest = std::string_view(text).substr(at + 1);
   while (true) {
