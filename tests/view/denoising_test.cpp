@@ -100,6 +100,22 @@ TEST_F(Denoised, PicturesReplaceTheColoursOfTheirEye) {
   EXPECT_FALSE(right.is_denoised);
 }
 
+// The page puts a colour under pictures itself.
+TEST_F(Denoised, PicturesOverAColourAreThoseOfShapesAlone) {
+  Done done;
+  Denoising denoising([&] { done.promise.set_value(); });
+  NoisyImage image = image_of(0.25f, 8);
+  image.image.channels.push_back({"A", {0.5f, 0}, {}});
+  image.backdrop = Backdrop{Backdrop::Kind::color, {1, 1, 1}, nullptr};
+  denoising.begin(std::move(image));
+  done.wait();
+  EXPECT_TRUE(denoising.has_new());
+  Picture picture = noisy_picture();
+  denoising.improve(picture);
+  const std::uint16_t a = to_half(0.125f + 0.25f), b = to_half(0.125f + 0.25f + 0.375f);
+  EXPECT_EQ(picture.color, (std::vector<std::uint16_t>{a, a, a, b, b, b}));
+}
+
 // What is forgotten while it is made never appears.
 TEST_F(Denoised, PicturesOfAnotherViewAreDropped) {
   Done done;

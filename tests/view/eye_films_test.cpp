@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <utility>
 #include <vector>
 
@@ -60,6 +61,23 @@ TEST(EyeFilms, EndWithTheNoiseThatIsAskedFor) {
   for (const Picture& last : two.last) EXPECT_LE(last.noise, 0.04);
   EXPECT_EQ(two.last[0].samples, two.last[1].samples);
   EXPECT_LT(two.last[1].samples, 4096u);
+}
+
+// The page puts the backdrop under the light of shapes, which no white is in.
+TEST(EyeFilms, PicturesOverAColourHaveCoverageInItsPlace) {
+  Scene scene = test::some_scene();
+  EXPECT_TRUE(ended(options_to(0, 2), 0, scene).last[0].alpha.empty());
+  scene.view.film.backdrop = Backdrop{};
+  const Picture clear = ended(options_to(0, 2), 0, scene).last[0];
+  scene.view.film.backdrop = Backdrop{Backdrop::Kind::color, {1, 1, 1}, nullptr};
+  const Picture white = ended(options_to(0, 2), 0, scene).last[0];
+  EXPECT_EQ(white.color, clear.color);
+  EXPECT_EQ(white.alpha, clear.alpha);
+  ASSERT_EQ(white.alpha.size(), white.objects.size());
+  const auto bare =
+      static_cast<std::size_t>(std::ranges::find(white.alpha, 0) - white.alpha.begin());
+  ASSERT_LT(bare, white.alpha.size());
+  EXPECT_EQ(white.color[3 * bare], 0);
 }
 
 // A number of samples is taken in the place of the noise that the scene asks for.

@@ -73,6 +73,21 @@ TEST(Viewer, ItsSnapshotIsTheRenderedPicture) {
   }
 }
 
+TEST(Viewer, PagesKnowWhatIsUnderPictures) {
+  for (const auto& [backdrop, told] :
+       {std::pair<std::optional<Backdrop>, json>(std::nullopt, nullptr),
+        {Backdrop{}, "transparent"},
+        {Backdrop{Backdrop::Kind::color, {0.25, 0.5, 1}, nullptr}, {0.25, 0.5, 1}}}) {
+    Scene scene = test::some_scene();
+    scene.view.film.backdrop = backdrop;
+    const Viewer viewer(LiveScene(std::move(scene)), test::test_device(), options_of(1));
+    Guest guest(Place(viewer.address()));
+    EXPECT_EQ(json::parse(guest.until("scene")).at("backdrop"), told);
+    guest.say({{"type", "edit"}, {"what", "delete"}, {"goes_on", false}, {"ids", {1}}});
+    EXPECT_EQ(json::parse(guest.until("edited")).at("backdrop"), told);
+  }
+}
+
 TEST(Viewer, SavesWhatItsPagesMade) {
   const fs::path folder = test::temporary_folder(), file = folder / "scene.pbrt";
   std::ofstream(file) << test::some_text;
