@@ -129,6 +129,30 @@ TEST(SeveralFiles, AreMovedStepByStep) {
   EXPECT_TRUE(alone.automatic_camera);
 }
 
+TEST(SeveralFiles, AreMovedWithTheirInstances) {
+  const fs::path a = write_file(
+      "a.pbrt",
+      "WorldBegin\nObjectBegin \"o\"\nShape \"sphere\"\nObjectEnd\nTranslate 1 0 0\n"
+      "ObjectInstance \"o\"\nActiveTransform EndTime\nTranslate 0 2 0\nActiveTransform All\n"
+      "ObjectInstance \"o\"\n");
+  const Scene scene = several({fs::path(a.string() + "@translate=10,0,0")});
+  ASSERT_EQ(scene.instances.size(), 2u);
+  for (const Instance& instance : scene.instances)
+    EXPECT_EQ(glm::dvec3(instance.world_from_object[3]), glm::dvec3(11, 0, 0));
+  const TransformKeys& keys = scene.instances[1].motion;
+  ASSERT_EQ(keys.size(), 2u);
+  EXPECT_EQ(glm::dvec3(keys[0].matrix[3]), glm::dvec3(11, 0, 0));
+  EXPECT_EQ(glm::dvec3(keys[1].matrix[3]), glm::dvec3(11, 2, 0));
+}
+
+TEST(SeveralFiles, AreFramedWhereTheyWereMovedTo) {
+  const fs::path a = write_file("a.pbrt",
+                                "LookAt 0 0 9  0 0 0  0 1 0\nCamera \"perspective\" \"bool "
+                                "automatic\" true\nWorldBegin\nShape \"sphere\"\n");
+  const Scene scene = several({fs::path(a.string() + "@translate=1000,0,0")});
+  EXPECT_GT(scene.view.camera.world_from_camera[3].x, 900);
+}
+
 TEST(SeveralFiles, WhatMovesThemIsSaidIfItIsWrong) {
   const std::string b = write_file("b.off", triangle).string();
   for (const auto& [steps, why] :
