@@ -46,6 +46,21 @@ std::optional<cl::Program> from_binary(const Device& device, const Binary& binar
   }
 }
 
+/// Returns what the driver says of a build that failed. Drivers that are out of memory or lost may
+/// refuse this too, and that must not hide the error of the build.
+std::string build_log(const Device& device, const cl::Program& program) {
+  std::size_t bytes = 0;
+  const auto ask = [&](std::size_t size, char* text) {
+    return clGetProgramBuildInfo(program(), device.handle()(), CL_PROGRAM_BUILD_LOG, size, text,
+                                 &bytes) == CL_SUCCESS;
+  };
+  if (!ask(0, nullptr)) return "the driver gives no build log";
+  std::string log(bytes, '\0');
+  if (!ask(bytes, log.data())) return "the driver gives no build log";
+  while (!log.empty() && log.back() == '\0') log.pop_back();
+  return log.empty() ? "the build log is empty" : "the build log says:\n" + log;
+}
+
 /// Builds `source`, which `out` becomes. Returns the driver's log where it is an error, else
 /// nothing.
 std::optional<std::string> build(const Device& device, const std::string& name,
@@ -54,17 +69,11 @@ std::optional<std::string> build(const Device& device, const std::string& name,
   const std::string& device_name = device.info().name;
   out = cl_call(fmt::format("program '{}'", name), device_name,
                 [&] { return cl::Program(device.context(), source); });
-  try {
-    out.build({device.handle()}, options.c_str());
-  } catch (const cl::BuildError& error) {
-    std::string log;
-    for (const auto& [of, text] : error.getBuildLog()) log += text;
-    return fmt::format("program '{}': {}: {} (device '{}', options '{}'); the build log says:\n{}",
-                       name, error.what(), cl_error_name(error.err()), device_name, options, log);
-  } catch (const cl::Error& error) {
-    throw_cl_error(error, fmt::format("program '{}'", name), device_name);
-  }
-  return std::nullopt;
+  const cl_device_id handle = device.handle()();
+  const cl_int code = clBuildProgram(out(), 1, &handle, options.c_str(), nullptr, nullptr);
+  if (code == CL_SUCCESS) return std::nullopt;
+  return fmt::format("program '{}': clBuildProgram: {} (device '{}', options '{}'); {}", name,
+                     cl_error_name(code), device_name, options, build_log(device, out));
 }
 
 /// Builds `source` for PoCL with the declarations of kernels/math/builtins.cl in place of those of
@@ -100,12 +109,12 @@ void set_null_arguments(const Device& device, cl::Kernel& kernel) {
                                 [&] { return kernel.getInfo<CL_KERNEL_NUM_ARGS>(); });
   constexpr unsigned char zeros[128] = {};
   for (cl_uint i = 0; i < count; ++i) {
-    bool set = clSetKernelArg(kernel(), i, sizeof(cl_mem), nullptr) == CL_SUCCESS;
-    for (std::size_t bytes = 1; !set && bytes <= sizeof(zeros); bytes *= 2)
-      set = clSetKernelArg(kernel(), i, bytes, zeros) == CL_SUCCESS;
-    if (!set)
-      throw RunError(
-          fmt::format("argument {} of kernel '{}' cannot be zero", i, kernel_name(device, kernel)));
+    cl_int code = clSetKernelArg(kernel(), i, sizeof(cl_mem), nullptr);
+    for (std::size_t bytes = 1; code != CL_SUCCESS && bytes <= sizeof(zeros); bytes *= 2)
+      code = clSetKernelArg(kernel(), i, bytes, zeros);
+    if (code != CL_SUCCESS)
+      throw RunError(fmt::format("argument {} of kernel '{}' cannot be zero: clSetKernelArg: {}", i,
+                                 kernel_name(device, kernel), cl_error_name(code)));
   }
 }
 

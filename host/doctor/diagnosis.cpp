@@ -182,6 +182,7 @@ class Examination {
                 ""});
     registry_ = read_registry(machine_, loader_);
     add(check_registry(registry_, static_cast<bool>(bundled_driver())));
+    add(check_layers(machine_));
   }
 
   void ask_drivers() {

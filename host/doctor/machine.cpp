@@ -240,6 +240,13 @@ Findings check_bundled_cache(const Surroundings& machine) {
                        "it uses PoCL's then")};
 }
 
+Findings check_layers(const Surroundings& machine) {
+  const std::string layers = machine.variable("OPENCL_LAYERS");
+  if (layers.empty()) return {};
+  return {{State::note, "OPENCL_LAYERS", "every call to a driver goes through " + layers,
+           "unset OPENCL_LAYERS, where this is not meant"}};
+}
+
 Findings check_sys(const Surroundings& machine) {
   if (tells_of_processors(machine.root / "sys")) return {};
   return {{State::note, (machine.root / "sys").string(),

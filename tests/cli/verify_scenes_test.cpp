@@ -36,7 +36,7 @@ void expect_agreement(std::vector<std::string> arguments, std::uint64_t rays) {
 
 // All of its scenes, of 250,000 rays each; the first one alone under sanitizers.
 TEST(VerifyTortureSet, ManyRays) {
-  expect_agreement({}, test::sanitized ? 20'000 : test::thorough() ? 1'000'000 : 100'000);
+  expect_agreement({}, test::sanitized ? 20'000 : test::thorough() ? 1'000'000 : 50'000);
 }
 
 /// Every file of scenes/ that an importer knows, relative to it.
@@ -57,7 +57,7 @@ class VerifyScenes : public testing::TestWithParam<std::string> {};
 
 TEST_P(VerifyScenes, Agrees) {
   expect_agreement({(test::source_folder() / "scenes" / GetParam()).string()},
-                   test::sanitized ? 2'000 : 20'000);
+                   test::sanitized ? 2'000 : test::thorough() ? 20'000 : 8'000);
 }
 
 INSTANTIATE_TEST_SUITE_P(Files, VerifyScenes, testing::ValuesIn(scene_files()),

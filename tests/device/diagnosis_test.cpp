@@ -204,6 +204,17 @@ TEST_F(Machine, Caches) {
   EXPECT_THAT(only_wrong(check_cache(machine_, kept)).what, HasSubstr("1.0 MB free"));
 }
 
+TEST_F(Machine, LayersBeforeTheDrivers) {
+  EXPECT_THAT(check_layers(machine_), IsEmpty());
+  variables_["OPENCL_LAYERS"] = "/a/libhostile_layer.so";
+  const Findings found = check_layers(machine_);
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_EQ(found[0].state, State::note);
+  EXPECT_EQ(found[0].about, "OPENCL_LAYERS");
+  EXPECT_THAT(found[0].what, HasSubstr("/a/libhostile_layer.so"));
+  EXPECT_THAT(found[0].fix, HasSubstr("unset OPENCL_LAYERS"));
+}
+
 TEST_F(Machine, ASysThatIsNotMounted) {
   folder("sys");
   const Findings found = check_sys(machine_);

@@ -33,6 +33,8 @@ Findings check_memory(const Surroundings& machine);
 /// Reports the place and size of Caplet's cache, and whether it is writable.
 Findings check_cache(const Surroundings& machine, const std::filesystem::path& folder);
 
+/// Tells of OpenCL layers, which stand between programs and drivers.
+Findings check_layers(const Surroundings& machine);
 /// Reports a missing /sys, as in some containers, without which PoCL ends the process.
 Findings check_sys(const Surroundings& machine);
 
