@@ -24,6 +24,7 @@
 #include "cli/commands.h"
 #include "cli/description.h"
 #include "cli/usage_errors.h"
+#include "device/cl_error.h"
 #include "device/second_try.h"
 #include "render/session.h"
 
@@ -142,6 +143,6 @@ int whole_program(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   const int code = whole_program(argc, argv);
-  if (caplet::any_thread_given_up()) std::_Exit(code);
+  if (caplet::any_thread_given_up() || caplet::any_driver_error()) std::_Exit(code);
   return code;
 }

@@ -4,7 +4,13 @@
 
 #include <fmt/format.h>
 
+#include <atomic>
+
 namespace caplet {
+
+namespace {
+std::atomic<bool> any_error = false;
+}
 
 std::string cl_error_name(cl_int code) {
 #define CAPLET_CL_ERROR(name) \
@@ -78,8 +84,11 @@ std::string cl_error_name(cl_int code) {
 #undef CAPLET_CL_ERROR
 }
 
+bool any_driver_error() { return any_error; }
+
 void throw_cl_error(const cl::Error& error, const std::string& place,
                     const std::string& device_name) {
+  any_error = true;
   throw DriverError(fmt::format("{}: {}: {} (device '{}')", place, error.what(),
                                 cl_error_name(error.err()), device_name),
                     error.err());

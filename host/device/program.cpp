@@ -206,10 +206,11 @@ cl::Kernel Program::kernel(const std::string& name) const {
 
 void detail::set_argument(const Device& device, cl::Kernel& kernel, cl_uint index,
                           const void* value, std::size_t bytes) {
-  const std::string& device_name = device.info().name;
-  const std::string name = kernel_name(device, kernel);
-  cl_call(fmt::format("argument {} of kernel '{}'", index, name), device_name,
-          [&] { kernel.setArg(index, bytes, value); });
+  const cl_int code = clSetKernelArg(kernel(), index, bytes, value);
+  if (code != CL_SUCCESS)
+    throw_cl_error(cl::Error(code, "clSetKernelArg"),
+                   fmt::format("argument {} of kernel '{}'", index, kernel_name(device, kernel)),
+                   device.info().name);
 }
 
 namespace {

@@ -12,6 +12,7 @@
 
 #include "base/check.h"
 #include "base/error.h"
+#include "device/cl_error.h"
 #include "render/detail/known_rays.h"
 #include "render/detail/launch_policy.h"
 #include "shared/shapes.h"
@@ -220,10 +221,19 @@ void Kernels::run(Stage stage, const Bindings& bindings, std::size_t count, std:
   auto& compiled = compiled_[static_cast<std::size_t>(stage)];
   CHECK_EQ_(compiled.has_value(), true);
   CHECK_EQ_(counter == CAPLET_NONE || is_counted(stage), true);
-  const cl_uint index = set_buffers(stage, bindings, compiled->kernel);
   const std::size_t end = first + count;
-  compiled->kernel.setArg(index, narrow<cl_uint>(end));
-  compiled->kernel.setArg(index + 1, counter);
+  cl_uint index = 0;
+  const auto set_arguments = [&](const auto& set) {
+    cl_call(fmt::format("arguments of kernel '{}'", row_of(stage).name), device_.info().name, set);
+  };
+  const auto set_end = [&](std::size_t of_chunk) {
+    compiled->kernel.setArg(index, narrow<cl_uint>(of_chunk));
+  };
+  set_arguments([&] {
+    index = set_buffers(stage, bindings, compiled->kernel);
+    set_end(end);
+    compiled->kernel.setArg(index + 1, counter);
+  });
   const auto start = std::chrono::steady_clock::now();
   if (takes_shares(stage)) {
     launch_shares(device_, compiled->kernel, count);
@@ -231,7 +241,7 @@ void Kernels::run(Stage stage, const Bindings& bindings, std::size_t count, std:
     const std::size_t most = chunk_ > 0 ? chunk_ : count;
     for (; first < end; first += most) {
       const std::size_t chunk_end = std::min(first + most, end);
-      compiled->kernel.setArg(index, narrow<cl_uint>(chunk_end));
+      set_arguments([&] { set_end(chunk_end); });
       launch_items(device_, compiled->kernel, chunk_end - first, compiled->local_size, first);
     }
   }

@@ -132,18 +132,24 @@ State& state() {
   return *all;
 }
 
-void write_report() {
+void write_report() {  // with the mutex held
   State& all = state();
-  const std::lock_guard lock(all.mutex);
+  if (forms().report.empty()) return;
   std::ofstream out(forms().report);
   out << "calls " << all.calls << "\nfaults " << all.faults << "\nfirst " << all.first << "\nleft "
       << all.buffers.size() << "\n";
   for (const auto& [call, count] : all.made) out << call << ' ' << count << '\n';
 }
 
+void write_last_report() {
+  const std::lock_guard lock(state().mutex);
+  write_report();
+}
+
 cl_int note(std::string_view call, cl_int code) {  // with the mutex held
   State& all = state();
   if (all.faults++ == 0) all.first = std::string(call) + " " + std::to_string(code);
+  write_report();  // the process may not come to its end
   return code;
 }
 
@@ -533,7 +539,7 @@ CL_API_ENTRY cl_int CL_API_CALL clInitLayer(cl_uint count, const cl_icd_dispatch
   all.layer.clEnqueueNDRangeKernel = launch;
   all.layer.clEnqueueWriteBuffer = write_buffer;
   all.layer.clEnqueueFillBuffer = fill_buffer;
-  if (!forms().report.empty()) std::atexit(write_report);
+  std::atexit(write_last_report);
   *layer = &all.layer;
   *count_ret = sizeof(Dispatch) / sizeof(void*);
   return CL_SUCCESS;

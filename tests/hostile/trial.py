@@ -19,6 +19,9 @@ import sys
 import tempfile
 import time
 
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "tools"))
+from driver_kit import exr  # noqa: E402
+
 # Forms that change no result: limits of memory, launches and queries, and commands that finish late.
 HARMLESS = {
     "blocks of 256 MB": "block=256M",
@@ -46,8 +49,13 @@ LIMIT = 120  # seconds: a command that takes longer hangs
 
 
 class Result:
-    def __init__(self, code, text, report, files):
-        self.code, self.text, self.report, self.files = code, text, report, files
+    """How a command ended, what it wrote, and its pictures (their headers tell times)."""
+
+    def __init__(self, code, text, report, folder):
+        self.code, self.text, self.report = code, text, report
+        self.files, self.pictures = {p.name: p.read_bytes() for p in folder.iterdir()}, {}
+        for path in folder.glob("*.exr") if code == 0 else []:
+            self.pictures[path.name] = {name: values.tobytes() for name, values in exr.Picture(path).channels.items()}
 
 
 class Trial:
@@ -71,7 +79,7 @@ class Trial:
             code, text = "hang", ""
         facts = dict(line.split(" ", 1) for line in report.read_text().splitlines() if " " in line) if report.exists() else {}
         report.unlink(missing_ok=True)
-        return Result(code, text, facts, {p.name: p.read_bytes() for p in folder.iterdir()})
+        return Result(code, text, facts, folder)
 
     def commands(self):
         """Commands by name; each with what of its text is compared."""
@@ -110,7 +118,7 @@ class Trial:
         if result.code < 0 or result.code >= 128:
             return "crash", result
         if result.code == 0:
-            same = result.files == good.files and compared.findall(result.text) == compared.findall(good.text)
+            same = result.pictures == good.pictures and compared.findall(result.text) == compared.findall(good.text)
             return ("same" if same else "wrong"), result
         if result.files != old:
             return "lost", result
