@@ -14,12 +14,14 @@ import os
 import pathlib
 import random
 import re
+import signal
 import subprocess
 import sys
 import tempfile
 import time
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "tools"))
+import view_latency  # noqa: E402
 from driver_kit import exr  # noqa: E402
 
 # Forms that change no result: limits of memory, launches and queries, and commands that finish late.
@@ -35,16 +37,19 @@ HARMLESS = {
     "builds take 0.05 s more": "compile=0.05",
     "memory is full of ones": "garbage",
 }
-# Forms that a command cannot end well with: each must be told of.
+# Forms that a command cannot end well with: each must be told of, in these words.
 FATAL = {
-    "launches end after 0.1 ms": "watchdog=0.0001",
-    "1 MB in all": "memory=1M",
-    "1 MB in all, missed late": "memory=1M lazy",
-    "blocks of 4 KB": "block=4K",
-    "no program can be built": "calls=clBuildProgram rate=1",
-    "the compiler crashes": "crash=clBuildProgram",
-    "the device is lost": "lose=150",
+    "launches end after 0.1 ms": ("watchdog=0.0001", "CL_OUT_OF_RESOURCES"),
+    "1 MB in all": ("memory=1M", "CL_MEM_OBJECT_ALLOCATION_FAILURE"),
+    "1 MB in all, missed late": ("memory=1M lazy", "CL_MEM_OBJECT_ALLOCATION_FAILURE"),
+    "blocks of 4 KB": ("block=4K", "the device allows|CL_INVALID_BUFFER_SIZE"),
+    "no program can be built": ("calls=clBuildProgram rate=1", "program '.*': clBuildProgram: CL_"),
+    "an argument cannot be set": ("calls=clSetKernelArg at=100", "arguments? .*of kernel '.*': clSetKernelArg: CL_OUT_OF_RESOURCES"),
+    "the compiler crashes": ("crash=clBuildProgram", "the driver failed"),
+    "the device is lost": ("lose=150", "CL_OUT_OF_RESOURCES"),
 }
+# What tells of a driver that failed, or gave wrong results.
+ERROR = re.compile(r"^caplet: error: .*(cl[A-Z]\w+: CL_|driver|device|memory)|^\s*\d+ .*disagree", re.M)
 LIMIT = 120  # seconds: a command that takes longer hangs
 
 
@@ -86,7 +91,7 @@ class Trial:
         scene = {p.stem: str(p) for p in self.scenes}
         small = ["--size", "48x27", "--spp", "2", "-o", "out.exr"]
         nothing, last = re.compile(r"(?!)"), re.compile(r"^(?!caplet: ).*$", re.M)
-        return {
+        all_of_them = {
             "render capsules": (["render", scene["capsules"], *small], nothing),
             "render gallery": (["render", scene["gallery"], *small], nothing),
             "render smoke": (["render", scene["smoke"], *small], nothing),
@@ -95,6 +100,7 @@ class Trial:
             "pick": (["pick", scene["capsules"], "--pixel", "640,360", "--all"], last),
             "verify": (["verify", scene["gallery"], "--rays", "2000"], re.compile(r"^verdict.*$", re.M)),
         }
+        return {name: all_of_them[name] for name in ("render capsules", "pick")} if self.options.quick else all_of_them
 
     def plain(self, name, command):
         if name not in self.good:
@@ -122,8 +128,61 @@ class Trial:
             return ("same" if same else "wrong"), result
         if result.files != old:
             return "lost", result
-        told = re.search(r"^caplet: error: .*(cl[A-Z]\w+: CL_|driver|device|memory)|^\s*\d+ .*disagree", result.text, re.M)
-        return ("told" if told else "silent"), result
+        return ("told" if ERROR.search(result.text) else "silent"), result
+
+    def viewed(self, form, report):
+        """Looks at a scene in the viewer from two places, and ends it. Returns what came of it, and the report."""
+        environment = os.environ | {"OPENCL_LAYERS": str(self.options.layer), "HOSTILE": f"{form} report={report}"}
+        command = [self.options.program, "view", self.options.scenes / "gallery.pbrt", "--no-browser", "-q", "--spp", "4", "--size", "96x54"]
+        process = subprocess.Popen(command, env=environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        seen = False
+        try:
+            client = view_latency.Client(process.stdout.readline().strip())
+            client.socket.settimeout(60)
+            hello = client.until(lambda got: isinstance(got, dict) and got["type"] == "scene")
+            for by in (0, 0.1):
+                view_latency.look(client, hello["camera"], (96, 54), by)
+                client.until(lambda got: isinstance(got, tuple) and got[2:] == (1, 4))
+            seen = True
+        except TimeoutError:
+            process.kill()
+            return "hang", {}, ""
+        except (OSError, ValueError, RuntimeError):  # the program has ended
+            pass
+        if seen:
+            process.send_signal(signal.SIGINT)
+        try:
+            text = process.communicate(timeout=60)[1]
+        except subprocess.TimeoutExpired:
+            process.kill()
+            return "hang", {}, ""
+        facts = dict(line.split(" ", 1) for line in report.read_text().splitlines() if " " in line) if report.exists() else {}
+        if process.returncode < 0 or process.returncode >= 128:
+            return "crash", facts, text
+        if process.returncode == 0:
+            return ("same" if seen else "silent"), facts, text
+        return ("told" if ERROR.search(text) else "silent"), facts, text
+
+    def views(self):
+        """The viewer where one call fails."""
+        with tempfile.TemporaryDirectory() as folder:
+            folder = pathlib.Path(folder)
+            what, facts, text = self.viewed("", folder / "plain")
+            if what != "same":
+                sys.exit(f"the viewer does not work without faults: {what}\n{text}")
+            calls = [(call, int(count)) for call, count in facts.items() if call.startswith("cl")]
+            draw = random.Random(self.options.seed)
+            drawn = [(call, draw.randint(1, count)) for call, count in draw.choices(calls, k=(self.options.faults + 7) // 8)]
+            found = self.pool([lambda i=i, call=call, at=at: self.viewed(f"calls={call} at={at} seed={at}", folder / str(i))
+                               for i, (call, at) in enumerate(drawn)])
+        rows = collections.defaultdict(collections.Counter)
+        for (call, at), (what, facts, text) in zip(drawn, found):
+            rows[call][what if facts.get("first") else "not reached" if what == "same" else what] += 1
+            if what not in ("same", "told"):
+                self.fail(f"{call} number {at} of the viewer fails ({facts.get('first')}): {what}\n{text}")
+        for call, count in sorted(rows.items()):
+            self.say(f"viewer, {call}: {self.counts(count)}")
+        return rows
 
     def pool(self, jobs):
         with concurrent.futures.ThreadPoolExecutor(self.options.jobs) as pool:
@@ -147,14 +206,13 @@ class Trial:
     def endings(self):
         """Every command under each form that it cannot end well with."""
         rows = {}
-        for title, form in FATAL.items():
-            jobs = [lambda n=n, c=c, t=t, form=form: self.judged(n, c, t, form) for n, (c, t) in self.commands().items()]
-            found = self.pool(jobs)
+        for title, (form, words) in FATAL.items():
+            found = self.pool([lambda n=n, c=c, t=t, form=form: self.judged(n, c, t, form) for n, (c, t) in self.commands().items()])
             rows[title] = collections.Counter(what for what, _ in found)
             self.say(f"{title}: {self.counts(rows[title])}")
             for name, (what, result) in zip(self.commands(), found):
-                if what not in ("told", "same") or (what == "same" and not result.report.get("first", "").strip() == ""):
-                    self.fail(f"{title}: {name}: {what}\n{result.text}")
+                if not (what == "told" and re.search(words, result.text) or what == "same" and not result.report.get("first")):
+                    self.fail(f"{title}: {name}: {what}, not in the words \"{words}\"\n{result.text}")
         return rows
 
     def faults(self):
@@ -221,7 +279,7 @@ def main():
     parser.add_argument("--scenes", type=pathlib.Path, required=True, help="the folder of scenes")
     parser.add_argument("--tests", type=pathlib.Path, help="the folder of test programs")
     parser.add_argument("--out", type=pathlib.Path, default=pathlib.Path("."), help="where hostile.json and the suites' output go")
-    parser.add_argument("--parts", nargs="*", default=["pictures", "endings", "faults"], choices=["pictures", "endings", "faults", "suites"])
+    parser.add_argument("--parts", nargs="*", default=["pictures", "endings", "faults", "views"], choices=["pictures", "endings", "faults", "views", "suites"])
     parser.add_argument("--suites", nargs="*", default=["session/session_tests", "query/query_tests", "verify/verify_tests", "edits/edits_tests"])
     parser.add_argument("--only", nargs="*", help="forms, by their text")
     parser.add_argument("--faults", type=int, default=1000, help="how many (default 1000)")
@@ -234,10 +292,10 @@ def main():
     options.out.mkdir(parents=True, exist_ok=True)
     if options.only:
         for forms in (HARMLESS, FATAL):
-            for title in [t for t, form in forms.items() if form not in options.only]:
+            for title in [t for t, form in forms.items() if (form if isinstance(form, str) else form[0]) not in options.only]:
                 del forms[title]
     if options.quick:
-        options.faults = 40
+        options.faults = 16
     trial = Trial(options)
     rows = {part: getattr(trial, part)() for part in options.parts}
     (options.out / "hostile.json").write_text(json.dumps(rows, indent=1) + "\n")
