@@ -49,6 +49,10 @@ class ChangedRanges {
 struct SceneChanges {
   SCENE_GROUPS
   bool all = false;  // everything, of another length perhaps
+
+#undef BUFFER
+#define BUFFER(name, type, access) &&name.empty()
+  bool empty() const { return !all SCENE_GROUPS; }
 };
 
 #undef GROUP_BEGIN

@@ -3,6 +3,8 @@
 #include "view/detail/eye_films.h"
 
 #include <algorithm>
+#include <cmath>
+#include <glm/vec4.hpp>
 #include <limits>
 #include <utility>
 #include <vector>
@@ -11,6 +13,7 @@
 #include "film/develop.h"
 #include "film/exr_bytes.h"
 #include "film/sample_plan.h"
+#include "present/least_width.h"
 #include "report/denoised.h"
 #include "view/detail/figure.h"
 #include "view/detail/shown_view.h"
@@ -22,6 +25,42 @@ namespace {
 
 constexpr int coarsest_scale = 16;
 constexpr double first_guess_paths_a_second = 5e5;
+constexpr double quick_seconds = 0.05;  // for widening lines, in a picture that is hardly late then
+constexpr std::size_t most_places = 64;
+
+/// Returns some centres of capsules and spheres, in the world, spread over the scene's shapes.
+std::vector<glm::dvec3> places_of_lines(const Scene& scene) {
+  std::vector<glm::dvec3> out;
+  const auto add = [&](const Shape& shape, const glm::dmat4& world_from_object) {
+    if (const auto* capsules = std::get_if<CapsulesShape>(&shape.geometry);
+        capsules && !capsules->p0.empty()) {
+      const glm::dvec3 middle(capsules->p0[capsules->p0.size() / 2]);
+      out.emplace_back(world_from_object * shape.world_from_object * glm::dvec4(middle, 1));
+    }
+    if (std::holds_alternative<SphereShape>(shape.geometry))
+      out.emplace_back(world_from_object * shape.world_from_object * glm::dvec4(0, 0, 0, 1));
+  };
+  for (const Shape& shape : scene.shapes) add(shape, glm::dmat4(1));
+  for (const Instance& instance : scene.instances)
+    for (const Shape& shape : scene.objects[instance.object].shapes)
+      add(shape, instance.world_from_object);
+  const std::size_t step = out.size() / most_places + 1;
+  std::vector<glm::dvec3> some;
+  for (std::size_t i = 0; i < out.size(); i += step) some.push_back(out[i]);
+  return some;
+}
+
+/// Returns by how much of itself a pixel's footprint differs most at these places.
+double change_of_footprints(const View& a, const View& b, const std::vector<glm::dvec3>& places) {
+  if (a.film.least_width != b.film.least_width) return std::numeric_limits<double>::infinity();
+  double most = 0;
+  for (const glm::dvec3& p : places) {
+    const double before = pixel_footprint(a.camera, a.film, p),
+                 now = pixel_footprint(b.camera, b.film, p);
+    most = std::max(most, std::abs(now - before) / std::min(now, before));
+  }
+  return most;
+}
 
 SessionOptions session_options(const ViewerOptions& options, bool denoises) {
   SessionOptions out;
@@ -39,6 +78,7 @@ EyeFilms::EyeFilms(LiveScene& live, const Editor& editor, const Device& device,
       editor_(editor),
       options_(options),
       session_options_(session_options(options, denoises)),
+      device_(device),
       session_(live.flat(), live.view(), std::vector<Device>{device}, session_options_),
       look_(look_of_scene(live.scene())),
       paths_a_second_(first_guess_paths_a_second) {
@@ -66,8 +106,42 @@ void EyeFilms::look_with(const ShowView& look, int scale, std::size_t eye) {
   View own = live_.scene().view;
   own.camera = editor_.view().camera;
   live_.edit(shown_view(own, look, scale, static_cast<int>(eye)));
-  session_.update(live_.flat(), live_.take_changes(), live_.view());
+  const SceneChanges changes = live_.take_changes();
+  session_.update(live_.flat(), changes, live_.view());
   eye_ = eye;
+  widen(shown_view(own, look, 1, static_cast<int>(eye)), scale, !changes.empty());
+}
+
+/// Widens the scene's lines for `full`, the view of all pixels. Lines that a look makes a little
+/// too wide or thin are left where widening takes long, and more so while the camera moves.
+void EyeFilms::widen(const View& full, int scale, bool has_changed) {
+  if (!(full.film.least_width > 0)) return wide_.reset();
+  const double tolerance = !wide_ || wide_->seconds < quick_seconds ? 0 : scale > 1 ? 1e9 : 0.1;
+  const Clock::time_point start = Clock::now();
+  const bool stays =
+      wide_ && !has_changed && change_of_footprints(wide_->view, full, wide_->places) <= tolerance;
+  if (stays) {
+    wide_->live.edit(live_.scene().view);
+  } else {
+    Scene scene = live_.scene();
+    scene.view = full;
+    widen_to_least(scene);
+    scene.view = live_.scene().view;
+    if (wide_)
+      wide_->live.replace(std::move(scene));
+    else
+      wide_ = std::make_unique<Wide>(std::move(scene), device_, session_options_);
+    wide_->view = full;
+    wide_->places = places_of_lines(live_.scene());
+  }
+  wide_->session.update(wide_->live.flat(), wide_->live.take_changes(), wide_->live.view());
+  if (!stays) wide_->seconds = seconds_since(start);
+}
+
+EyeFilms::Wide::Wide(Scene scene, const Device& device, const SessionOptions& options)
+    : live(std::move(scene)),
+      session(live.flat(), live.view(), std::vector<Device>{device}, options) {
+  (void)live.take_changes();
 }
 
 /// Starts the film of `look` with a pixel for each square of `scale` pixels.
@@ -81,9 +155,9 @@ void EyeFilms::set_film(const ShowView& look, int scale) {
 
 /// Switches to the other eye of a pair and resumes its film.
 void EyeFilms::change_eyes() {
-  films_[eye_] = session_.film();
+  films_[eye_] = drawn().film();
   look_with(look_, scale_, 1 - eye_);
-  if (samples_[eye_] > 0) session_.resume(std::move(*films_[eye_]));
+  if (samples_[eye_] > 0) drawn().resume(std::move(*films_[eye_]));
 }
 
 void EyeFilms::begin(const ShowView& look) {
@@ -117,14 +191,14 @@ void EyeFilms::step(const std::function<void(bool is_coarse)>& between_batches) 
   const std::uint32_t count = samples_of_step(eye, pixels);
   const bool is_coarse = scale_ > 1;
   const Clock::time_point start = Clock::now();
-  session_.render(count, [&](const SessionProgress&) { between_batches(is_coarse); });
+  drawn().render(count, [&](const SessionProgress&) { between_batches(is_coarse); });
   const double seconds = std::max(1e-4, seconds_since(start));
   paths_a_second_ = 0.5 * (paths_a_second_ + pixels * count / seconds);
   samples_[eye_] += count;
 }
 
 Film EyeFilms::film(std::size_t eye) {
-  return eye == eye_ ? session_.film() : films_.at(eye).value();
+  return eye == eye_ ? drawn().film() : films_.at(eye).value();
 }
 
 NoisyImage EyeFilms::noisy(std::size_t eye) {
@@ -161,7 +235,7 @@ std::string EyeFilms::snapshot() {
 
 std::string EyeFilms::figure(const MakeFigure& asked,
                              const std::function<bool(double share)>& goes_on) {
-  return figure_png(live_.scene(), editor_.view(), asked, session_.device(0), goes_on);
+  return figure_png(live_.scene(), editor_.view(), asked, device_, goes_on);
 }
 
 }  // namespace caplet::view

@@ -21,8 +21,13 @@ constexpr std::size_t most_crossings = 4096;
 
 }  // namespace
 
-Picker::Picker(const LiveScene& live, const Editor& editor, DeviceScene& scene, std::string device)
-    : live_(live), editor_(editor), device_(std::move(device)), query_(scene) {
+Picker::Picker(const LiveScene& live, const Editor& editor, const EyeFilms& films,
+               std::string device)
+    : live_(live),
+      editor_(editor),
+      films_(films),
+      device_(std::move(device)),
+      query_(films.device_scene()) {
   const RayRecord any{0, 0, 0, 0, 0, 0, 1, INFINITY};
   (void)query_.closest(std::span(&any, 1));  // compiles the query's kernel
 }
@@ -42,9 +47,11 @@ Text Picker::answer_to(const Ask& ask, const ShowView& shown) {
   told.all = true;  // reports a list, even for the nearest crossing only
   if (ask.all) {
     told.crossings = query_.all(std::span(&ray, 1), most_crossings).crossings;
-  } else if (const PickRecord pick = query_.closest(std::span(&ray, 1))[0];
-             pick.object != CAPLET_NONE) {
-    told.crossings = {pick};
+  } else {
+    Query drawn(films_.drawn_scene());
+    const std::span one(&ray, 1);
+    const PickRecord pick = (ask.reference ? query_ : drawn).closest(one)[0];
+    if (pick.object != CAPLET_NONE) told.crossings = {pick};
   }
   if (ask.reference) told.reference = report::reference_crossings(scene, ray, ask.all);
   out["pick"] = nlohmann::ordered_json::parse(report::json_text(told, scene));

@@ -35,7 +35,7 @@ class Viewer::State {
         keeping_(live_, editor_, std::move(keeper)),
         clients_(look_of_scene(live_.scene()), options.read_only),
         films_(live_, editor_, device, options, options.denoises),
-        picker_(live_, editor_, films_.device_scene(), device.info().name),
+        picker_(live_, editor_, films_, device.info().name),
         desk_(live_, editor_, keeping_, clients_, films_, device.info().name),
         checked_(live_.scene().view) {
     checked_.camera.medium.reset();  // looks do not set the medium

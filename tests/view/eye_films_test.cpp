@@ -12,6 +12,8 @@
 
 #include "guests.h"
 #include "live_pictures.h"
+#include "present/least_width.h"
+#include "render/query.h"
 #include "support/test_device.h"
 #include "view/detail/shown_view.h"
 
@@ -41,6 +43,13 @@ Ended ended(const ViewerOptions& options, double separation = 0, Scene scene = t
     out.before[eye] = std::exchange(out.last[eye], std::move(picture));
   }
   return out;
+}
+
+/// The picture of all pixels and samples.
+Picture full_picture(EyeFilms& films, const ShowView& look) {
+  films.begin(look);
+  while (films.has_more()) films.step([](bool) {});
+  return films.picture();
 }
 
 ViewerOptions options_to(double noise, int most = 4096) {
@@ -78,6 +87,75 @@ TEST(EyeFilms, PicturesOverAColourHaveCoverageInItsPlace) {
       static_cast<std::size_t>(std::ranges::find(white.alpha, 0) - white.alpha.begin());
   ASSERT_LT(bare, white.alpha.size());
   EXPECT_EQ(white.color[3 * bare], 0);
+}
+
+/// Three capsules that are much thinner than a pixel, and a sphere that is not.
+Scene thin_scene() {
+  Scene scene = test::scene_of_text(
+      "LookAt 0 -5 0  0 0 0  0 0 1\nCamera \"perspective\" \"float fov\" [ 40 ]\n"
+      "Film \"rgb\" \"float leastwidth\" [ 4 ]\nWorldBegin\nLightSource \"infinite\"\n"
+      "Translate 0 2 0\nShape \"sphere\"\n");
+  CapsulesShape lines;
+  for (const float z : {-0.6f, 0.0f, 0.6f}) {
+    lines.p0.emplace_back(-1, 0, z);
+    lines.p1.emplace_back(1, 0, z);
+    lines.radius0.push_back(1e-4f);
+  }
+  Shape shape;
+  shape.geometry = lines;
+  scene.shapes.push_back(shape);
+  return scene;
+}
+
+// The picture is that of the scene that is widened for its camera, also from elsewhere and after an
+// edit, while queries see the scene as it is.
+TEST(EyeFilms, LinesHaveTheLeastWidthOfTheFilm) {
+  Scene scene = thin_scene();
+  const auto expected = [&](const ShowView& look) {
+    Scene wide = scene;
+    wide.view = shown_view(scene.view, look, 1, 0);
+    EXPECT_EQ(widen_to_least(wide), 6u);
+    wide.view.film.least_width = 0;
+    LiveScene live(std::move(wide));
+    const Editor editor(live);
+    EyeFilms films(live, editor, test::test_device(), options_to(0, 4), false);
+    return full_picture(films, look);
+  };
+  LiveScene live(scene);
+  Editor editor(live);
+  EyeFilms films(live, editor, test::test_device(), options_to(0, 4), false);
+  const auto expect_widened = [&](const ShowView& look) {
+    const Picture seen = full_picture(films, look), wanted = expected(look);
+    EXPECT_EQ(seen.objects, wanted.objects);
+    EXPECT_EQ(seen.color, wanted.color);
+    return std::ranges::count(seen.objects, 1u);
+  };
+  ShowView look = look_of_scene(scene);
+  look.width = test::width;
+  look.height = test::height;
+  // Each of the three is 35 pixels long and 4 wide.
+  EXPECT_GT(expect_widened(look), 3 * 35 * 3);
+  look.world_from_camera[3].y *= 1.5;
+  EXPECT_GT(expect_widened(look), 3 * 23 * 3);
+
+  // A ray beside the line, within what is drawn.
+  const RayRecord ray{0.1f, -5, 0.05f, 0, 0, 1, 0, INFINITY};
+  const auto object = [&](DeviceScene& of) {
+    return Query(of).closest(std::span(&ray, 1))[0].object;
+  };
+  EXPECT_EQ(object(films.drawn_scene()), 1u);
+  EXPECT_EQ(object(films.device_scene()), 0u);
+
+  editor.make(Reshape{1, 1, {-1, 0, 0.3}, {1, 0, 0.3}, 1e-4, 1e-4});
+  apply_edit(scene, CapsuleEdit{{{}, 1}, 1, {{-1, 0, 0.3f}, {1, 0, 0.3f}, 1e-4f, 1e-4f}});
+  expect_widened(look);
+  EXPECT_EQ(object(films.drawn_scene()), 0u) << "it has moved away";
+
+  View view = scene.view;
+  view.film.least_width = 0;
+  live.edit(view);
+  full_picture(films, look);
+  EXPECT_EQ(&films.drawn_scene(), &films.device_scene());
 }
 
 // A number of samples is taken in the place of the noise that the scene asks for.

@@ -7,8 +7,11 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <glm/vec3.hpp>
+#include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "base/clock.h"
 #include "lower/live_scene.h"
@@ -22,7 +25,8 @@
 namespace caplet::view {
 
 /// Renders one look, of one eye or two, coarsely at first. Both eyes share one session: the film of
-/// the other eye waits here. Only the renderer's thread calls it.
+/// the other eye waits here. Where the film has a least width of lines, pictures are of a copy of
+/// the scene, and queries still see it as it is. Only the renderer's thread calls it.
 class EyeFilms {
  public:
   /// The scene and its editor must outlive this. Sends the scene to the device. `denoises`: films
@@ -30,8 +34,10 @@ class EyeFilms {
   EyeFilms(LiveScene& live, const Editor& editor, const Device& device,
            const ViewerOptions& options, bool denoises);
 
-  /// Returns the scene on the device, for queries.
+  /// Returns the scene on the device as it is, for queries.
   DeviceScene& device_scene() const { return *session_.scene_on(0); }
+  /// Returns the scene that pictures are of, which may have wider lines, for queries.
+  DeviceScene& drawn_scene() const { return *drawn().scene_on(0); }
   const ShowView& look() const { return look_; }
   std::size_t eyes() const { return look_.separation > 0 ? 2 : 1; }
   /// Returns the samples per pixel of a finished picture, and of one with a noise the most.
@@ -74,12 +80,27 @@ class EyeFilms {
   std::uint32_t samples_of_step(std::size_t eye, double pixels) const;
   bool has_little_noise() const;
   Film film(std::size_t eye);
+  const Session& drawn() const { return wide_ ? wide_->session : session_; }
+  Session& drawn() { return wide_ ? wide_->session : session_; }
+  void widen(const View& full, int scale, bool has_changed);
+
+  /// The scene with lines of FilmSettings::least_width for one view of the full picture.
+  struct Wide {
+    Wide(Scene scene, const Device& device, const SessionOptions& options);
+    LiveScene live;
+    Session session;
+    View view;
+    std::vector<glm::dvec3> places;  // some centres of lines
+    double seconds = 0;              // that it took to widen and send it
+  };
 
   LiveScene& live_;
   const Editor& editor_;
   ViewerOptions options_;
   SessionOptions session_options_;
-  Session session_;
+  Device device_;
+  Session session_;             // of the scene as it is
+  std::unique_ptr<Wide> wide_;  // where lines have a least width
   ShowView look_;
   std::uint64_t version_ = 0;
   std::uint32_t view_ = 1;

@@ -9,16 +9,19 @@
 #include "lower/live_scene.h"
 #include "render/query.h"
 #include "view/detail/clients.h"
+#include "view/detail/eye_films.h"
 #include "view/editor.h"
 
 namespace caplet::view {
 
-/// Answers what a pixel shows, what a thing is, and what a form says. Only the renderer's thread
-/// calls it.
+/// Answers what a pixel shows, what a thing is, and what a form says. What a pixel shows is what
+/// was drawn there, with the least width of lines; lists of crossings are of the scene as it is.
+/// Only the renderer's thread calls it.
 class Picker {
  public:
-  /// The scene and its editor must outlive this. `device`: its name. Compiles the query's kernel.
-  Picker(const LiveScene& live, const Editor& editor, DeviceScene& scene, std::string device);
+  /// The scene, its editor and its films must outlive this. `device`: its name. Compiles the
+  /// query's kernel.
+  Picker(const LiveScene& live, const Editor& editor, const EyeFilms& films, std::string device);
 
   /// `shown`: the look that pages see.
   Text answer(const Question& question, const ShowView& shown);
@@ -32,6 +35,7 @@ class Picker {
 
   const LiveScene& live_;
   const Editor& editor_;
+  const EyeFilms& films_;
   std::string device_;
   Query query_;
 };
