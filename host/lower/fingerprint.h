@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Tells whether two runs render the same samples.
+// Tells whether two runs render the same samples. Hashes of scene files would tell too much (a
+// comment changes them) and too little (options, files that they name, another importer's version).
+// Scene and view have hashes of their own, so that a refusal says what differs.
 #pragma once
 
 #include <string>

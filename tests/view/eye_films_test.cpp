@@ -89,28 +89,10 @@ TEST(EyeFilms, PicturesOverAColourHaveCoverageInItsPlace) {
   EXPECT_EQ(white.color[3 * bare], 0);
 }
 
-/// Three capsules that are much thinner than a pixel, and a sphere that is not.
-Scene thin_scene() {
-  Scene scene = test::scene_of_text(
-      "LookAt 0 -5 0  0 0 0  0 0 1\nCamera \"perspective\" \"float fov\" [ 40 ]\n"
-      "Film \"rgb\" \"float leastwidth\" [ 4 ]\nWorldBegin\nLightSource \"infinite\"\n"
-      "Translate 0 2 0\nShape \"sphere\"\n");
-  CapsulesShape lines;
-  for (const float z : {-0.6f, 0.0f, 0.6f}) {
-    lines.p0.emplace_back(-1, 0, z);
-    lines.p1.emplace_back(1, 0, z);
-    lines.radius0.push_back(1e-4f);
-  }
-  Shape shape;
-  shape.geometry = lines;
-  scene.shapes.push_back(shape);
-  return scene;
-}
-
 // The picture is that of the scene that is widened for its camera, also from elsewhere and after an
 // edit, while queries see the scene as it is.
 TEST(EyeFilms, LinesHaveTheLeastWidthOfTheFilm) {
-  Scene scene = thin_scene();
+  Scene scene = test::thin_scene();
   const auto expected = [&](const ShowView& look) {
     Scene wide = scene;
     wide.view = shown_view(scene.view, look, 1, 0);

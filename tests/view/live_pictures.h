@@ -48,6 +48,24 @@ ObjectInstance "twig"
 
 inline Scene some_scene() { return test::scene_of_text(some_text); }
 
+/// A sphere, and before it three capsules that are much thinner than a pixel, with a least width.
+inline Scene thin_scene() {
+  Scene scene = test::scene_of_text(
+      "LookAt 0 -5 0  0 0 0  0 0 1\nCamera \"perspective\" \"float fov\" [ 40 ]\n"
+      "Film \"rgb\" \"float leastwidth\" [ 4 ]\nWorldBegin\nLightSource \"infinite\"\n"
+      "Translate 0 2 0\nShape \"sphere\"\n");
+  CapsulesShape lines;
+  for (const float z : {-0.6f, 0.0f, 0.6f}) {
+    lines.p0.emplace_back(-1, 0, z);
+    lines.p1.emplace_back(1, 0, z);
+    lines.radius0.push_back(1e-4f);
+  }
+  Shape shape;
+  shape.geometry = lines;
+  scene.shapes.push_back(shape);
+  return scene;
+}
+
 inline std::vector<std::uint64_t> picture_of(const FlatScene& flat, const FlatView& view,
                                              std::uint32_t samples = 2) {
   DeviceScene scene(test::test_device(), flat);

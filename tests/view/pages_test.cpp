@@ -184,6 +184,30 @@ TEST(Pages, NeverSeeALookThatWasRefused) {
   EXPECT_GT(guest.until_samples(1, view).view, view);
 }
 
+// A click finds what is drawn, lists of crossings the scene as it is.
+TEST(Pages, PickLinesOfTheLeastWidth) {
+  const Scene scene = test::thin_scene();
+  const Viewer viewer(LiveScene(Scene(scene)), test::test_device(), options_of(1));
+  Guest guest(Place(viewer.address()));
+  guest.look(scene);
+  guest.until_samples(1);
+  const auto crossings = [&](bool all, bool reference) {
+    guest.say({{"type", "ask"},
+               {"number", 1},
+               {"x", 48},
+               {"y", 31},
+               {"all", all},
+               {"reference", reference}});
+    return json::parse(guest.until("answer")).at("pick").at("crossings");
+  };
+  const json near = crossings(false, false), list = crossings(true, true);
+  ASSERT_EQ(near.size(), 1u);
+  EXPECT_EQ(near[0].at("object_id"), 1);
+  ASSERT_EQ(list.size(), 2u);
+  for (const json& one : list) EXPECT_EQ(one.at("object_id"), 0);
+  EXPECT_EQ(crossings(false, true).at(0).at("object_id"), 0) << "as the reference has it";
+}
+
 TEST(Pages, PickWithTheEyeThatTheyAskFor) {
   const Scene scene = test::some_scene();
   const Viewer viewer(LiveScene(Scene(scene)), test::test_device(), options_of(1));
