@@ -5,6 +5,7 @@
 // 2 wrong input or usage, 3 `verify` found disagreement, 75 a stopped render's film is kept).
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <poll.h>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
@@ -56,10 +57,17 @@ void open_standard_streams() {
       return;
 }
 
+/// Returns whether stdout is a pipe that nobody reads any more, as after `| head`.
+bool reader_has_gone() {
+  pollfd out{STDOUT_FILENO, POLLOUT, 0};
+  return ::poll(&out, 1, 0) > 0 && (out.revents & POLLERR) != 0;
+}
+
 /// Returns `code`, or exit_failed when results did not reach stdout.
 int end(int code) {
   errno = 0;
   if (std::fflush(stdout) == 0 && !std::ferror(stdout) && std::cout.flush()) return code;
+  if (reader_has_gone()) return exit_failed;
   print_error(fmt::format("stdout cannot be written: {}",
                           errno ? std::strerror(errno) : "not all of it was taken"));
   return exit_failed;

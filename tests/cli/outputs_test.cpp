@@ -370,6 +370,19 @@ TEST(StandardStreams, AReaderThatGoesDoesNotEndARender) {
   EXPECT_EQ(test::run_program({"info", "scene.pbrt"}, folder, {}, to_nobody).code, 1);
 }
 
+// As after `| head`, which has seen enough.
+TEST(StandardStreams, AReaderThatGoesIsNoNews) {
+  const auto to_nobody = [] {
+    int ends[2];
+    if (::pipe(ends) != 0) ::_exit(126);
+    ::close(ends[0]);
+    ::dup2(ends[1], STDOUT_FILENO);
+  };
+  const Result help = test::run_program({"help", "render"}, folder_with_scene(), {}, to_nobody);
+  EXPECT_EQ(help.code, 1);
+  EXPECT_EQ(help.err, "");
+}
+
 TEST(StandardStreams, DashIsStdout) {
   const fs::path folder = folder_with_scene();
   const Result stats = render(folder, {"-o", "none", "--stats", "-"});
