@@ -95,8 +95,9 @@ TEST(EyeFilms, LinesHaveTheLeastWidthOfTheFilm) {
   Scene scene = test::thin_scene();
   const auto expected = [&](const ShowView& look) {
     Scene wide = scene;
-    wide.view = shown_view(scene.view, look, 1, 0);
+    wide.view = shown_view(scene.view, look, 1, look.separation > 0 ? 1 : 0);
     EXPECT_EQ(widen_to_least(wide), 6u);
+    wide.view = scene.view;
     wide.view.film.least_width = 0;
     LiveScene live(std::move(wide));
     const Editor editor(live);
@@ -133,9 +134,14 @@ TEST(EyeFilms, LinesHaveTheLeastWidthOfTheFilm) {
   expect_widened(look);
   EXPECT_EQ(object(films.drawn_scene()), 0u) << "it has moved away";
 
-  View view = scene.view;
-  view.film.least_width = 0;
-  live.edit(view);
+  scene.view.film.least_width = 6;
+  live.edit(scene.view);
+  expect_widened(look);
+  look.separation = 0.5;  // the last picture is the right eye's
+  expect_widened(look);
+
+  scene.view.film.least_width = 0;
+  live.edit(scene.view);
   full_picture(films, look);
   EXPECT_EQ(&films.drawn_scene(), &films.device_scene());
 }
