@@ -16,6 +16,7 @@
 #include <cstring>
 #include <iostream>
 #include <new>
+#include <system_error>
 
 #include "base/atomic_file.h"
 #include "base/error.h"
@@ -97,6 +98,8 @@ int run(CLI::App& app, int argc, char** argv) {
     }
   } catch (const std::bad_alloc&) {
     print_error("out of memory");
+  } catch (const std::system_error& error) {  // of fmt::print
+    if (error.code() != std::errc::broken_pipe || !reader_has_gone()) print_error(error.what());
   } catch (const std::exception& error) {
     print_error(error.what());
   }
