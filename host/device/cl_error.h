@@ -16,8 +16,8 @@ std::string cl_error_name(cl_int code);
 [[noreturn]] void throw_cl_error(const cl::Error& error, const std::string& place,
                                  const std::string& device_name);
 
-/// Returns whether a call to a driver has failed in this process. Its threads may still work on what
-/// was asked before, and use static objects: a program then ends without their destructors.
+/// Returns whether a call to a driver has failed in this process. Its threads may still work on
+/// what was asked before, and use static objects: a program then ends without their destructors.
 bool any_driver_error();
 
 /// Calls `function`; a cl::Error becomes a RunError "PLACE: CALL: NAME (device 'DEVICE')".

@@ -289,6 +289,8 @@ def main():
     options = parser.parse_args()
     options.program, options.layer, options.scenes = (p.resolve() for p in (options.program, options.layer, options.scenes))
     options.out = options.out.resolve()
+    if options.tests:
+        options.tests = options.tests.resolve()
     options.out.mkdir(parents=True, exist_ok=True)
     if options.only:
         for forms in (HARMLESS, FATAL):
