@@ -57,7 +57,9 @@ class VerifyScenes : public testing::TestWithParam<std::string> {};
 
 TEST_P(VerifyScenes, Agrees) {
   expect_agreement({(test::source_folder() / "scenes" / GetParam()).string()},
-                   test::sanitized ? 2'000 : test::thorough() ? 20'000 : 8'000);
+                   test::sanitized    ? 2'000
+                   : test::thorough() ? 20'000
+                                      : 8'000);
 }
 
 INSTANTIATE_TEST_SUITE_P(Files, VerifyScenes, testing::ValuesIn(scene_files()),
