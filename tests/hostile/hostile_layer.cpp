@@ -10,8 +10,6 @@
 #include <CL/cl_layer.h>
 
 #include <algorithm>
-#include <array>
-#include <atomic>
 #include <chrono>
 #include <cstdlib>
 #include <cstring>
@@ -19,14 +17,12 @@
 #include <iostream>
 #include <map>
 #include <mutex>
-#include <optional>
 #include <random>
 #include <set>
 #include <sstream>
 #include <string>
 #include <string_view>
 #include <thread>
-#include <type_traits>
 #include <vector>
 
 namespace {
@@ -58,10 +54,12 @@ struct Forms {
   double watchdog = 0, late = 0, compile = 0;  // seconds
   double group = 0, local = 0, width = 0, align = 0;
   bool no_images = false, garbage = false;
-  double rate = 0;  // share of calls that fail
-  double at = 0;    // the one call that fails, from 1
-  double lose = 0;  // the call at which the device is lost, from 1
-  double lane = 0;  // share of work-items with a wrong result
+  bool fragile = false;  // what runs at the exit after a failed call aborts
+  double rate = 0;       // share of calls that fail
+  double at = 0;         // the one call that fails, from 1
+  double from = 0;       // the first of those that fail, from 1
+  double lose = 0;       // the call at which the device is lost, from 1
+  double lane = 0;       // share of work-items with a wrong result
   double seed = 1;
   std::set<std::string> calls;  // those that may fail; empty: all
   std::string crash, hang;      // a call
@@ -73,10 +71,10 @@ struct Forms {
         {"block", &block}, {"memory", &memory},   {"watchdog", &watchdog},
         {"late", &late},   {"compile", &compile}, {"group", &group},
         {"local", &local}, {"width", &width},     {"align", &align},
-        {"rate", &rate},   {"at", &at},           {"lose", &lose},
-        {"lane", &lane},   {"seed", &seed}};
+        {"rate", &rate},   {"at", &at},           {"from", &from},
+        {"lose", &lose},   {"lane", &lane},       {"seed", &seed}};
     const std::map<std::string, bool*> flags = {
-        {"lazy", &lazy}, {"no_images", &no_images}, {"garbage", &garbage}};
+        {"lazy", &lazy}, {"no_images", &no_images}, {"garbage", &garbage}, {"fragile", &fragile}};
     const std::map<std::string, std::string*> names = {
         {"crash", &crash}, {"hang", &hang}, {"report", &report}};
     std::istringstream words(text);
@@ -144,6 +142,7 @@ void write_report() {  // with the mutex held
 void write_last_report() {
   const std::lock_guard lock(state().mutex);
   write_report();
+  if (forms().fragile && state().faults > 0) std::abort();
 }
 
 cl_int note(std::string_view call, cl_int code) {  // with the mutex held
@@ -170,7 +169,8 @@ cl_int fault(std::string_view call, std::initializer_list<cl_int> codes) {
     --all.calls;
     return CL_SUCCESS;
   }
-  const bool is_chosen = static_cast<double>(all.calls) == forms().at;
+  const auto number = static_cast<double>(all.calls);
+  const bool is_chosen = number == forms().at || (forms().from > 0 && number >= forms().from);
   if (!is_chosen && !(forms().rate > 0 && all.uniform() < forms().rate)) return CL_SUCCESS;
   const auto choice = static_cast<std::size_t>(all.uniform() * static_cast<double>(codes.size()));
   return note(call, codes.begin()[choice]);
@@ -266,7 +266,7 @@ cl_int CL_API_CALL device_info(cl_device_id device, cl_device_info what, std::si
       at_most(forms().block, cl_ulong{});
       break;
     case CL_DEVICE_GLOBAL_MEM_SIZE:
-      at_most(forms().memory, cl_ulong{});
+      at_most(forms().lazy ? 0 : forms().memory, cl_ulong{});
       break;
     case CL_DEVICE_MAX_WORK_GROUP_SIZE:
       at_most(forms().group, std::size_t{});

@@ -40,17 +40,24 @@ HARMLESS = {
 # Forms that a command cannot end well with: each must be told of, in these words.
 FATAL = {
     "launches end after 0.1 ms": ("watchdog=0.0001", "CL_OUT_OF_RESOURCES"),
-    "1 MB in all": ("memory=1M", "CL_MEM_OBJECT_ALLOCATION_FAILURE"),
+    "1 MB in all": ("memory=1M", "[0-9]+ bytes in all|has [0-9]+ MB left"),
     "1 MB in all, missed late": ("memory=1M lazy", "CL_MEM_OBJECT_ALLOCATION_FAILURE"),
     "blocks of 4 KB": ("block=4K", "allows [0-9]+ MB in one buffer|CL_INVALID_BUFFER_SIZE"),
     "no program can be built": ("calls=clBuildProgram rate=1", "program '.*': clBuildProgram: CL_"),
     "no argument can be set": ("calls=clSetKernelArg rate=1", "argument.* of kernel '.*clSetKernelArg: CL_OUT_OF_RESOURCES"),
+    "arguments cannot be set at the end": ("calls=clSetKernelArg from={clSetKernelArg}", "argument.* of kernel '.*clSetKernelArg: CL_OUT_OF_RESOURCES"),
+    "waiting fails": ("calls=clFinish rate=1 fragile", "clFinish: CL_"),
     "the compiler crashes": ("crash=clBuildProgram", "the driver failed"),
     "the device is lost": ("lose=150", "CL_OUT_OF_RESOURCES"),
 }
 # What tells of a driver that failed, or gave wrong results.
 ERROR = re.compile(r"^caplet: error: .*(cl[A-Z]\w+: CL_|driver|device|memory)|^\s*\d+ .*disagree", re.M)
 LIMIT = 120  # seconds: a command that takes longer hangs
+
+
+def read_report(path):
+    """The layer's report: texts by name; empty where there is none."""
+    return dict(line.split(" ", 1) for line in path.read_text().splitlines() if " " in line) if path.exists() else {}
 
 
 class Result:
@@ -68,7 +75,7 @@ class Trial:
         self.options = options
         self.scenes = sorted(p for p in options.scenes.iterdir() if p.suffix in (".pbrt", ".swc", ".3mf", ".xml", ".capsules"))
         self.drawn_scenes = [p for p in self.scenes if not options.quick or p.stem == "capsules"]
-        self.good = {}
+        self.good, self.reports = {}, {}
 
     def run(self, command, form, folder):
         """Runs a command in a folder, where `report.txt` and pictures come to lie. `form` None: without the layer."""
@@ -82,7 +89,7 @@ class Trial:
             code, text = run.returncode, (run.stdout + run.stderr).decode(errors="replace")
         except subprocess.TimeoutExpired:
             code, text = "hang", ""
-        facts = dict(line.split(" ", 1) for line in report.read_text().splitlines() if " " in line) if report.exists() else {}
+        facts = read_report(report)
         report.unlink(missing_ok=True)
         return Result(code, text, facts, folder)
 
@@ -109,6 +116,13 @@ class Trial:
             if self.good[name].code != 0:
                 sys.exit(f"{name} fails without the layer:\n{self.good[name].text}")
         return self.good[name]
+
+    def calls_of(self, name, command):
+        """The report of a command without faults."""
+        if name not in self.reports:
+            with tempfile.TemporaryDirectory() as folder:
+                self.reports[name] = self.run(command, "", pathlib.Path(folder)).report
+        return self.reports[name]
 
     def judged(self, name, command, compared, form):
         """One of: same, told, wrong, silent, lost, crash, hang; and the result."""
@@ -156,7 +170,7 @@ class Trial:
         except subprocess.TimeoutExpired:
             process.kill()
             return "hang", {}, ""
-        facts = dict(line.split(" ", 1) for line in report.read_text().splitlines() if " " in line) if report.exists() else {}
+        facts = read_report(report)
         if process.returncode < 0 or process.returncode >= 128:
             return "crash", facts, text
         if process.returncode == 0:
@@ -207,7 +221,10 @@ class Trial:
         """Every command under each form that it cannot end well with."""
         rows = {}
         for title, (form, words) in FATAL.items():
-            found = self.pool([lambda n=n, c=c, t=t, form=form: self.judged(n, c, t, form) for n, (c, t) in self.commands().items()])
+            def ending(name, command, compared, form=form):
+                nine_tenths = {call: 9 * int(n) // 10 for call, n in self.calls_of(name, command).items() if call.startswith("cl")}
+                return self.judged(name, command, compared, form.format(**nine_tenths))
+            found = self.pool([lambda n=n, c=c, t=t, ending=ending: ending(n, c, t) for n, (c, t) in self.commands().items()])
             rows[title] = collections.Counter(what for what, _ in found)
             self.say(f"{title}: {self.counts(rows[title])}")
             for name, (what, result) in zip(self.commands(), found):
@@ -221,8 +238,7 @@ class Trial:
         possible = []
         for name, (command, compared) in self.commands().items():
             self.plain(name, command)
-            with tempfile.TemporaryDirectory() as folder:
-                report = self.run(command, "", pathlib.Path(folder)).report
+            report = self.calls_of(name, command)
             possible += [(name, command, compared, call, int(count)) for call, count in report.items() if call.startswith("cl")]
         drawn = [(*what, draw.randint(1, what[4])) for what in draw.choices(possible, k=self.options.faults)]
         found = self.pool([lambda d=d: self.judged(d[0], d[1], d[2], f"calls={d[3]} at={d[5]} seed={d[5]}") for d in drawn])
