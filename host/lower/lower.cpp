@@ -48,24 +48,11 @@ void lower_sampler(const SamplerSettings& sampler, ViewRecord& out) {
 }
 
 void lower_integrator(const IntegratorSettings& integrator, ViewRecord& out) {
-  using enum IntegratorSettings::Kind;
+  out.strategy |= integrator.strategy();
   out.max_depth = narrow<uint>(integrator.max_depth);
-  switch (integrator.kind) {
-    case path:
-      break;
-    case ambient_occlusion:
-      out.strategy |=
-          CAPLET_STRATEGY_OCCLUSION | (integrator.cosine_sample ? 0 : CAPLET_STRATEGY_UNIFORM);
-      out.max_distance = static_cast<float>(integrator.max_distance);
-      out.max_depth = 1;
-      break;
-    case simple_path:
-      out.strategy |= integrator.sample_lights ? CAPLET_STRATEGY_NO_MIS : CAPLET_STRATEGY_NO_LIGHTS;
-      if (!integrator.sample_bsdf) out.strategy |= CAPLET_STRATEGY_UNIFORM;
-      break;
-    case random_walk:
-      out.strategy |= CAPLET_STRATEGY_NO_LIGHTS | CAPLET_STRATEGY_UNIFORM | CAPLET_STRATEGY_SPHERE;
-      break;
+  if (integrator.kind == IntegratorSettings::Kind::ambient_occlusion) {
+    out.max_distance = static_cast<float>(integrator.max_distance);
+    out.max_depth = 1;
   }
 }
 

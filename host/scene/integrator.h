@@ -3,9 +3,11 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <limits>
 
 #include "scene/field.h"
+#include "shared/kinds.h"
 
 namespace caplet {
 
@@ -15,6 +17,22 @@ struct IntegratorSettings {
   double max_distance = std::numeric_limits<double>::infinity();  // ambient occlusion, scene units
   bool cosine_sample = true;                      // ambient occlusion: else directions are uniform
   bool sample_bsdf = true, sample_lights = true;  // simple path
+
+  /// Returns which directions paths take, and how they find lights: CAPLET_STRATEGY_... bits.
+  std::uint32_t strategy() const {
+    switch (kind) {
+      case Kind::path:
+        break;
+      case Kind::ambient_occlusion:
+        return CAPLET_STRATEGY_OCCLUSION | (cosine_sample ? 0 : CAPLET_STRATEGY_UNIFORM);
+      case Kind::simple_path:
+        return (sample_lights ? CAPLET_STRATEGY_NO_MIS : CAPLET_STRATEGY_NO_LIGHTS) |
+               (sample_bsdf ? 0 : CAPLET_STRATEGY_UNIFORM);
+      case Kind::random_walk:
+        return CAPLET_STRATEGY_NO_LIGHTS | CAPLET_STRATEGY_UNIFORM | CAPLET_STRATEGY_SPHERE;
+    }
+    return 0;
+  }
 
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {

@@ -4,12 +4,14 @@
 // Schema of cameras, films, filters, samplers and integrators.
 #include <algorithm>
 #include <array>
-#include <initializer_list>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "schema/detail/describe.h"
 #include "schema/detail/rows.h"
 #include "schema/kind_of.h"
+#include "schema/schema.h"
 
 namespace caplet::schema {
 
@@ -66,12 +68,31 @@ constexpr std::array spectral_ignored = {Row{{"nbuckets", "of the spectrum"}, "i
 constexpr std::array randomization_ignored = {
     Row{{"randomization", "of the points: Owen's always"}, "string"}};
 
-void add_ignored_names(std::initializer_list<const char*> names, const char* types,
-                       std::vector<Parameter>& out) {
-  for (const char* name : names) {
-    const Row row{{name, "of pbrt-v4's integrator"}, types};
-    add_ignored({&row, 1}, out);
-  }
+/// A parameter of pbrt-v4's integrators of these types, separated by blanks, without an effect.
+struct IgnoredOfIntegrator {
+  Row row;
+  std::string_view types;
+};
+constexpr const char* of_pbrt = "of pbrt-v4's integrator";
+constexpr std::array integrator_ignored = {
+    IgnoredOfIntegrator{{{"maxdepth", of_pbrt}, "integer"}, "ambientocclusion"},
+    IgnoredOfIntegrator{{{"lightsampler", of_pbrt}, "string"}, "path volpath"},
+    IgnoredOfIntegrator{{{"regularize", of_pbrt}, "bool"}, "path volpath bdpt mlt"},
+    IgnoredOfIntegrator{{{"rrthreshold", of_pbrt}, "float"}, "path volpath simplevolpath"},
+    IgnoredOfIntegrator{{{"visualizestrategies", of_pbrt}, "bool"}, "bdpt"},
+    IgnoredOfIntegrator{{{"visualizeweights", of_pbrt}, "bool"}, "bdpt"},
+    IgnoredOfIntegrator{{{"bootstrapsamples", of_pbrt}, "integer float"}, "mlt"},
+    IgnoredOfIntegrator{{{"chains", of_pbrt}, "integer float"}, "mlt"},
+    IgnoredOfIntegrator{{{"mutationsperpixel", of_pbrt}, "integer float"}, "mlt"},
+    IgnoredOfIntegrator{{{"largestepprobability", of_pbrt}, "integer float"}, "mlt"},
+    IgnoredOfIntegrator{{{"sigma", of_pbrt}, "integer float"}, "mlt"},
+    IgnoredOfIntegrator{{{"photonsperiteration", of_pbrt}, "integer float"}, "sppm"},
+    IgnoredOfIntegrator{{{"radius", of_pbrt}, "integer float"}, "sppm"},
+    IgnoredOfIntegrator{{{"seed", of_pbrt}, "integer float"}, "sppm"}};
+
+bool of_type(const IgnoredOfIntegrator& one, std::string_view type) {
+  return (" " + std::string(one.types) + " ").find(" " + std::string(type) + " ") !=
+         std::string::npos;
 }
 
 void add_camera(const std::string& type, std::vector<Parameter>& out) {
@@ -109,23 +130,18 @@ void add_integrator(const std::string& type, std::vector<Parameter>& out) {
                         .value_or(IntegratorSettings::Kind{});
   Describe all(out);
   IntegratorSettings::fields(integrator, all);
-  if (integrator.kind == IntegratorSettings::Kind::ambient_occlusion)
-    add_ignored_names({"maxdepth"}, "integer", out);
-  if (is_one_of(type, {"path", "volpath"})) add_ignored_names({"lightsampler"}, "string", out);
-  if (is_one_of(type, {"path", "volpath", "bdpt", "mlt"}))
-    add_ignored_names({"regularize"}, "bool", out);
-  if (is_one_of(type, {"path", "volpath", "simplevolpath"}))
-    add_ignored_names({"rrthreshold"}, "float", out);
-  if (type == "bdpt") add_ignored_names({"visualizestrategies", "visualizeweights"}, "bool", out);
-  if (type == "mlt")
-    add_ignored_names(
-        {"bootstrapsamples", "chains", "mutationsperpixel", "largestepprobability", "sigma"},
-        "integer float", out);
-  if (type == "sppm")
-    add_ignored_names({"photonsperiteration", "radius", "seed"}, "integer float", out);
+  for (const IgnoredOfIntegrator& one : integrator_ignored)
+    if (of_type(one, type)) add_ignored({&one.row, 1}, out);
 }
 
 }  // namespace
+
+std::vector<const char*> ignored_integrator_parameters(std::string_view type) {
+  std::vector<const char*> out;
+  for (const IgnoredOfIntegrator& one : integrator_ignored)
+    if (of_type(one, type)) out.push_back(one.row.field.name);
+  return out;
+}
 
 void add_option(std::string_view directive, const std::string& type, std::vector<Parameter>& out) {
   Describe all(out);

@@ -20,6 +20,9 @@ const std::vector<std::string>& families();
 /// Returns the directive of a family in scene files: "LightSource" of "light".
 std::string directive_of(std::string_view family);
 
+/// Returns the parameters that pbrt-v4's integrators of this type have, and that have no effect.
+std::vector<const char*> ignored_integrator_parameters(std::string_view type);
+
 /// Returns the parameters of a statement of an accepted type (import/statement.h); none for an
 /// unknown type.
 std::vector<Parameter> parameters_of(std::string_view directive, const std::string& type);

@@ -22,6 +22,7 @@
 #include "import/detail/pbrt/lens_file.h"
 #include "scene/transform.h"
 #include "schema/kind_of.h"
+#include "schema/schema.h"
 
 namespace caplet::pbrt {
 
@@ -397,22 +398,12 @@ void set_integrator(const std::string& type, Parameters& parameters, Scene& scen
   integrator.kind = kind.value_or(IntegratorSettings::Kind::path);
   if (!kind) warn(parameters, {}, "rendered by the path tracer, which converges to the same image");
   IntegratorSettings::fields(integrator, FieldReader{parameters});
-  if (integrator.kind == IntegratorSettings::Kind::ambient_occlusion) parameters.ignore("maxdepth");
   if (type == "path" || type == "volpath") parameters.text("lightsampler", "bvh");
   if (type == "path" || type == "volpath" || type == "bdpt" || type == "mlt")
     if (parameters.boolean("regularize", false))
       warn(parameters, "regularize", "nothing is made rougher than it is (\"regularize\")");
-  // These write additional pictures, or affect only noise.
-  if (type == "bdpt")
-    for (const char* name : {"visualizestrategies", "visualizeweights"}) parameters.ignore(name);
-  if (type == "path" || type == "volpath" || type == "simplevolpath")
-    parameters.ignore("rrthreshold");
-  if (type == "mlt")
-    for (const char* name :
-         {"bootstrapsamples", "chains", "mutationsperpixel", "largestepprobability", "sigma"})
-      parameters.ignore(name);
-  if (type == "sppm")
-    for (const char* name : {"photonsperiteration", "radius", "seed"}) parameters.ignore(name);
+  // The others write additional pictures, or affect only noise.
+  for (const char* name : schema::ignored_integrator_parameters(type)) parameters.ignore(name);
   parameters.finish();
   scene.view.integrator = integrator;
 }
