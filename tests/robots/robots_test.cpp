@@ -6,6 +6,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <filesystem>
+#include <fstream>
+
 #include "import/import.h"
 #include "support/data.h"
 #include "support/import_files.h"
@@ -143,6 +146,85 @@ TEST(Urdf, WhatCollidesIsDrawnWhereNothingIsToBeSeen) {
         scene_of_text(begin + "<visual><geometry><sphere radius='-1'/></geometry></visual>" + end);
       }),
       HasSubstr("radius is not positive"));
+}
+
+/// A COLLADA file of two triangles in centimetres, with z up: a blue one at x = 100, which a node
+/// moves there, and one without a material.
+constexpr const char* two_colors = R"(<?xml version="1.0"?>
+<COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1">
+<asset><unit name="centimeter" meter="0.01"/><up_axis>Y_UP</up_axis></asset>
+<library_effects><effect id="e"><profile_COMMON><technique sid="t"><lambert>
+<diffuse><color>0 0 1 1</color></diffuse></lambert></technique></profile_COMMON></effect></library_effects>
+<library_materials><material id="m" name="blue"><instance_effect url="#e"/></material></library_materials>
+<library_geometries><geometry id="g"><mesh>
+<source id="p"><float_array id="pa" count="9">0 0 0 100 0 0 0 100 0</float_array>
+<technique_common><accessor source="#pa" count="3" stride="3"><param name="X" type="float"/><param name="Y" type="float"/><param name="Z" type="float"/></accessor></technique_common></source>
+<vertices id="v"><input semantic="POSITION" source="#p"/></vertices>
+<triangles count="1" material="s"><input semantic="VERTEX" source="#v" offset="0"/><p>0 1 2</p></triangles>
+</mesh></geometry><geometry id="h"><mesh>
+<source id="q"><float_array id="qa" count="9">0 0 50 100 0 50 0 100 50</float_array>
+<technique_common><accessor source="#qa" count="3" stride="3"><param name="X" type="float"/><param name="Y" type="float"/><param name="Z" type="float"/></accessor></technique_common></source>
+<vertices id="w"><input semantic="POSITION" source="#q"/></vertices>
+<triangles count="1"><input semantic="VERTEX" source="#w" offset="0"/><p>0 1 2</p></triangles>
+</mesh></geometry></library_geometries>
+<library_visual_scenes><visual_scene id="s"><node><translate>100 0 0</translate>
+<instance_geometry url="#g"><bind_material><technique_common><instance_material symbol="s" target="#m"/></technique_common></bind_material></instance_geometry></node>
+<node><instance_geometry url="#h"/></node></visual_scene></library_visual_scenes>
+<scene><instance_visual_scene url="#s"/></scene>
+</COLLADA>)";
+
+glm::dvec3 color_of(const Scene& scene, const Shape& shape) {
+  const Material& material = scene.materials.at(shape.material);
+  const auto* diffuse = std::get_if<DiffuseMaterial>(&material.model);
+  const auto* rgb = diffuse ? std::get_if<RgbSpectrum>(&diffuse->reflectance) : nullptr;
+  return rgb ? glm::dvec3(rgb->rgb[0], rgb->rgb[1], rgb->rgb[2]) : glm::dvec3(-1);
+}
+
+// RViz gives the link's material to parts of a mesh that have none of their own
+// (rviz/robot/robot_link.cpp). ROS takes COLLADA's unit, but not its axis.
+TEST(Urdf, MeshesHaveTheMaterialsOfTheirFiles) {
+  const std::filesystem::path folder = test::temporary_folder();
+  const auto write = [&](const char* name, const std::string& text) {
+    std::ofstream(folder / name) << text;
+  };
+  write("two.dae", two_colors);
+  write("one.mtl", "newmtl green\nKd 0 0.25 0\nillum 1\n");
+  write("one.obj", "mtllib one.mtl\nusemtl green\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  write("plain.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  const auto mesh = [](const std::string& kind, const std::string& file) {
+    return "<" + kind + "><origin xyz='0 0 5'/><geometry><mesh filename='" + file +
+           "' scale='2 2 2'/></geometry><material name='r'><color rgba='1 0 0 0.5'/></material></" +
+           kind + ">";
+  };
+  write("robot.urdf", "<robot name='r'><link name='a'>" + mesh("visual", "two.dae") +
+                          mesh("visual", "two.dae") + mesh("visual", "one.obj") +
+                          mesh("visual", "plain.obj") + mesh("collision", "two.dae") +
+                          "</link></robot>");
+  const Scene scene = scene_of(folder / "robot.urdf", {{{"up", "y"}, {"groups", "all"}}});
+  ASSERT_EQ(scene.shapes.size(), 8U);
+  for (const std::size_t first : {0, 2}) {
+    const Shape &blue = scene.shapes[first], &red = scene.shapes[first + 1];
+    expect_near(color_of(scene, blue), {0, 0, 1});
+    EXPECT_EQ(scene.materials.at(blue.material).name, "blue");
+    EXPECT_FALSE(blue.alpha.has_value());
+    EXPECT_EQ(blue.name, "a");
+    expect_near(color_of(scene, red), {1, 0, 0});
+    ASSERT_TRUE(red.alpha.has_value());
+    // 100 and 200 centimetres twice as large; 50 upwards.
+    const auto corner = [](const Shape& shape, std::size_t i) {
+      return at(shape, std::get<TriangleMeshShape>(shape.geometry).positions.at(i));
+    };
+    expect_near(corner(blue, 0), {2, 0, 5});
+    expect_near(corner(blue, 1), {4, 0, 5});
+    expect_near(corner(red, 0), {0, 0, 6});
+    expect_near(corner(red, 2), {0, 2, 6});
+  }
+  EXPECT_EQ(scene.shapes[0].material, scene.shapes[2].material);
+  EXPECT_EQ(scene.materials.at(scene.shapes[4].material).name, "green");
+  expect_near(color_of(scene, scene.shapes[5]), {1, 0, 0});
+  // What collides has no materials of its own.
+  expect_near(color_of(scene, scene.shapes[6]), {1, 0, 0});
+  expect_near(color_of(scene, scene.shapes[7]), {1, 0, 0});
 }
 
 TEST(Urdf, SharedFilesHaveTheirGeometry) {

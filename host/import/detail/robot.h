@@ -52,6 +52,7 @@ struct RobotGeom {
   bool collides = false;  // URDF: collision geometry, else visual. MJCF: may collide
   std::filesystem::path mesh;
   bool needs_mesh = false;                 // a missing mesh is an error
+  bool has_mesh_looks = false;             // materials of the mesh's file win
   std::shared_ptr<const MeshParts> parts;  // replaces `mesh`
   glm::dmat4 geom_from_mesh{1};
   std::optional<MeshFit> fit;  // of a solid: the mesh gives its size and place

@@ -9,17 +9,20 @@
 #include <cmath>
 #include <functional>
 #include <glm/gtc/matrix_transform.hpp>
+#include <map>
 #include <numbers>
 #include <set>
 #include <tuple>
 
 #include "base/check.h"
 #include "base/reading.h"
+#include "base/spelling.h"
 #include "import/detail/importers.h"
 #include "import/detail/mesh_file.h"
 #include "import/detail/text_file.h"
 #include "import/import.h"
 #include "present/present.h"
+#include "scene/append.h"
 #include "scene/texture_image.h"
 
 namespace caplet {
@@ -40,8 +43,8 @@ RgbSpectrum linear(const glm::dvec3& screen) {
 
 class RobotDrawing {
  public:
-  RobotDrawing(const Robot& robot, Scene& scene, const glm::dmat4& world)
-      : robot_(robot), scene_(scene), world_(world) {}
+  RobotDrawing(const Robot& robot, Scene& scene, const glm::dmat4& world, const ImageReader& images)
+      : robot_(robot), scene_(scene), world_(world), images_(images) {}
 
   void add(const RobotGeom& geom) {
     if (!(rgba_of(geom).a > 0)) return;
@@ -270,20 +273,90 @@ class RobotDrawing {
         return Diagnostics().warning(geom.where,
                                      "the mesh '" + geom.mesh.string() + "' is left out: " + why);
     }
+    if (!parts && geom.has_mesh_looks && has_looks(geom.mesh)) return add_with_looks(geom);
     if (!parts) parts = files_.read(geom.mesh, geom.where);
     for (const TriangleMeshShape& part : *parts) {
-      triangles_ += part.triangles.size();
-      if (triangles_ > kMostTriangles)
-        throw InputError(geom.where, "the meshes of all geoms have more than 2^26 triangles");
+      count(part, geom);
       add(geom, part, geom.geom_from_mesh);
     }
+  }
+
+  void count(const TriangleMeshShape& part, const RobotGeom& geom) {
+    triangles_ += part.triangles.size();
+    if (triangles_ > kMostTriangles)
+      throw InputError(geom.where, "the meshes of all geoms have more than 2^26 triangles");
+  }
+
+  static bool has_looks(const std::filesystem::path& mesh) {
+    const std::string ending = lower_case(mesh.extension().string());
+    return ending == ".dae" || ending == ".obj";
+  }
+
+  /// A part of a mesh's file, in the file's coordinates. `shape` has a material of the scene where
+  /// `has_look`.
+  struct LookedPart {
+    Shape shape;
+    bool has_look = false;
+  };
+
+  /// Parts that have no material in the mesh's file have the geom's, as in RViz.
+  void add_with_looks(const RobotGeom& geom) {
+    for (const LookedPart& part : looked(geom)) {
+      const auto& mesh = std::get<TriangleMeshShape>(part.shape.geometry);
+      count(mesh, geom);
+      if (!part.has_look) {
+        add(geom, mesh, geom.geom_from_mesh * part.shape.world_from_object);
+        continue;
+      }
+      Shape shape = part.shape;
+      shape.name = geom.name;
+      shape.where = geom.where;
+      shape.world_from_object =
+          world_ * geom.world * geom.geom_from_mesh * part.shape.world_from_object;
+      scene_.shapes.push_back(std::move(shape));
+    }
+  }
+
+  const std::vector<LookedPart>& looked(const RobotGeom& geom) {
+    const auto [known, is_new] = looked_.try_emplace(geom.mesh.string());
+    std::vector<LookedPart>& out = known->second;
+    if (!is_new) return out;
+    check_may_read(geom.mesh, geom.where);
+    // As in ROS, the up axis of a COLLADA file does not count.
+    ImportOptions as_it_is;
+    as_it_is.set("up", "y");
+    Scene file = lower_case(geom.mesh.extension().string()) == ".dae"
+                     ? import_dae(geom.mesh, images_, as_it_is)
+                     : import_obj(geom.mesh, images_, as_it_is);
+    for (const Shape& shape : file.shapes) {
+      if (std::get<TriangleMeshShape>(shape.geometry).triangles.empty()) continue;
+      // The importers' own material for parts without one has no line, and no colours of vertices.
+      const Material& look = file.materials.at(shape.material);
+      out.push_back({{}, look.where.line > 0 || !look.textures.empty()});
+    }
+    if (out.empty())
+      throw InputError(geom.where, "the mesh '" + geom.mesh.string() + "' holds no faces");
+    std::erase_if(file.shapes, [](const Shape& shape) {
+      return std::get<TriangleMeshShape>(shape.geometry).triangles.empty();
+    });
+    if (std::ranges::none_of(out, &LookedPart::has_look)) {
+      for (std::size_t i = 0; i < out.size(); ++i) out[i].shape = std::move(file.shapes[i]);
+      return out;
+    }
+    const std::size_t first = scene_.shapes.size();
+    append(scene_, std::move(file));
+    for (std::size_t i = 0; i < out.size(); ++i) out[i].shape = std::move(scene_.shapes[first + i]);
+    scene_.shapes.resize(first);
+    return out;
   }
 
   using Key = std::array<double, 4>;
   const Robot& robot_;
   Scene& scene_;
   glm::dmat4 world_;
+  const ImageReader& images_;
   MeshFiles files_;
+  std::map<std::string, std::vector<LookedPart>> looked_;  // by file
   std::size_t triangles_ = 0;
   std::map<Key, std::uint32_t> materials_;
   std::map<std::tuple<const TextureImage*, double, double, double>,
@@ -415,10 +488,11 @@ void present(const Robot& robot, const glm::dmat4& world, const ImportOptions& o
 }
 
 void draw(const Robot& robot, const glm::dmat4& world,
-          const std::function<bool(const RobotGeom&)>& shown, Scene& scene) {
+          const std::function<bool(const RobotGeom&)>& shown, const ImageReader& images,
+          Scene& scene) {
   scene.world_from_file = glm::dmat3(world);
   scene.unit = "m";
-  RobotDrawing drawing(robot, scene, world);
+  RobotDrawing drawing(robot, scene, world, images);
   for (const RobotGeom& geom : robot.geoms)
     if (shown(geom)) drawing.add(geom);
   drawing.finish();
@@ -428,7 +502,7 @@ void draw(const Robot& robot, const glm::dmat4& world,
 
 }  // namespace
 
-Scene import_urdf(const std::filesystem::path& path, const ImageReader&,
+Scene import_urdf(const std::filesystem::path& path, const ImageReader& images,
                   const ImportOptions& options) {
   Scene scene;
   scene.source = path.string();
@@ -444,7 +518,8 @@ Scene import_urdf(const std::filesystem::path& path, const ImageReader&,
   }
   draw(
       robot, world,
-      [&](const RobotGeom& geom) { return groups == all || geom.collides == collides; }, scene);
+      [&](const RobotGeom& geom) { return groups == all || geom.collides == collides; }, images,
+      scene);
   return scene;
 }
 
@@ -455,7 +530,7 @@ Imported import_mjcf(const std::filesystem::path& path, const ImageReader& image
   const auto shown = shown_by(options);
   const glm::dmat4 world = world_from_file(options, "z");
   const Robot robot = read_mjcf(path, Pose(options), images);
-  draw(robot, world, shown, scene);
+  draw(robot, world, shown, images, scene);
   Imported out(std::move(scene));
   present(robot, world, options, out);
   return out;

@@ -166,6 +166,7 @@ class UrdfReader {
         geom.kind = GeomKind::mesh;
         geom.geom_from_mesh = glm::scale(glm::dmat4(1), vector(geometry, "scale", {1, 1, 1}));
         geom.mesh = mesh_path(geometry);
+        geom.has_mesh_looks = !collides;
       } else {
         fail(part, "its geometry is none of: sphere, cylinder, capsule, box, mesh");
       }
