@@ -21,6 +21,7 @@
 #include "film/film_file.h"
 #include "film/image.h"
 #include "present/picture_options.h"
+#include "report/bands.h"
 #include "report/denoised.h"
 #include "report/mattes.h"
 #include "report/picture.h"
@@ -33,7 +34,7 @@ namespace {
 
 struct MergeFlags {
   std::vector<std::string> films, outputs;
-  std::string preview, film, background;
+  std::string preview, film, background, exposure;
   std::optional<std::string> layers;
   bool variance = false, denoise = false, quiet = false;
   MatteFlags mattes;
@@ -126,6 +127,7 @@ void run_merge(const MergeFlags& flags, const Invocation& invocation) {
     throw InputError(SourceLocation{flags.films.front()}, "there are no samples");
   if (!flags.background.empty())
     sum.settings.backdrop = parse_backdrop(flags.background, FileImageReader(), "--background");
+  if (!flags.exposure.empty()) sum.settings.exposure = parse_exposure(flags.exposure, "--exposure");
   if (flags.denoise) sum.settings.denoise = true;
   if (sum.settings.denoise) check_denoiser("--denoise");
   if (flags.mattes.levels) sum.settings.matte_levels = *flags.mattes.levels;
@@ -144,6 +146,7 @@ void run_merge(const MergeFlags& flags, const Invocation& invocation) {
   picture.whole.metadata = sum.notes;
   report::drop_other_mattes(picture.whole.metadata, layers);
   if (sum.settings.denoise) picture.whole.metadata["caplet.denoiser"] = denoiser_name();
+  if (!targets.previews.empty()) report::fix_exposure({&picture, 1}, flaws);
   for (std::size_t i = 0; i < std::max(targets.pictures.size(), targets.previews.size()); ++i)
     report::write_pictures(i < targets.pictures.size() ? targets.pictures[i] : fs::path(),
                            i < targets.previews.size() ? targets.previews[i] : fs::path(), picture,
@@ -190,6 +193,10 @@ void add_merge(CLI::App& app, const Invocation& invocation) {
       ->add_option("--background", o->background,
                    "What lies behind, as of render, in place of the films' own")
       ->type_name("transparent|COLOR|FILE");
+  command
+      ->add_option("--exposure", o->exposure,
+                   "Previews are so much brighter, as of render, in place of the films' own")
+      ->type_name("STOPS|auto");
   command->add_flag("--denoise", o->denoise, "Remove the noise of the picture, as render does");
   command->add_flag("-q,--quiet", o->quiet, "Only warnings and errors");
   command->footer(footer_with({"caplet merge a.film b.film -o picture.exr",

@@ -10,6 +10,7 @@
 #include <array>
 #include <cmath>
 #include <memory>
+#include <span>
 #include <utility>
 
 #include "base/atomic_file.h"
@@ -25,6 +26,7 @@
 #include "cli/noise_options.h"
 #include "cli/options.h"
 #include "cli/overlays.h"
+#include "cli/presets.h"
 #include "cli/render_files.h"
 #include "cli/render_flags.h"
 #include "cli/trial.h"
@@ -45,6 +47,7 @@
 #include "present/stereo.h"
 #include "present/turntable.h"
 #include "render/render.h"
+#include "report/bands.h"
 #include "report/denoised.h"
 #include "report/mattes.h"
 #include "report/picture.h"
@@ -247,7 +250,8 @@ struct Work {
   Layers layers, film_layers;  // the layers to write, and those with the ones that overlays need
   const Files& files;
   RenderOptions render_options;
-  FilmOutput* film = nullptr;  // where the film is kept
+  FilmOutput* film = nullptr;              // where the film is kept
+  std::optional<double>* stops = nullptr;  // of the first of several frames, for all of them
 };
 
 std::map<std::string, std::string> notes_of(const Work& work, const RenderResult& result) {
@@ -355,6 +359,15 @@ void write_deep(const Work& work, const RenderResult& result) {
       notes_of(work, result));
 }
 
+/// Fixes the exposure of the previews, and tells of one that the pictures have chosen.
+void expose(const Work& work, std::span<BandedImage> pictures, PictureFlaws& flaws) {
+  if (work.files.previews.empty() || !work.scene.view.film.exposure.is_automatic) return;
+  if (work.stops && *work.stops) return report::set_exposure(pictures, **work.stops);
+  const double stops = report::fix_exposure(pictures, flaws);
+  if (work.stops) *work.stops = stops;
+  log::info("exposure of previews: {:.2f} stops", stops);
+}
+
 RenderResult written(const Work& work, RenderResult result, report::RunSeconds& seconds) {
   add_to(seconds, result);
   if (!work.files.deep.empty()) write_deep(work, result);
@@ -364,6 +377,7 @@ RenderResult written(const Work& work, RenderResult result, report::RunSeconds& 
   BandedImage picture = bands_of(work, result, flaws);
   const double developed = phase.lap();
   if (work.scene.view.film.denoise) seconds.denoise += developed;
+  expose(work, {&picture, 1}, flaws);
   const post::Overlays& overlays = work.options.overlays;
   report::Finish finish{overlays.layers(), work.layers, {}};
   if (overlays.any())
@@ -414,15 +428,17 @@ RenderResult stereo_pictures(const Work& both, report::RunSeconds& seconds) {
   }
   PictureFlaws flaws;
   Stopwatch phase;
-  BandedImage left = bands_of(both, results[0], flaws);
-  const BandedImage right = bands_of(both, results[1], flaws);
+  std::array<BandedImage, 2> eyes{bands_of(both, results[0], flaws),
+                                  bands_of(both, results[1], flaws)};
+  BandedImage& left = eyes[0];
   const double developed = phase.lap();
   if (both.scene.view.film.denoise) seconds.denoise += developed;
+  expose(both, eyes, flaws);
   left.whole.metadata["caplet.stereo_separation"] = fmt::format("{}", stereo.separation);
   if (stereo.convergence)
     left.whole.metadata["caplet.stereo_convergence"] = fmt::format("{}", *stereo.convergence);
   each_pair(both.files, [&](const fs::path& exr, const fs::path& preview) {
-    report::write_stereo_pictures(exr, preview, left, right, layout_of(both.options),
+    report::write_stereo_pictures(exr, preview, left, eyes[1], layout_of(both.options),
                                   channels_of(both),
                                   results[0].render_seconds + results[1].render_seconds);
   });
@@ -570,6 +586,7 @@ RenderResult render_frames(const Work& of_all, const FrameSource& source,
   std::vector<SceneEdit> undo;  // of a pose: what leads back to the scene
   std::optional<Session> session;
   RenderResult result;
+  std::optional<double> stops;
   std::uint32_t made = 0;
   const std::uint32_t count = source.range.last - source.range.first + 1;
   const Clock::time_point began = Clock::now();
@@ -606,8 +623,9 @@ RenderResult render_frames(const Work& of_all, const FrameSource& source,
     else
       session->update(live.flat(), live.take_changes(), live.view());
     const Work work{
-        options,       of_all.invocation,  live.scene(), live.flat(),          of_all.devices,
-        of_all.layers, of_all.film_layers, files,        of_all.render_options};
+        options,       of_all.invocation,  live.scene(), live.flat(),           of_all.devices,
+        of_all.layers, of_all.film_layers, files,        of_all.render_options, nullptr,
+        &stops};
     result = with_progress(of_all.devices, work.render_options, options.quiet,
                            [&](const auto& progress) {
                              return render(*session, of_all.devices, work.render_options, progress);
@@ -747,7 +765,8 @@ void add_render(CLI::App& app, const Invocation& invocation) {
                               "Options override the scene file. Ctrl-C finishes the sample pass "
                               "and writes what there is; a second one stops at once. "
                               "The picture is scene-linear."));
-  command->callback([o, &invocation] {
+  command->callback([o, command, &invocation] {
+    apply_preset(*command, o->preset);
     try {
       run_render(*o, invocation);
     } catch (const InterruptedEarly& error) {

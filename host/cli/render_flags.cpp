@@ -9,6 +9,7 @@
 #include <cstdlib>
 
 #include "cli/overlays.h"
+#include "cli/presets.h"
 #include "film/sample_plan.h"
 #include "report/stereo.h"
 
@@ -213,6 +214,7 @@ void add_render_flags(CLI::App& command, RenderFlags& o) {
   add_two_eyes(command, o);
   add_reports(command, o);
   add_import_options(command, o.import_options);
+  add_preset(command, o.preset);
   add_overlays(command, o.overlays);
 }
 

@@ -23,7 +23,7 @@ struct RenderFlags {
   Encoding encoding = Encoding::automatic;
   std::vector<std::string> scenes;
   std::vector<std::string> outputs;
-  std::string preview, stats, device, size, crop, frames, poses;
+  std::string preview, stats, device, size, crop, frames, poses, preset;
   ImportOptions import_options;
   post::Overlays overlays;
   std::optional<std::string> layers;

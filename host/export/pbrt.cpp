@@ -287,7 +287,7 @@ class SceneWriter {
   void write_film(const FilmSettings& film) {
     const auto& [width, height, crop, filename, iso, exposure_time, shutter_open, readout,
                  readout_order, diagonal, max_component_value, white_balance, space, backdrop,
-                 denoise, matte_levels, least_width] = film;
+                 exposure, denoise, matte_levels, least_width] = film;
     const SourceLocation where{here()};
     Statement out("Film \"rgb\"", nullptr, where);
     FilmSettings::fields(film, OptionWriter{out, stream_});

@@ -174,6 +174,7 @@ LayeredImage develop(const Film& film, const FilmSettings& settings, Layers laye
   const Window& window = layout.window;
   CHECK_LE_(0, window.height);
   LayeredImage image = black_image(layout, settings.space, layers, settings.matte_levels);
+  image.exposure = settings.exposure;
   Developer developer(film, settings, layers);
   const std::size_t first =
       static_cast<std::size_t>(margins.above) * static_cast<std::size_t>(window.width);

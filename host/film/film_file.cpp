@@ -24,6 +24,7 @@ namespace caplet {
 namespace {
 
 constexpr const char* format_name = "caplet.film";
+constexpr const char* exposure_name = "caplet.film.exposure";
 constexpr const char* format_version = "4";
 
 using Notes = std::map<std::string, std::string>;
@@ -175,6 +176,7 @@ class Reader {
       fail(fmt::format("'{}' is no colour space of this program", space));
     out.space = static_cast<ColorSpace>(found - color_space_names.begin());
     out.denoise = text("caplet.film.denoise") == "yes";
+    out.exposure = exposure();
     out.matte_levels = static_cast<int>(whole("caplet.film.matte_levels", 1, CAPLET_SLOTS));
     out.backdrop = backdrop();
     return out;
@@ -194,6 +196,16 @@ class Reader {
   }
 
  private:
+  PreviewExposure exposure() const {
+    PreviewExposure out;
+    if (!image_.metadata.contains(exposure_name)) return out;  // older films
+    if (text(exposure_name) == "auto")
+      out.is_automatic = true;
+    else
+      out.stops = real(exposure_name);
+    return out;
+  }
+
   std::optional<Backdrop> backdrop() const {
     const std::string all = text("caplet.film.backdrop");
     std::string_view left = all;
@@ -245,6 +257,9 @@ void save_film(const std::filesystem::path& path, const SavedFilm& saved, double
        {"caplet.film.space", color_space_names[static_cast<std::size_t>(saved.settings.space)]},
        {"caplet.film.matte_levels", std::to_string(saved.settings.matte_levels)},
        {"caplet.film.denoise", saved.settings.denoise ? "yes" : "no"},
+       {exposure_name, saved.settings.exposure.is_automatic
+                           ? "auto"
+                           : fmt::format("{}", saved.settings.exposure.stops)},
        {"caplet.film.backdrop", text_of(saved.settings.backdrop)}});
   image.rows = band_rows(layout.window.width, 2 * words);
   image.band = [&](int first, int rows) {

@@ -39,6 +39,7 @@ struct LayeredImage {
   std::vector<std::string> views =
       {};  // of a multi-view picture, the one by default first (name_in_view)
   std::optional<Backdrop> backdrop = {};  // that lies under R G B by A
+  PreviewExposure exposure = {};
 
   /// Returns the channel of that name, or null.
   const Channel* find(const std::string& name) const;

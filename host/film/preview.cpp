@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <stdexcept>
 
 #include "base/atomic_file.h"
@@ -51,53 +52,120 @@ double display_slope(double luminance) {
   return encoding * std::exp(-over);
 }
 
-Shown shown(const LayeredImage& image) {
-  const std::array<const Channel*, 3> channels{image.find("R"), image.find("G"), image.find("B")};
-  if (!channels[0] || !channels[1] || !channels[2])
-    throw std::logic_error("preview of an image without R G B");
-  const Channel* coverage = image.backdrop ? image.find("A") : nullptr;
-  if (image.backdrop && !coverage)
-    throw std::logic_error("preview of an image without A over a backdrop");
-  const Chromaticities from =
-      image.chromaticities ? *image.chromaticities : chromaticities_of(image.space);
-  const std::array<double, 9> m =
-      product(inverse(xyz_from_rgb(chromaticities_of(ColorSpace::srgb))), xyz_from_rgb(from));
-  const bool convert = from != chromaticities_of(ColorSpace::srgb);
+namespace {
 
-  Shown out{image.data_width, image.data_height, {}, {}};
-  const bool is_transparent = image.backdrop && image.backdrop->kind == Backdrop::Kind::transparent;
-  out.rgb.resize(channels[0]->floats.size());
-  if (is_transparent) out.alpha.resize(out.rgb.size());
-  for (std::size_t i = 0; i < out.rgb.size(); ++i) {
-    const std::array<float, 3> v{channels[0]->floats[i], channels[1]->floats[i],
-                                 channels[2]->floats[i]};
+/// Reads the pixels of an image before they are exposed.
+class Pixels {
+ public:
+  /// A pixel of which `shapes` have the share `coverage`. Linear sRGB.
+  struct Pixel {
+    std::array<float, 3> shapes{}, behind{};
+    float coverage = 1;
+  };
+
+  explicit Pixels(const LayeredImage& image)
+      : image_(image), channels_{image.find("R"), image.find("G"), image.find("B")} {
+    if (!channels_[0] || !channels_[1] || !channels_[2])
+      throw std::logic_error("preview of an image without R G B");
+    coverage_ = image.find("A");
+    if (image.backdrop && !coverage_)
+      throw std::logic_error("preview of an image without A over a backdrop");
+    const Chromaticities from =
+        image.chromaticities ? *image.chromaticities : chromaticities_of(image.space);
+    if (from != chromaticities_of(ColorSpace::srgb))
+      srgb_from_image_ =
+          product(inverse(xyz_from_rgb(chromaticities_of(ColorSpace::srgb))), xyz_from_rgb(from));
+  }
+
+  std::size_t size() const { return channels_[0]->floats.size(); }
+
+  /// Returns the channel A, clamped, because noise of the filter's negative lobes may leave it
+  /// outside [0, 1]; 1 without it.
+  float coverage(std::size_t i) const {
+    return coverage_ ? std::clamp(coverage_->floats[i], 0.0f, 1.0f) : 1.0f;
+  }
+
+  Pixel operator[](std::size_t i) const {
+    Pixel out;
+    const std::array<float, 3> v{channels_[0]->floats[i], channels_[1]->floats[i],
+                                 channels_[2]->floats[i]};
     std::array<float, 3> rgb = v;
-    if (convert)
+    if (srgb_from_image_) {
+      const std::array<double, 9>& m = *srgb_from_image_;
       for (std::size_t r = 0; r < 3; ++r)
         rgb[r] = static_cast<float>(m[3 * r] * v[0] + m[3 * r + 1] * v[1] + m[3 * r + 2] * v[2]);
-    if (!coverage) {
-      out.rgb[i] = tone_map(rgb);
-      continue;
     }
-    // Noise of the filter's negative lobes may leave coverage outside [0, 1]; it is clamped.
-    const float a = std::clamp(coverage->floats[i], 0.0f, 1.0f);
-    const auto width = static_cast<std::size_t>(image.data_width);
-    const std::array<float, 3> behind =
-        under(*image.backdrop, image.width, image.height, image.x + static_cast<int>(i % width),
-              image.y + static_cast<int>(i / width));
-    std::array<float, 3> shapes{};
-    if (a > 0) {
-      for (std::size_t c = 0; c < 3; ++c) shapes[c] = (rgb[c] - (1 - a) * behind[c]) / a;
-      shapes = tone_map(shapes);
+    if (!image_.backdrop) {
+      out.shapes = rgb;
+      return out;
     }
-    if (is_transparent) {
-      out.rgb[i] = shapes;
-      out.alpha[i] = a;
-    } else {
-      for (std::size_t c = 0; c < 3; ++c) out.rgb[i][c] = a * shapes[c] + (1 - a) * behind[c];
-    }
+    out.coverage = coverage(i);
+    const auto width = static_cast<std::size_t>(image_.data_width);
+    out.behind =
+        under(*image_.backdrop, image_.width, image_.height, image_.x + static_cast<int>(i % width),
+              image_.y + static_cast<int>(i / width));
+    if (out.coverage > 0)
+      for (std::size_t c = 0; c < 3; ++c)
+        out.shapes[c] = (rgb[c] - (1 - out.coverage) * out.behind[c]) / out.coverage;
+    return out;
+  }
+
+ private:
+  const LayeredImage& image_;
+  std::array<const Channel*, 3> channels_;
+  const Channel* coverage_ = nullptr;
+  std::optional<std::array<double, 9>> srgb_from_image_;
+};
+
+}  // namespace
+
+Shown shown(const LayeredImage& image) {
+  const Pixels pixels(image);
+  double stops = image.exposure.stops;
+  if (image.exposure.is_automatic) {
+    ExposureMeter meter;
+    meter.add(image);
+    stops = meter.stops();
+  }
+  const auto gain = static_cast<float>(std::exp2(stops));
+  Shown out{image.data_width, image.data_height, {}, {}};
+  const bool is_transparent = image.backdrop && image.backdrop->kind == Backdrop::Kind::transparent;
+  out.rgb.resize(pixels.size());
+  if (is_transparent) out.alpha.resize(out.rgb.size());
+  for (std::size_t i = 0; i < out.rgb.size(); ++i) {
+    Pixels::Pixel pixel = pixels[i];
+    for (float& value : pixel.shapes) value *= gain;
+    const std::array<float, 3> shapes = tone_map(pixel.shapes);
+    const float a = pixel.coverage;
+    if (is_transparent) out.alpha[i] = a;
+    for (std::size_t c = 0; c < 3; ++c)
+      out.rgb[i][c] =
+          is_transparent || !image.backdrop ? shapes[c] : a * shapes[c] + (1 - a) * pixel.behind[c];
   }
   return out;
+}
+
+void ExposureMeter::add(const LayeredImage& image) {
+  const Pixels pixels(image);
+  for (std::size_t i = 0; i < pixels.size(); ++i) {
+    const std::array<float, 3> light = pixels[i].shapes;
+    const float peak = std::max({light[0], light[1], light[2]});
+    if (!(peak > 0) || std::isinf(peak)) continue;
+    const int bin = static_cast<int>(std::floor((std::log2(peak) - lowest) * bins_per_stop));
+    if (bin < 0) continue;
+    weights_[std::min(static_cast<std::size_t>(bin), weights_.size() - 1)] += pixels.coverage(i);
+  }
+}
+
+double ExposureMeter::stops() const {
+  constexpr double above = 0.05;
+  double all = 0;
+  for (const double weight : weights_) all += weight;
+  if (!(all > 0)) return 0;
+  std::size_t bin = weights_.size();
+  for (double sum = 0; sum < above * all && bin > 0;) sum += weights_[--bin];
+  const double light = lowest + (static_cast<double>(bin) + 0.5) / bins_per_stop;
+  return std::clamp(std::log2(exposure_target) - light, -most_stops, most_stops);
 }
 
 std::vector<std::uint8_t> bytes_of(const Shown& shown) {

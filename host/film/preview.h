@@ -34,10 +34,28 @@ struct Shown {
   bool has_alpha() const { return !alpha.empty(); }
 };
 
-/// Returns the image's R G B, converted to sRGB primaries and tone-mapped. Over a backdrop only the
-/// shapes' light is tone-mapped and the backdrop keeps its brightness. Throws std::logic_error when
+/// Returns the image's R G B, converted to sRGB primaries, exposed and tone-mapped. Over a backdrop
+/// only the shapes' light is, and the backdrop keeps its brightness. Throws std::logic_error when
 /// there are no R G B channels (with a backdrop, A).
 Shown shown(const LayeredImage& image);
+
+/// ExposureMeter tells by how many stops a picture is to be brighter: the 95th percentile of the
+/// largest component of its light becomes exposure_target. Pixels count by their coverage, where
+/// the picture has it, and light that is not finite, or below 2^-40, does not count.
+class ExposureMeter {
+ public:
+  /// Adds an image, or a band of one; it needs the channels that shown() needs.
+  void add(const LayeredImage& image);
+  /// Returns the stops, at most most_stops up or down, to within a 32nd; 0 if there was no light.
+  double stops() const;
+
+ private:
+  static constexpr int bins_per_stop = 16, lowest = -40, highest = 40;
+  std::array<double, bins_per_stop*(highest - lowest)> weights_{};  // by log2 of the light
+};
+
+/// What an automatic exposure makes of the light that few pixels exceed; tone_map shows it as 0.73.
+inline constexpr double exposure_target = 0.8;
 
 /// Applies the sRGB transfer: 3 bytes a pixel, 4 where there is alpha.
 std::vector<std::uint8_t> bytes_of(const Shown& shown);

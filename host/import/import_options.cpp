@@ -84,6 +84,10 @@ const std::vector<ImportOptionRow>& import_option_rows() {
       {"least-width", "PIXELS",
        "Capsules and spheres are drawn at least so wide (0: as they are); not for pick and verify",
        Of::picture},
+      {"exposure", "STOPS|auto",
+       "Previews, .png and .jpg are so much brighter; auto: as the picture needs it. The .exr and "
+       "the background stay",
+       Of::picture},
       {"no-outside", "yes|no",
        "Files of a scene may name others in the scene's own folder and below it alone, wherever "
        "links lead: for scenes of "

@@ -53,6 +53,8 @@ void apply_picture_options(Scene& scene, const ImageReader& images, const Import
     scene.view.film.backdrop = parse_backdrop(*backdrop, images, "--background");
   if (const auto width = options.text("least-width"))
     scene.view.film.least_width = width_of(*width);
+  if (const auto exposure = options.text("exposure"))
+    scene.view.film.exposure = parse_exposure(*exposure, "--exposure");
 }
 
 }  // namespace caplet

@@ -159,6 +159,17 @@ Backdrop parse_backdrop(const std::string& text, const ImageReader& images,
   return out;
 }
 
+PreviewExposure parse_exposure(const std::string& text, const std::string& flag) {
+  if (text == "auto") return {0, true};
+  double stops = 0;
+  const char* const end = text.data() + text.size();
+  const std::from_chars_result read = std::from_chars(text.data(), end, stops);
+  if (read.ec != std::errc() || read.ptr != end || !(std::abs(stops) <= most_stops))
+    refuse(flag, text, "is neither auto nor a number from -32 to 32");
+  static_assert(most_stops == 32);
+  return {stops, false};
+}
+
 void set_light(Scene& scene, const std::string& name, const std::string& flag) {
   InfiniteLight light;
   light.image = light_preset(name);

@@ -35,6 +35,9 @@ std::optional<glm::dvec3> hex_color(std::string_view text);
 Backdrop parse_backdrop(const std::string& text, const ImageReader& images,
                         const std::string& flag);
 
+/// Parses "auto", or stops from -most_stops to most_stops. Throws InputError that names `flag`.
+PreviewExposure parse_exposure(const std::string& text, const std::string& flag);
+
 /// Replaces the scene's lights (emissive shapes stay) by lights around the camera, which do not
 /// follow it later: "studio", "dramatic" (a hard light from one side), "flat" (uniform light:
 /// places deep among others are dark). Throws InputError that names `flag`.

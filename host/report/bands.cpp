@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "film/preview.h"
 #include "film/replicates.h"
 
 namespace caplet::report {
@@ -18,6 +19,7 @@ BandedImage in_bands(const FilmLayout& layout, const FilmSettings& settings, Lay
   BandedImage out;
   out.whole = image_of(layout);
   out.whole.space = settings.space;
+  out.whole.exposure = settings.exposure;
   out.rows = band_rows(out.whole.data_width, layers.channels());
   out.band = [&settings, &flaws, layers, rows, height = layout.window.height](int first,
                                                                               int count) {
@@ -56,6 +58,32 @@ BandedImage developed_in_bands(const Film& film, const FilmSettings& settings, L
     return rows;
   };
   return out;
+}
+
+double fix_exposure(std::span<BandedImage> pictures, PictureFlaws& flaws) {
+  const PreviewExposure asked = pictures.front().whole.exposure;
+  if (!asked.is_automatic) return asked.stops;
+  const PictureFlaws before = flaws;
+  ExposureMeter meter;
+  for (const BandedImage& picture : pictures) {
+    const int height = picture.whole.data_height;
+    for (int first = 0; first < height; first += picture.rows)
+      meter.add(picture.band(first, std::min(picture.rows, height - first)));
+  }
+  flaws = before;
+  set_exposure(pictures, meter.stops());
+  return meter.stops();
+}
+
+void set_exposure(std::span<BandedImage> pictures, double stops) {
+  for (BandedImage& picture : pictures) {
+    picture.whole.exposure = {stops, false};
+    picture.band = [stops, band = std::move(picture.band)](int first, int rows) {
+      LayeredImage out = band(first, rows);
+      out.exposure = {stops, false};
+      return out;
+    };
+  }
 }
 
 LayeredImage whole_of(const BandedImage& picture) {

@@ -5,6 +5,8 @@
 // picture is in memory as a whole.
 #pragma once
 
+#include <span>
+
 #include "film/develop.h"
 #include "film/image.h"
 #include "render/renderer.h"
@@ -20,6 +22,12 @@ BandedImage developed_in_bands(const DeviceFilm& film, const FilmSettings& setti
 /// of them.
 BandedImage developed_in_bands(const Film& film, const FilmSettings& settings, Layers layers,
                                PictureFlaws& flaws);
+
+/// Sets the exposure of the previews. Where it is automatic, it is first chosen by all bands of all
+/// `pictures`, which are made once for it; `flaws` does not count that. Returns the stops.
+double fix_exposure(std::span<BandedImage> pictures, PictureFlaws& flaws);
+/// Sets the exposure of the previews to these stops.
+void set_exposure(std::span<BandedImage> pictures, double stops);
 
 /// Makes all bands, and joins them.
 LayeredImage whole_of(const BandedImage& picture);

@@ -9,6 +9,17 @@
 
 namespace caplet {
 
+/// How much brighter previews and the viewer show the shapes' light. The picture itself and its
+/// backdrop stay.
+struct PreviewExposure {
+  double stops = 0;
+  bool is_automatic = false;  // then the picture tells the stops (film/preview.h)
+  bool operator==(const PreviewExposure&) const = default;
+};
+
+/// The most stops, up or down.
+inline constexpr double most_stops = 32;
+
 /// The background of the picture. Camera rays see it in place of the lights at infinity; all other
 /// rays see the lights. It is composited under the render by coverage, and a preview shows it at
 /// the brightness that is given here.

@@ -75,6 +75,7 @@ struct FilmSettings {
       0;  // kelvin: this daylight maps to the colour space's white; 0: no balancing
   ColorSpace space = ColorSpace::srgb;
   std::optional<Backdrop> backdrop = {};
+  PreviewExposure exposure = {};
   bool denoise = false;    // the picture (film/denoise.h)
   int matte_levels = 6;    // the most things that mattes tell in a pixel
   double least_width = 0;  // pixels: capsules and spheres are drawn at least this thick
@@ -96,6 +97,10 @@ struct FilmSettings {
     visit.number({"whitebalance", "this daylight becomes white: 1000 to 25000, or 0 for none", 0,
                   25000, "kelvin"},
                  self.white_balance);
+    visit.number({"exposure", "previews are brighter by so much", -most_stops, most_stops, "stops"},
+                 self.exposure.stops);
+    visit.flag({"autoexposure", "the picture tells how bright its previews are"},
+               self.exposure.is_automatic);
     visit.flag({"denoise", "Open Image Denoise removes the noise of the picture"}, self.denoise);
     visit.integer({"mattelevels", "the most things that mattes tell in a pixel", 1, CAPLET_SLOTS},
                   self.matte_levels);

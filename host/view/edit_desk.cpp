@@ -55,6 +55,7 @@ void EditDesk::prepare_greeting(bool read_only) {
     out["overlays"].push_back({{"name", row.name}, {"values", row.values}, {"help", row.help}});
   out["home"] = camera_text(films_.look());
   out["backdrop"] = backdrop_text(live_.scene().view.film.backdrop);
+  out["exposure"] = exposure_text(live_.scene().view.film.exposure);
   out["read_only"] = read_only;
   out["can_undo"] = editor_.can_undo();
   out["can_redo"] = editor_.can_redo();
@@ -106,10 +107,12 @@ void EditDesk::tell_edited(const Counts& before, Server& server) {
   if (now.rearrangements != before.rearrangements) told["scene"] = told_scene();
   told["samples"] = films_.target();
   told["backdrop"] = backdrop_text(live_.scene().view.film.backdrop);
+  told["exposure"] = exposure_text(live_.scene().view.film.exposure);
   told["parts"] = told_parts();
   if (now.camera_changes != before.camera_changes) told["home"] = camera_text(keeping_.own_look());
   nlohmann::ordered_json greeting;
-  for (const char* name : {"can_undo", "can_redo", "keep", "samples", "backdrop", "parts", "home"})
+  for (const char* name :
+       {"can_undo", "can_redo", "keep", "samples", "backdrop", "exposure", "parts", "home"})
     if (told.contains(name)) greeting[name] = told[name];
   if (told.contains("scene")) greeting.update(told["scene"]);
   clients_.greet_with(greeting);

@@ -45,6 +45,7 @@ std::string figure_png(Scene scene, const View& own, const MakeFigure& asked, co
   scene.view.sampler.samples_per_pixel = asked.samples;
   film.denoise = asked.denoise;
   if (asked.background) film.backdrop = parse_backdrop(*asked.background, NoFiles(), "background");
+  if (asked.exposure) film.exposure = parse_exposure(*asked.exposure, "exposure");
   post::Overlays overlays;
   for (const auto& [name, value] : asked.drawn) post::set_overlay(overlays, name, value, name);
   check_edit(Scene(), scene.view);

@@ -55,6 +55,8 @@ MakeFigure figure(const json& of) {
   out.samples = whole(of, "samples", 1, most_figure_samples);
   out.denoise = truth(of, "denoise");
   if (!field(of, "background").is_null()) out.background = text(of, "background", longest);
+  if (of.contains("exposure") && !of["exposure"].is_null())
+    out.exposure = text(of, "exposure", longest);
   const json& drawn = field(of, "drawn");
   if (!drawn.is_object() || drawn.size() > most_drawn)
     refuse("drawn", fmt::format("is no object of at most {} texts", most_drawn));

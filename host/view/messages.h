@@ -53,6 +53,7 @@ struct MakeFigure {
   int samples = 0;  // of a pixel
   bool denoise = false;
   std::optional<std::string> background;  // a colour, or "transparent"; none: the scene's
+  std::optional<std::string> exposure;    // of parse_exposure (present/picture_options.h)
   std::vector<std::pair<std::string, std::string>> drawn;  // overlays (post/overlay_options.h)
 };
 /// Ends the page's figure, unfinished.

@@ -40,6 +40,10 @@ Json camera_text(const ShowView& look) {
           {"convergence", look.convergence}};
 }
 
+Json exposure_text(const PreviewExposure& exposure) {
+  return {{"stops", exposure.stops}, {"auto", exposure.is_automatic}};
+}
+
 Json backdrop_text(const std::optional<Backdrop>& backdrop) {
   if (!is_put_under_by_page(backdrop)) return nullptr;
   if (backdrop->kind == Backdrop::Kind::transparent) return "transparent";

@@ -241,6 +241,7 @@ TEST(Films, PicturesAreDevelopedAsTheSceneAsked) {
   for (const std::string& background : backgrounds) {
     Names one{"-o", "whole.exr", "--preview", "whole.png", "--film", "a.film"};
     if (!background.empty()) one.insert(one.end(), {"--background", background});
+    one.insert(one.end(), {"--exposure", background.empty() ? "-1.5" : "auto"});
     expect_done(render(folder, one));
     expect_done(merge(folder, {"a.film", "-o", "a.exr", "--preview", "a.png"}));
     test::expect_equal_pictures(folder / "a.exr", folder / "whole.exr");
@@ -248,6 +249,12 @@ TEST(Films, PicturesAreDevelopedAsTheSceneAsked) {
     EXPECT_EQ(test::read_file(folder / "a.png"), test::read_file(folder / "whole.png"))
         << background;
   }
+  expect_done(render(folder, {"-o", "whole.png", "--background", "sky.png", "--exposure", "0.7"}));
+  expect_done(merge(folder, {"a.film", "-o", "a.png", "--exposure", "0.7"}));
+  EXPECT_EQ(test::read_file(folder / "a.png"), test::read_file(folder / "whole.png"));
+  EXPECT_THAT(merge(folder, {"a.film", "-o", "b.png", "--exposure", "x"}).err,
+              HasSubstr("--exposure: 'x'"));
+  EXPECT_FALSE(fs::exists(folder / "b.png"));
   // JPEG has no alpha.
   EXPECT_EQ(merge(folder, {"a.film", "-o", "a.jpg", "--background", "transparent"}).code, 2);
   EXPECT_FALSE(fs::exists(folder / "a.jpg"));

@@ -7,11 +7,13 @@
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
+#include <algorithm>
 #include <cmath>
 #include <csignal>
 #include <cstdlib>
 
 #include "film/image.h"
+#include "film/preview.h"
 #include "program.h"
 #include "support/data.h"
 
@@ -126,6 +128,30 @@ TEST(Frames, ATurntableGoesRoundOnce) {
             0);
   expect_equal(folder / "t.03.exr", folder / "again.3.exr");
   EXPECT_FALSE(fs::exists(folder / "again.1.exr"));
+}
+
+TEST(Frames, HaveTheExposureOfTheFirst) {
+  const fs::path folder = test::folder_with_scene(
+      "Film \"rgb\" \"integer xresolution\" 24 \"integer yresolution\" 16 LookAt 0 0 6 0 0 0 0 1 0 "
+      "Camera \"perspective\" Sampler \"sobol\" \"integer pixelsamples\" 4 WorldBegin "
+      "LightSource \"distant\" \"point3 from\" [1 0 2] Shape \"sphere\"");
+  ASSERT_EQ(run(folder, {"scene.pbrt", "--turntable", "4", "-o", "t.#.exr", "-o", "t.#.png",
+                         "--exposure", "auto"})
+                .code,
+            0);
+  std::vector<double> own;
+  for (const char* frame : {"t.1", "t.2", "t.3", "t.4"}) {
+    LayeredImage picture = read_exr(folder / (frame + std::string(".exr")));
+    picture.chromaticities.reset();
+    ExposureMeter meter;
+    meter.add(picture);
+    own.push_back(meter.stops());
+    picture.exposure.stops = own.front();
+    EXPECT_EQ(FileImageReader().read_texture(folder / (frame + std::string(".png")), {}).bytes,
+              preview_rgb8(picture))
+        << frame;
+  }
+  EXPECT_GT(std::ranges::max(own), own.front() + 0.5) << "the dark side is seen";
 }
 
 // A camera that the file says goes round what is up there, and lights stay: of a scene that is the

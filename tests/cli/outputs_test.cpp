@@ -465,6 +465,30 @@ TEST(Pictures, ThePreviewHasEveryRow) {
   EXPECT_TRUE(shown.rgb == FileImageReader().read_rgb(folder / "again.png").rgb);
 }
 
+// The exposure is that of the whole picture, whose bands are of different light; the EXR stays.
+TEST(Pictures, ThePreviewHasTheExposureThatIsAsked) {
+  const fs::path folder = folder_with_scene();
+  ASSERT_EQ(render(folder, {"-o", "plain.exr", "--size", "2600x1300", "--spp", "1"}).code, 0);
+  LayeredImage picture = read_exr(folder / "plain.exr");
+  picture.chromaticities.reset();  // as single precision has them
+  for (const char* asked : {"-1.25", "auto"}) {
+    const Result result =
+        test::run_program({"render", "scene.pbrt", "-o", "out.exr", "--preview", "out.png",
+                           "--size", "2600x1300", "--spp", "1", "--exposure", asked},
+                          folder);
+    ASSERT_EQ(result.code, 0) << result.err;
+    EXPECT_EQ(result.err.find("exposure of previews: ") != std::string::npos,
+              asked == std::string("auto"));
+    test::expect_equal_pictures(folder / "out.exr", folder / "plain.exr");
+    picture.exposure =
+        asked == std::string("auto") ? PreviewExposure{0, true} : PreviewExposure{-1.25, false};
+    write_preview(folder / "again.png", picture);
+    EXPECT_TRUE(FileImageReader().read_rgb(folder / "out.png").rgb ==
+                FileImageReader().read_rgb(folder / "again.png").rgb)
+        << asked;
+  }
+}
+
 TEST(Pictures, OverlaysLieOnAllBandsOfThePreview) {
   const fs::path folder = folder_with_scene();
   const int width = 2600, height = 1000;

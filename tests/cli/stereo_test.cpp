@@ -9,9 +9,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <set>
 
 #include "film/image.h"
+#include "film/preview.h"
 #include "program.h"
 #include "support/data.h"
 #include "support/tev_server.h"
@@ -155,6 +157,34 @@ TEST(Stereo, PreviewsShowBothViews) {
   EXPECT_EQ(size_of({}), std::pair(48, 16));
   EXPECT_EQ(size_of({"--stereo-layout", "over-under"}), std::pair(24, 32));
   EXPECT_EQ(size_of({"--stereo-layout", "anaglyph"}), std::pair(24, 16));
+}
+
+TEST(Stereo, BothEyesHaveOneExposure) {
+  const auto folder = test::folder_with_scene();
+  ASSERT_EQ(test::render(folder, {"-o", "p.exr", "--preview", "p.png", "--stereo", "0.1",
+                                  "--stereo-layout", "over-under", "--exposure", "auto"})
+                .code,
+            0);
+  const LayeredImage both = read_exr(folder / "p.exr");
+  std::array<LayeredImage, 2> eyes;
+  ExposureMeter meter;
+  for (const std::size_t eye : {0, 1}) {
+    eyes[eye].width = eyes[eye].data_width = 24;
+    eyes[eye].height = eyes[eye].data_height = 16;
+    for (const char* name : {"R", "G", "B", "A"})
+      eyes[eye].channels.push_back(*both.find((eye == 1 ? "right." : "") + std::string(name)));
+    for (Channel& channel : eyes[eye].channels)
+      if (eye == 1) channel.name = channel.name.substr(6);
+    meter.add(eyes[eye]);
+  }
+  EXPECT_NE(meter.stops(), 0);
+  std::vector<std::uint8_t> wanted;
+  for (LayeredImage& eye : eyes) {
+    eye.exposure.stops = meter.stops();
+    const std::vector<std::uint8_t> bytes = preview_rgb8(eye);
+    wanted.insert(wanted.end(), bytes.begin(), bytes.end());
+  }
+  EXPECT_EQ(FileImageReader().read_texture(folder / "p.png", {}).bytes, wanted);
 }
 #endif
 

@@ -602,6 +602,7 @@ class Maker {
     if (random_.one_in(2))
       scene_.view.film.backdrop =
           Backdrop{Backdrop::Kind::color, {0.25, 0.5, random_.uniform(0, 1)}, nullptr};
+    scene_.view.film.exposure = {random_.uniform(-3, 3), random_.one_in(3)};
     if (random_.one_in(2)) scene_.view.film.least_width = random_.uniform(0, 3);
   }
 

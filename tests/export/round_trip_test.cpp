@@ -91,6 +91,7 @@ TEST(RoundTrip, EveryRowOfEveryList) {
       EXPECT_EQ(read.legend->names, scene.legend->names);
       EXPECT_EQ(read.legend->of_directions, scene.legend->of_directions);
     }
+    EXPECT_EQ(read.view.film.exposure, scene.view.film.exposure);
     EXPECT_EQ(read.view.film.least_width, scene.view.film.least_width);
     ASSERT_EQ(read.view.film.backdrop.has_value(), scene.view.film.backdrop.has_value());
     if (scene.view.film.backdrop) {

@@ -206,6 +206,8 @@ TEST(SavedFilm, FilesHoldWhatPicturesAreDevelopedBy) {
     film.settings.white_balance = 3456.7;
     film.settings.space = ColorSpace::aces2065_1;
     film.settings.backdrop = backdrop;
+    film.settings.exposure = {-1. / 3, false};
+    if (backdrop) film.settings.exposure = {0, true};
     film.notes = {{"caplet.device", "A"}, {"software", "Caplet 1"}, {"caplet.seed", "7"}};
     save_film(folder / "a.film", film);
     const SavedFilm again = load_film(folder / "a.film");
@@ -218,6 +220,7 @@ TEST(SavedFilm, FilesHoldWhatPicturesAreDevelopedBy) {
     EXPECT_EQ(again.settings.exposure_time, film.settings.exposure_time);
     EXPECT_EQ(again.settings.white_balance, film.settings.white_balance);
     EXPECT_EQ(again.settings.space, film.settings.space);
+    EXPECT_EQ(again.settings.exposure, film.settings.exposure);
     EXPECT_EQ(again.settings.width, 20);
     EXPECT_EQ(again.settings.height, 10);
     ASSERT_EQ(again.settings.backdrop.has_value(), backdrop.has_value());
@@ -324,6 +327,7 @@ TEST(Film, FilesThatAreNoneAreRefused) {
            {"caplet.film.iso", "1x"},
            {"caplet.film.exposure_time", ""},
            {"caplet.film.white_balance", "inf"},
+           {"caplet.film.exposure", "some"},
            {"caplet.film.backdrop", "0.1 0.2"},
            {"caplet.film.backdrop", "0.1 0.2 0.3 0.4"},
            {"caplet.film.backdrop", "file missing.png"},

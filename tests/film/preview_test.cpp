@@ -102,6 +102,90 @@ TEST(Preview, BytesAreSrgb) {
   EXPECT_EQ(bytes[3], 255);
 }
 
+LayeredImage over(LayeredImage image, std::vector<float> coverage,
+                  const std::optional<Backdrop>& backdrop) {
+  image.channels.push_back({"A", std::move(coverage), {}});
+  image.backdrop = backdrop;
+  return image;
+}
+
+TEST(Exposure, ChangesTheLightOfShapesBeforeTheCurve) {
+  LayeredImage image = picture({{0.1f, 0.05f, 0}, {0.3f, 0.3f, 0.3f}});
+  image.exposure.stops = 2;
+  const Shown out = shown(image);
+  EXPECT_EQ(out.rgb[0], (std::array<float, 3>{0.4f, 0.2f, 0}));
+  EXPECT_EQ(out.rgb[1], tone_map({1.2f, 1.2f, 1.2f}));
+  image.exposure.stops = -1;
+  EXPECT_EQ(shown(image).rgb[0], (std::array<float, 3>{0.05f, 0.025f, 0}));
+  // Half a pixel of grey 0.2 over a backdrop of 0.6 is 0.4, and 0.5 when the grey is 0.4.
+  const Backdrop grey{Backdrop::Kind::color, glm::dvec3(0.6), nullptr};
+  image = over(picture({{0.4f, 0.4f, 0.4f}, {0.6f, 0.6f, 0.6f}}), {0.5f, 0}, grey);
+  EXPECT_NEAR(shown(image).rgb[0][1], 0.4, 1e-6);
+  image.exposure.stops = 1;
+  EXPECT_NEAR(shown(image).rgb[0][1], 0.5, 1e-6);
+  EXPECT_NEAR(shown(image).rgb[1][1], 0.6, 1e-6);
+  image = over(picture({{0.1f, 0.1f, 0.1f}}), {0.5f}, Backdrop{});
+  image.exposure.stops = 1;
+  EXPECT_NEAR(shown(image).rgb[0][1], 0.4, 1e-6);
+  EXPECT_EQ(shown(image).alpha[0], 0.5f);
+}
+
+/// `dark` pixels of 0.002, then `bright` ones whose green is `light`.
+LayeredImage two_lights(int dark, int bright, float light) {
+  std::vector<std::array<float, 3>> pixels(static_cast<std::size_t>(dark),
+                                           {0.002f, 0.002f, 0.002f});
+  pixels.insert(pixels.end(), static_cast<std::size_t>(bright), {0.1f * light, light, 0});
+  return picture(pixels);
+}
+
+double metered(const LayeredImage& image) {
+  ExposureMeter meter;
+  meter.add(image);
+  return meter.stops();
+}
+
+TEST(Exposure, IsMeteredByTheLightThatFewPixelsExceed) {
+  constexpr double step = 1.0 / 32;
+  for (const float light : {0.01f, 0.1f, 0.8f, 7.0f, 1e4f}) {
+    // More than a twentieth are bright; then fewer are.
+    EXPECT_NEAR(metered(two_lights(94, 6, light)), std::log2(0.8 / double{light}), step + 1e-5);
+    EXPECT_NEAR(metered(two_lights(96, 4, light)), std::log2(0.8 / 0.002), step + 1e-5);
+  }
+  EXPECT_EQ(metered(two_lights(100, 0, 1)), metered(two_lights(7, 0, 1)));
+  EXPECT_EQ(metered(picture({{0, 0, 0}, {-1, 0, 0}})), 0);
+  EXPECT_EQ(metered(picture({{1e-14f, 0, 0}})), 0);  // below 2^-40
+  constexpr float nan = std::numeric_limits<float>::quiet_NaN(),
+                  infinite = std::numeric_limits<float>::infinity();
+  EXPECT_NEAR(metered(picture({{infinite, 0, 0}, {nan, nan, nan}, {0.2f, 0, 0}})), 2, step);
+  EXPECT_EQ(metered(picture({{1e30f, 0, 0}})), -32);
+}
+
+TEST(Exposure, IsMeteredByCoverage) {
+  // What no shape covers does not count, with a backdrop or without one.
+  LayeredImage sky = over(picture({{9, 9, 9}, {9, 9, 9}, {0.2f, 0.2f, 0.2f}}), {0, 0, 1}, {});
+  EXPECT_NEAR(metered(sky), 2, 1.0 / 32);
+  sky.backdrop = Backdrop{Backdrop::Kind::color, glm::dvec3(9), nullptr};
+  EXPECT_NEAR(metered(sky), 2, 1.0 / 32);
+  // Half a pixel of 0.4.
+  const LayeredImage half = over(picture({{0.2f, 0.2f, 0.2f}}), {0.5f}, Backdrop{});
+  EXPECT_NEAR(metered(half), 1, 1.0 / 32);
+  // A thin share of the picture is bright, whether it is in one band or in several.
+  ExposureMeter meter;
+  meter.add(two_lights(90, 0, 1));
+  meter.add(two_lights(4, 6, 1));
+  EXPECT_EQ(meter.stops(), metered(two_lights(94, 6, 1)));
+}
+
+TEST(Exposure, OfThePicture) {
+  LayeredImage image = two_lights(90, 10, 0.05f);
+  image.exposure.is_automatic = true;
+  const float green = shown(image).rgb.back()[1];
+  EXPECT_LT(tone_map({0, 0.8f * std::exp2(-1.0f / 31), 0})[1], green);
+  EXPECT_GT(tone_map({0, 0.8f * std::exp2(1.0f / 31), 0})[1], green);
+  image.exposure = {metered(image), false};
+  EXPECT_EQ(shown(image).rgb.back()[1], green);
+}
+
 TEST(Preview, ConvertsToSrgbPrimaries) {
   // (0.18, 0.18, 0.18) is grey in every D65 space; saturated Rec. 2020 green lies outside sRGB and
   // clips its red to 0.

@@ -197,21 +197,43 @@ TEST(Look, AFilesOwnCameraIsReplacedByAViewAlone) {
   expect_near(axis_of(scene, 2), {0, -1, 0});
 }
 
+TEST(Look, SetsTheExposureOfPreviews) {
+  Scene scene = three_balls();
+  look(scene, {{"exposure", "-1.5"}});
+  EXPECT_EQ(scene.view.film.exposure, (PreviewExposure{-1.5, false}));
+  look(scene, {{"exposure", "auto"}});
+  EXPECT_EQ(scene.view.film.exposure, (PreviewExposure{0, true}));
+  look(scene, {});
+  EXPECT_EQ(scene.view.film.exposure, (PreviewExposure{0, true}));
+}
+
 TEST(Look, WordsThatAreWrongNameTheirOption) {
   Scene scene = three_balls();
   struct Row {
     const char *name, *value, *says;
   };
-  for (const Row& row :
-       {Row{"view", "fornt", "'front'"}, Row{"view", "0,0,0", "no direction"},
-        Row{"view", "1,2", "no view"}, Row{"view", "1,2,x", "no view"},
-        Row{"view", "1,2,3,4", "no view"}, Row{"view", "nan,0,0", "no view"},
-        Row{"up", "w", "x, y, z"}, Row{"up", "-", "x, y, z"},
-        Row{"projection", "flat", "orthographic"}, Row{"light", "sun", "studio, flat, dramatic"},
-        Row{"background", "whiet", "'white'"}, Row{"background", "#12345", "no file"},
-        Row{"background", "1,2,0", "from 0 to 1"}, Row{"background", "none.png", "no file"},
-        Row{"least-width", "-1", "0 to 64"}, Row{"least-width", "wide", "wide"},
-        Row{"least-width", "65", "0 to 64"}})
+  for (const Row& row : {Row{"view", "fornt", "'front'"},
+                         Row{"view", "0,0,0", "no direction"},
+                         Row{"view", "1,2", "no view"},
+                         Row{"view", "1,2,x", "no view"},
+                         Row{"view", "1,2,3,4", "no view"},
+                         Row{"view", "nan,0,0", "no view"},
+                         Row{"up", "w", "x, y, z"},
+                         Row{"up", "-", "x, y, z"},
+                         Row{"projection", "flat", "orthographic"},
+                         Row{"light", "sun", "studio, flat, dramatic"},
+                         Row{"background", "whiet", "'white'"},
+                         Row{"background", "#12345", "no file"},
+                         Row{"background", "1,2,0", "from 0 to 1"},
+                         Row{"background", "none.png", "no file"},
+                         Row{"least-width", "-1", "0 to 64"},
+                         Row{"least-width", "wide", "wide"},
+                         Row{"least-width", "65", "0 to 64"},
+                         Row{"exposure", "bright", "neither auto"},
+                         Row{"exposure", "33", "-32 to 32"},
+                         Row{"exposure", "nan", "-32 to 32"},
+                         Row{"exposure", "1x", "1x"},
+                         Row{"exposure", "", "neither auto"}})
     EXPECT_THAT(complaint([&] {
                   look(scene, {{row.name, row.value}});
                 }),

@@ -85,6 +85,31 @@ TEST(Figure, HasItsOwnBackground) {
   EXPECT_EQ(clear.bytes[4 * (15 * 40 + 20) + 3], 255);
 }
 
+TEST(Figure, HasTheExposureThatIsAsked) {
+  Scene scene = test::some_scene();
+  MakeFigure asked = asked_of(scene);
+  asked.look.width = 50;
+  asked.look.height = 20;
+  scene.view.film.exposure.stops = 1;
+  const TextureImage of_scene = picture_of(figure_of(scene, asked));
+  asked.exposure = "-2";
+  const TextureImage darker = picture_of(figure_of(scene, asked));
+  for (const double stops : {1.0, -2.0}) {
+    Scene same = scene;
+    same.view.film.width = 50;
+    same.view.film.height = 20;
+    same.view.film.exposure.stops = stops;
+    RenderOptions options;
+    options.layers = Layers::none();
+    EXPECT_EQ((stops == 1 ? of_scene : darker).bytes,
+              bytes_of_preview(test::render_model(same, 4, options).image));
+  }
+  EXPECT_NE(of_scene.bytes, darker.bytes);
+  asked.exposure = "much";
+  EXPECT_THAT([&] { figure_of(scene, asked); },
+              ThrowsMessage<InputError>(HasSubstr("exposure: 'much'")));
+}
+
 TEST(Figure, DrawsWhatIsAsked) {
   Scene scene = test::some_scene();
   scene.unit = "mm";

@@ -394,6 +394,9 @@ MODULES = """const done = arguments[0], out = {};
   Object.assign(covered, { width: 4, height: 1, samples: 2, color: new Uint16Array(12), alpha: Uint16Array.of(half[0.5], half[0], half[1], half[0.5]) });
   covered.color.set([light[0.25], light[0.25], 0, 0, 0, 0, half[1], 0, 0, light[3], light[3], light[3]]);
   out.under = [[0, "film", [1, 1, 1]], [1, "srgb", [1, 1, 1]], [0, "film", [0.25, 0.5, 1]], [0, "srgb", "transparent"]].map((how) => [...covered.shown(...how)]);
+  // 94 of 100 pixels are dark, and 6 have a green of 0.25; of the second picture these are not of an object.
+  const metered = (more) => { const it = new Picture(); Object.assign(it, { width: 10, height: 10, samples: 2, color: new Uint16Array(300) }, more); for (let i = 0; i < 100; ++i) it.color.set([0x1400, i < 94 ? 0 : light[0.25], 0], 3 * i); return it.metered(); };
+  out.metered = [metered({}), metered({ objects: Uint32Array.from({ length: 100 }, (_, i) => i < 94 ? 7 : 0xffffffff) }), metered({ alpha: new Uint16Array(100).fill(half[0.5]) }), metered({ alpha: new Uint16Array(100) })];
   const all = KEYS.flatMap(([, ...keys]) => keys);
   out.twice = all.filter((key, i) => all.indexOf(key) !== i);
   out.unnamed = KEYS.map(([action]) => action).filter((action) => !texts.actions[action]);
@@ -434,6 +437,10 @@ def modules(program, scenes, out):
                 wanted = bytes_of([a * min(1, s) + (1 - a) * u for s, u in zip(shapes, under)])
                 now = shown_as[4 * i:4 * i + 4]
                 assert max(abs(p - q) for p, q in zip(now, wanted)) <= 1 and now[3] == 255, (stops, curve, i, now, wanted)  # steps of 1/4096
+        # The light that a twentieth exceeds becomes 0.8, to within a 32nd of a stop: 1/4, 2^-10, and 1/2 of half a pixel.
+        for now, wanted in zip(got["metered"], [math.log2(0.8 * 4), math.log2(0.8 * 1024), math.log2(0.8 * 2)]):
+            assert abs(now - wanted) <= 1 / 32 + 1e-6, (now, wanted)
+        assert got["metered"][3] == 0, got["metered"]
         hard, soft = got["hard"], got["soft"]
         assert hard == [v for i in range(63) for v in (1, i % 2, 0)], hard[:12]
         for i in range(63):

@@ -63,7 +63,11 @@ std::optional<AskedColor> asked_color(const ImportOptions& options) {
   }
   if (text->starts_with("distance"))
     throw InputError({"--color"}, "'distance from' and a selection of atoms are needed");
-  return AskedColor{static_cast<MoleculeColor>(options.choice("color", color_names, 0)), ""};
+  const auto* const found = std::ranges::find(color_names, *text);
+  if (found == color_names.end())
+    throw InputError({"--color"}, fmt::format("'{}' is none of: {}, distance from ATOMS", *text,
+                                              fmt::join(color_names, ", ")));
+  return AskedColor{static_cast<MoleculeColor>(found - color_names.begin()), ""};
 }
 
 void set_color(Representation& out, const std::optional<AskedColor>& asked) {

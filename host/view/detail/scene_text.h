@@ -26,6 +26,7 @@ nlohmann::ordered_json camera_text(const ShowView& look);
 /// Returns what the page puts under pictures: "transparent", a displayed colour (linear sRGB), or
 /// null for nothing.
 nlohmann::ordered_json backdrop_text(const std::optional<Backdrop>& backdrop);
+nlohmann::ordered_json exposure_text(const PreviewExposure& exposure);
 
 /// Returns name, bounds (bounds_or_unit_of), shapes and instances by their object.id, materials,
 /// the device's name, and the samples per pixel and the noise (0: any) of a finished picture.

@@ -17,14 +17,16 @@ export function command_of(file, figure) {
   const stem = file.replace(/^.*\//, "").replace(/\.\w+$/, ""), out = ["caplet", "render", quoted(file), "--size", `${figure.width}x${figure.height}`, "--spp", figure.samples];
   if (figure.denoise) out.push("--denoise");
   if (figure.background !== null) out.push("--background", quoted(figure.background));
+  if (figure.exposure !== null) out.push(`--exposure=${figure.exposure}`);
   for (const [name, value] of Object.entries(figure.drawn)) out.push(value ? `--${name}=${quoted(value)}` : `--${name}`);
   return [...out, "-o", quoted(`${stem}.png`)].join(" ");
 }
 
 export class Figure {
-  // `ask(message, done)` sends a message with a number; `stop` ends the figure; `look` returns the view's message; `size` the stage's; `save` a file.
-  constructor({ ask, stop, look, size, save, file }) {
-    Object.assign(this, { ask, stop, look, size, save, file });
+  // `ask(message, done)` sends a message with a number; `stop` ends the figure; `look` returns the view's message; `size` the stage's; `save` a file;
+  // `exposure` what the page shows beside the scene's, or null.
+  constructor({ ask, stop, look, size, save, file, exposure }) {
+    Object.assign(this, { ask, stop, look, size, save, file, exposure });
     this.rows = [];
     this.blob = null;
     this.is_busy = false;
@@ -87,7 +89,7 @@ export class Figure {
 
   // Returns what the fields say; null where one of them is wrong, which then says why.
   asked() {
-    const out = { samples: 0, denoise: !this.denoises.hidden && this.denoise.checked, background: this.background.value.trim() || null, drawn: {} };
+    const out = { samples: 0, denoise: !this.denoises.hidden && this.denoise.checked, background: this.background.value.trim() || null, exposure: this.exposure(), drawn: {} };
     let is_good = true;
     for (const [name, input] of [["width", this.width], ["height", this.height], ["samples", this.samples]]) {
       const { low, high } = input.dataset, trouble = trouble_with(input.value, 1), value = Math.round(value_of(input.value));

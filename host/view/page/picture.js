@@ -3,6 +3,8 @@
 // Decodes the program's pictures (docs/viewer.md) and displays them.
 const TILE = 64, WHOLE = 1, IDS = 2, DENOISED = 8, ALPHA = 16;
 
+const NOTHING = 0xffffffff;  // the id of what is not an object
+const BINS = 16, STOPS = 80;  // of the exposure meter: bins a stop, stops in all
 const CHECKS = [[0.32, 0.32, 0.32], [0.6, 0.6, 0.6]];  // under what is transparent
 
 const float_of_half = new Float32Array(65536);
@@ -104,6 +106,25 @@ export class Picture {
       for (let c = 0; c < 3; ++c) out[3 * i + c] = near > 0 ? own * Math.max(0, sums[c][i]) / near : own;
     }
     return out;
+  }
+
+  // Returns by how many stops the picture is to be brighter, as ExposureMeter says it (host/film/preview.h).
+  metered() {
+    const weights = new Float64Array(BINS * STOPS), { alpha, objects } = this;
+    let sum = 0;
+    for (let i = 0; i < this.width * this.height; ++i) {
+      const a = alpha ? float_of_half[alpha[i]] : objects && objects[i] === NOTHING ? 0 : 1;
+      const light = Math.max(...[0, 1, 2].map((c) => float_of_half[this.color[3 * i + c]])) / (alpha ? a : 1);
+      if (!(a > 0 && light > 0 && light < Infinity)) continue;
+      const bin = Math.floor((Math.log2(light) + STOPS / 2) * BINS);
+      if (bin < 0) continue;
+      weights[Math.min(bin, weights.length - 1)] += a;
+      sum += a;
+    }
+    if (!sum) return 0;
+    let bin = weights.length;
+    for (let above = 0; above < 0.05 * sum && bin > 0;) above += weights[--bin];
+    return Math.log2(0.8) - (bin + 0.5) / BINS + STOPS / 2;
   }
 
   // Returns R G B A bytes for the screen. "film": as in the program's previews (docs/output.md). `backdrop`, a colour as it

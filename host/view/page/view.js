@@ -95,6 +95,11 @@ const keep = new Keep({
 const figure = new Figure({
   ask: (message, done) => { waiting.set(++number, done); say({ ...message, number }); }, stop: () => say({ type: "end_figure" }),
   look: () => view_message(1, 1), size: () => [stage.clientWidth, stage.clientHeight], save: (blob, name) => save(blob, name), file: () => keep.name.value.trim() || keep.now.name || scene.name,
+  exposure: () => {
+    const { stops, auto } = scene.exposure, slider = +$("exposure").value, is_auto = $("auto-exposure").checked;
+    if (slider === 0 && is_auto === auto) return null;  // as the scene says
+    return slider === 0 && is_auto ? "auto" : exposure().toFixed(2);
+  },
 });
 
 let lost_since = 0;
@@ -147,6 +152,14 @@ function save(blob, name) {
   setTimeout(() => URL.revokeObjectURL(link.href), 10000);
 }
 
+// The scene's exposure is another one.
+function expose(now) {
+  if (now.auto !== scene.exposure.auto) $("auto-exposure").checked = now.auto;
+  const is_new = now.stops !== scene.exposure.stops || now.auto !== scene.exposure.auto;
+  scene.exposure = now;
+  if (is_new) draw();
+}
+
 function edited(message) {
   $("back").disabled = !message.can_undo;
   $("again").disabled = !message.can_redo;
@@ -162,6 +175,7 @@ function edited(message) {
   }
   scene.samples = message.samples;
   scene.backdrop = message.backdrop;
+  expose(message.exposure);
   if (message.home) scene.home = message.home;
   forms.told(message.parts);
   edits.refresh();
@@ -170,7 +184,9 @@ function edited(message) {
 
 function begin(message) {
   const again = scene?.name === message.name, restarted = again && scene.session !== message.session;
+  const before = scene?.exposure;
   scene = message;
+  if (!again || restarted || before.auto !== scene.exposure.auto) $("auto-exposure").checked = scene.exposure.auto;
   const [low, high] = scene.bounds;
   center = mul(add(low, high), 0.5);
   radius = length(sub(high, low)) / 2 || 1;
@@ -296,10 +312,13 @@ function copy_link() {
 const layout = () => camera?.separation > 0 ? $("stereo").value : "off";
 const has_right = () => right_picture.view === picture.view && right_picture.width === picture.width && right_picture.height === picture.height;
 
+// The exposure of the scene, or the picture's own, and that of the slider.
+const exposure = () => +$("exposure").value + ($("auto-exposure").checked ? picture.metered() : scene.exposure.stops);
+
 function draw() {
   const { width, height } = picture;
   if (!scene || !width) return;
-  const shown = (of) => of.shown(+$("exposure").value, $("curve").value, scene.backdrop);
+  const stops = exposure(), shown = (of) => of.shown(stops, $("curve").value, scene.backdrop);
   const [across, down, bytes] = arranged(layout(), width, height, shown(picture), has_right() ? shown(right_picture) : null);
   picture_canvas.width = across;
   picture_canvas.height = down;
@@ -514,6 +533,7 @@ $("home").onclick = home;
 $("undo").onclick = () => undo(past, future);
 $("redo").onclick = () => undo(future, past);
 $("exposure").oninput = () => { $("stops").value = $("exposure").value; draw(); };
+$("auto-exposure").onchange = draw;
 $("curve").onchange = draw;
 $("denoise").onclick = () => { const on = $("denoise").getAttribute("aria-pressed") !== "true"; denoises(on); say({ type: "denoise", on }); };
 $("figure-open").onclick = () => { if (camera) figure.open(); };

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+//
+// Presets against the options that they stand for.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "program.h"
+#include "support/data.h"
+
+namespace caplet {
+namespace {
+
+using Names = std::vector<std::string>;
+using testing::AllOf;
+using testing::HasSubstr;
+
+constexpr const char* neuron = "1 1 0 0 0 2 -1\n2 3 0 9 0 1 1\n3 3 4 14 3 1 2\n4 2 -5 -6 2 1 1\n";
+
+class Presets : public testing::Test {
+ protected:
+  Presets() : folder_(test::temporary_folder()) { test::write_file(folder_ / "cell.swc", neuron); }
+
+  std::string picture(const Names& options) const {
+    Names all{"render", "cell.swc", "-q",    "-o",    "none", "--preview",
+              "p.png",  "--size",   "60x40", "--spp", "2"};
+    all.insert(all.end(), options.begin(), options.end());
+    const test::Result result = test::run_program(all, folder_);
+    EXPECT_EQ(result.code, 0) << result.err;
+    return test::read_file(folder_ / "p.png");
+  }
+
+  std::filesystem::path folder_;
+};
+
+TEST_F(Presets, AreTheOptionsThatTheyStandFor) {
+  EXPECT_EQ(picture({"--preset", "soft"}), picture({"--light", "flat", "--background", "white",
+                                                    "--outline", "1.5", "--depth-cue", "0.4"}));
+  EXPECT_EQ(picture({"--preset", "illustration"}),
+            picture({"--light", "flat", "--background", "white", "--outline", "2.5"}));
+  EXPECT_EQ(picture({"--preset", "paper"}), picture({"--background", "white", "--orthographic",
+                                                     "--outline", "1", "--scale-bar", "auto"}));
+  EXPECT_EQ(picture({"--preset", "dark"}),
+            picture({"--light", "dramatic", "--background", "black"}));
+}
+
+TEST_F(Presets, YieldToWhatIsGiven) {
+  EXPECT_EQ(picture({"--background", "#203040", "--preset", "soft", "--outline", "--light=studio"}),
+            picture({"--background", "#203040", "--outline", "1.5", "--depth-cue", "0.4", "--light",
+                     "studio"}));
+  EXPECT_EQ(picture({"--preset", "paper", "--projection", "perspective"}),
+            picture({"--background", "white", "--outline", "1", "--scale-bar", "auto"}));
+  EXPECT_EQ(picture({"--preset", "paper", "--orthographic"}), picture({"--preset", "paper"}));
+}
+
+TEST_F(Presets, NamesThatAreWrongAreTold) {
+  const test::Result result =
+      test::run_program({"render", "cell.swc", "-o", "p.png", "--preset", "papre"}, folder_);
+  EXPECT_EQ(result.code, 2);
+  EXPECT_THAT(result.err, AllOf(HasSubstr("--preset: 'papre' is none of soft, illustration"),
+                                HasSubstr("the nearest is 'paper'")));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "p.png"));
+}
+
+}  // namespace
+}  // namespace caplet
