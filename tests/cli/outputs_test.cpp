@@ -468,25 +468,40 @@ TEST(Pictures, ThePreviewHasEveryRow) {
 // The exposure is that of the whole picture, whose bands are of different light; the EXR stays.
 TEST(Pictures, ThePreviewHasTheExposureThatIsAsked) {
   const fs::path folder = folder_with_scene();
-  ASSERT_EQ(render(folder, {"-o", "plain.exr", "--size", "2600x1300", "--spp", "1"}).code, 0);
+  const int width = 3200, height = 200;
+  EXPECT_GT(height, band_rows(width, 19)) << "one band is all of it";
+  const std::string size = std::to_string(width) + "x" + std::to_string(height);
+  ASSERT_EQ(render(folder, {"-o", "plain.exr", "--size", size, "--spp", "1"}).code, 0);
   LayeredImage picture = read_exr(folder / "plain.exr");
   picture.chromaticities.reset();  // as single precision has them
-  for (const char* asked : {"-1.25", "auto"}) {
+  for (const std::string asked : {"-1.25", "auto"}) {
+    const bool is_automatic = asked == "auto";
     const Result result =
         test::run_program({"render", "scene.pbrt", "-o", "out.exr", "--preview", "out.png",
-                           "--size", "2600x1300", "--spp", "1", "--exposure", asked},
+                           "--film", "out.film", "--size", size, "--spp", "1", "--exposure", asked},
                           folder);
     ASSERT_EQ(result.code, 0) << result.err;
-    EXPECT_EQ(result.err.find("exposure of previews: ") != std::string::npos,
-              asked == std::string("auto"));
+    EXPECT_EQ(result.err.find("exposure of previews: ") != std::string::npos, is_automatic);
     test::expect_equal_pictures(folder / "out.exr", folder / "plain.exr");
-    picture.exposure =
-        asked == std::string("auto") ? PreviewExposure{0, true} : PreviewExposure{-1.25, false};
+    picture.exposure = {is_automatic ? 0 : -1.25, is_automatic};
     write_preview(folder / "again.png", picture);
     EXPECT_TRUE(FileImageReader().read_rgb(folder / "out.png").rgb ==
                 FileImageReader().read_rgb(folder / "again.png").rgb)
         << asked;
+    ASSERT_EQ(test::run_program({"merge", "out.film", "-o", "sum.png"}, folder).code, 0);
+    EXPECT_EQ(test::read_file(folder / "sum.png"), test::read_file(folder / "out.png")) << asked;
   }
+}
+
+TEST(Pictures, MeteringCountsNoPixelTwice) {
+  std::string scene = test::small_scene;
+  scene.insert(scene.find("Film \"rgb\"") + 10, " \"float iso\" 1e30 \"float exposure\" 0 ");
+  scene.insert(scene.find("LightSource \"infinite\"") + 22, " \"rgb L\" [1e20 1e20 1e20] ");
+  const fs::path folder = folder_with_scene(scene);
+  for (const char* asked : {"0", "auto"})
+    EXPECT_THAT(render(folder, {"-o", "a.exr", "--preview", "a.png", "--exposure", asked}).err,
+                HasSubstr("384 of 384 pixels are beyond"))
+        << asked;
 }
 
 TEST(Pictures, OverlaysLieOnAllBandsOfThePreview) {

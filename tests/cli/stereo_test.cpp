@@ -160,14 +160,18 @@ TEST(Stereo, PreviewsShowBothViews) {
 }
 
 TEST(Stereo, BothEyesHaveOneExposure) {
-  const auto folder = test::folder_with_scene();
-  ASSERT_EQ(test::render(folder, {"-o", "p.exr", "--preview", "p.png", "--stereo", "0.1",
+  const auto folder = test::folder_with_scene(
+      test::small_scene +
+      std::string("AreaLightSource \"diffuse\" \"rgb L\" [5 5 5] Translate -3 0 0 "
+                  "Shape \"sphere\" \"float radius\" 0.8  # one eye sees it\n"));
+  ASSERT_EQ(test::render(folder, {"-o", "p.exr", "--preview", "p.png", "--stereo", "3",
                                   "--stereo-layout", "over-under", "--exposure", "auto"})
                 .code,
             0);
   const LayeredImage both = read_exr(folder / "p.exr");
   std::array<LayeredImage, 2> eyes;
   ExposureMeter meter;
+  std::array<ExposureMeter, 2> own;
   for (const std::size_t eye : {0, 1}) {
     eyes[eye].width = eyes[eye].data_width = 24;
     eyes[eye].height = eyes[eye].data_height = 16;
@@ -176,8 +180,9 @@ TEST(Stereo, BothEyesHaveOneExposure) {
     for (Channel& channel : eyes[eye].channels)
       if (eye == 1) channel.name = channel.name.substr(6);
     meter.add(eyes[eye]);
+    own[eye].add(eyes[eye]);
   }
-  EXPECT_NE(meter.stops(), 0);
+  EXPECT_NE(own[0].stops(), own[1].stops());
   std::vector<std::uint8_t> wanted;
   for (LayeredImage& eye : eyes) {
     eye.exposure.stops = meter.stops();
