@@ -101,7 +101,7 @@ CommandText describe_command(const CLI::App& command) {
     (option->nonpositional() ? out.options : out.arguments).push_back(describe_option(*option));
   }
   // The option --help comes last, because every command has it.
-  std::ranges::stable_partition(out.options, [](const OptionText& option) {
+  std::stable_partition(out.options.begin(), out.options.end(), [](const OptionText& option) {
     return std::ranges::find(option.names, "--help") == option.names.end();
   });
   return out;

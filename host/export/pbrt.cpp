@@ -278,8 +278,9 @@ class SceneWriter {
     if (!unit.empty()) out.text("legendunit", unit);
     out.numbers("float", "legendrange", {low, high});
     if (!colors.empty())
-      out.list("float", "legendcolors", 3 * colors.size(),
-               [&](Text& text, std::size_t i) { text << colors[i / 3][static_cast<int>(i % 3)]; });
+      out.list("float", "legendcolors", 3 * colors.size(), [&legend](Text& text, std::size_t i) {
+        text << legend.colors[i / 3][static_cast<int>(i % 3)];
+      });
     if (!names.empty()) out.texts("legendnames", names);
     if (of_directions) out.boolean("legenddirections", true);
   }

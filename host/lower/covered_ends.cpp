@@ -192,7 +192,8 @@ EndCovers covers_of_part(std::span<const Emitter> emitters, const FlatScene& fla
   for (auto first = ends.begin(); first != ends.end();) {
     const auto last =
         std::find_if(first, ends.end(), [&](const End& end) { return end.key != first->key; });
-    const std::span others(first, std::min<std::ptrdiff_t>(last - first, most_at_a_point));
+    const std::span others(
+        first, static_cast<std::size_t>(std::min<std::ptrdiff_t>(last - first, most_at_a_point)));
     for (auto end = first; end != last; ++end)
       if (end->s <= 1) out[end->emitter][end->which] = best_cover(*end, others);
     first = last;

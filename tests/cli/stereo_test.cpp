@@ -172,7 +172,7 @@ TEST(Stereo, BothEyesHaveOneExposure) {
   std::array<LayeredImage, 2> eyes;
   ExposureMeter meter;
   std::array<ExposureMeter, 2> own;
-  for (const std::size_t eye : {0, 1}) {
+  for (const std::size_t eye : {0U, 1U}) {
     eyes[eye].width = eyes[eye].data_width = 24;
     eyes[eye].height = eyes[eye].data_height = 16;
     for (const char* name : {"R", "G", "B", "A"})

@@ -168,7 +168,7 @@ TEST(SeveralFiles, WhatMovesThemIsSaidIfItIsWrong) {
         {"@scale", "wants a factor or three"},
         {"@tranlate=1,2,3", "'@tranlate=1,2,3': is no step; the nearest is '@translate='"},
         {"@translate=1,2,3@", "'@': is no step"}}) {
-    const std::string said = complaint([&] { several({fs::path(b + steps)}); });
+    const std::string file = b + steps, said = complaint([&] { several({fs::path(file)}); });
     EXPECT_THAT(said, HasSubstr(why)) << steps;
     EXPECT_THAT(said, HasSubstr(b + steps)) << steps;
   }

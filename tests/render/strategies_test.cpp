@@ -123,8 +123,7 @@ std::string round_lamps() {
         "Shape \"sphere\" \"float radius\" 0.08\n",
         "Shape \"capsule\" \"point3 p0\" [0 0 0] \"point3 p1\" [0.2 0.1 0] \"float radius\" 0.04\n",
         "ReverseOrientation\nShape \"disk\" \"float radius\" 0.2\n",
-        "Shape \"cone\" \"point3 p0\" [0 0 0] \"point3 p1\" [0 0 0.2] \"float radius\" [0.1 "
-        "0.02]\n"};
+        "Shape \"cone\" \"point3 p0\" [0 0 0] \"point3 p1\" [0 0 .2] \"float radius\" [.1 .02]\n"};
     out += "AttributeBegin\n" + at + shapes[i % 4] + "AttributeEnd\n";
   }
   return out;

@@ -202,7 +202,7 @@ TEST(Urdf, MeshesHaveTheMaterialsOfTheirFiles) {
                           "</link></robot>");
   const Scene scene = scene_of(folder / "robot.urdf", {{{"up", "y"}, {"groups", "all"}}});
   ASSERT_EQ(scene.shapes.size(), 8U);
-  for (const std::size_t first : {0, 2}) {
+  for (const std::size_t first : {0U, 2U}) {
     const Shape &blue = scene.shapes[first], &red = scene.shapes[first + 1];
     expect_near(color_of(scene, blue), {0, 0, 1});
     EXPECT_EQ(scene.materials.at(blue.material).name, "blue");

@@ -525,12 +525,12 @@ TEST(Images, AreOnTheDeviceOnceForEachWrap) {
   ImagemapTexture map;
   map.image = image_of(3, 3, 1, std::vector<float>(9, 0.5f));
   std::vector<Texture> textures;
-  for (const int wrap : {CAPLET_WRAP_REPEAT, CAPLET_WRAP_CLAMP, CAPLET_WRAP_REPEAT}) {
+  for (const auto wrap : {CAPLET_WRAP_REPEAT, CAPLET_WRAP_CLAMP, CAPLET_WRAP_REPEAT}) {
     map.wrap = wrap;
     textures.push_back({map, true, "t", {}});
   }
   map.image = image_of(4, 4, 1, std::vector<float>(16, 0.5f));
-  for (const int wrap : {CAPLET_WRAP_REPEAT, CAPLET_WRAP_CLAMP}) {
+  for (const auto wrap : {CAPLET_WRAP_REPEAT, CAPLET_WRAP_CLAMP}) {
     map.wrap = wrap;
     textures.push_back({map, true, "t", {}});
   }

@@ -57,7 +57,7 @@ bool begins_with(std::string_view text, std::string_view begin) {
   }
   // Further lines of the message quote the file.
   message = message.substr(0, message.find('\n'));
-  if (message.ends_with(':')) message.pop_back();
+  if (!message.empty() && message.back() == ':') message.pop_back();  // it is C++17 here
   throw InputError(where, message);
 }
 

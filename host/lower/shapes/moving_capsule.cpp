@@ -44,7 +44,7 @@ FlatPrimitive MovingCapsules::primitive(std::size_t i) {
     const std::array<float, 8> ends = motion_.key(i, key);
     leaves_.insert(leaves_.end(), ends.begin(), ends.end());
     for (const float value : ends) largest = std::max(largest, std::abs(double{value}));
-    for (const std::size_t end : {0, 4})
+    for (const std::size_t end : {0U, 4U})
       for (std::size_t k = 0; k < 3; ++k) {
         low[k] = std::min(low[k], double{ends[end + k]} - double{ends[end + 3]});
         high[k] = std::max(high[k], double{ends[end + k]} + double{ends[end + 3]});
