@@ -526,12 +526,12 @@ TEST(Images, AreOnTheDeviceOnceForEachWrap) {
   map.image = image_of(3, 3, 1, std::vector<float>(9, 0.5f));
   std::vector<Texture> textures;
   for (const auto wrap : {CAPLET_WRAP_REPEAT, CAPLET_WRAP_CLAMP, CAPLET_WRAP_REPEAT}) {
-    map.wrap = wrap;
+    map.wrap = static_cast<int>(wrap);
     textures.push_back({map, true, "t", {}});
   }
   map.image = image_of(4, 4, 1, std::vector<float>(16, 0.5f));
   for (const auto wrap : {CAPLET_WRAP_REPEAT, CAPLET_WRAP_CLAMP}) {
-    map.wrap = wrap;
+    map.wrap = static_cast<int>(wrap);
     textures.push_back({map, true, "t", {}});
   }
   EXPECT_EQ(lower(scene_of(DiffuseMaterial{}, textures, {})).images.size(), 3u);
