@@ -321,15 +321,22 @@ TEST(RobotMeshes, ColladaIsReadInItsUnit) {
 <library_visual_scenes><visual_scene id="s"><node id="n"><translate>0 0 3</translate><instance_geometry url="#g"/></node></visual_scene></library_visual_scenes>
 <scene><instance_visual_scene url="#s"/></scene></COLLADA>)")
           .string();
-  const Scene scene = import_scene(
-      test::write_file("t.urdf", "<robot><link name='a'><visual><geometry><mesh filename='file://" +
-                                     mesh_file + "'/></geometry></visual></link></robot>"),
-      test::NoImages(), {{{"up", "y"}}});
-  const auto& mesh = std::get<TriangleMeshShape>(scene.shapes[0].geometry);
-  ASSERT_EQ(mesh.positions.size(), 3U);
-  EXPECT_NEAR(mesh.positions[1].x, 0.1, 1e-6);
-  EXPECT_NEAR(mesh.positions[2].y, 0.2, 1e-6);
-  EXPECT_NEAR(mesh.positions[0].z, 0.3, 1e-6);
+  // What is seen is read with its materials, what collides without them.
+  for (const std::string kind : {"visual", "collision"}) {
+    const Scene scene = import_scene(
+        test::write_file("t.urdf", "<robot><link name='a'><" + kind +
+                                       "><geometry><mesh filename='file://" + mesh_file +
+                                       "'/></geometry></" + kind + "></link></robot>"),
+        test::NoImages(), {{{"up", "y"}, {"groups", kind}}});
+    const auto& mesh = std::get<TriangleMeshShape>(scene.shapes[0].geometry);
+    ASSERT_EQ(mesh.positions.size(), 3U);
+    const auto corner = [&](std::size_t i) {
+      return scene.shapes[0].world_from_object * glm::dvec4(mesh.positions[i], 1);
+    };
+    EXPECT_NEAR(corner(1).x, 0.1, 1e-6);
+    EXPECT_NEAR(corner(2).y, 0.2, 1e-6);
+    EXPECT_NEAR(corner(0).z, 0.3, 1e-6);
+  }
   const std::string bad_file = test::write_file("bad.dae", "<COLLADA").string();
   EXPECT_THAT(complaint([&] {
                 import_scene(test::write_file(
