@@ -17,7 +17,10 @@ import sys
 
 
 def ninja(folder, *arguments):
-    return subprocess.run(["ninja", "-C", folder, *arguments], check=True, capture_output=True, text=True).stdout
+    done = subprocess.run(["ninja", "-C", folder, *arguments], capture_output=True, text=True)
+    if done.returncode:
+        sys.exit(done.stdout + done.stderr)
+    return done.stdout
 
 
 def main():

@@ -6,7 +6,6 @@
 #include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
-#include <array>
 #include <utility>
 #include <vector>
 
@@ -65,9 +64,7 @@ void apply_preset(CLI::App& command, const std::string& name) {
     if (name != preset.name) continue;
     for (const auto& [option, value] : preset.options) {
       CLI::Option* const one = command.get_option(option);
-      const CLI::Option* const same =
-          option == std::string("--projection") ? command.get_option("--orthographic") : one;
-      if (one->count() + same->count() > 0) continue;
+      if (one->count() > 0) continue;
       one->add_result(value);
       one->run_callback();
     }

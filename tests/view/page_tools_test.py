@@ -270,9 +270,22 @@ def figure(program, scenes, out):
             field.clear()
             field.send_keys(words)
 
-        shown.find("export-button").click()
-        shown.find("figure-open").click()
-        shown.until("the dialog", lambda: shown.find("figure").is_displayed())
+        # The figure has the exposure that is shown; the slider's comes after the automatic one.
+        slide = "const slider = document.getElementById('exposure'); slider.value = arguments[0]; slider.oninput()"
+        tick = "document.getElementById('auto-exposure').click()"
+        asked = []
+        for stops, ticks in ((0, True), (-1, True), (0, False), (-1, False)):
+            shown.script(slide, stops)
+            if shown.script("return document.getElementById('auto-exposure').checked") != ticks:
+                shown.script(tick)
+            shown.find("export-button").click()
+            shown.find("figure-open").click()
+            shown.until("the dialog", lambda: shown.find("figure").is_displayed())
+            asked += [[word[len("--exposure="):] for word in shown.text("figure-command").split() if word.startswith("--exposure=")]]
+            if (stops, ticks) != (-1, False):
+                shown.find("figure-close").click()
+        metered = float(asked[1][0])
+        assert asked == [["auto"], [f"{metered:.2f}"], [], ["-1.00"]] and abs(metered + 1) > 0.01, asked
         box = shown.find("stage").rect
         assert abs(int(shown.find("figure-width").get_property("value")) / int(shown.find("figure-height").get_property("value")) - box["width"] / box["height"]) < 0.01
         fill("figure-width", "0")
@@ -298,7 +311,7 @@ def figure(program, scenes, out):
         width, height, made = shown.driver.execute_async_script(FIGURE)
         shown.picture(out / "figure.png")
         command = shown.text("figure-command").split()
-        assert command == f"caplet render forms.pbrt --size 192x108 --spp 4 --background white --outline=2 --depth-cue --axes -o forms.png".split(), command
+        assert command == f"caplet render forms.pbrt --size 192x108 --spp 4 --background white --exposure=-1.00 --outline=2 --depth-cue --axes -o forms.png".split(), command
         shown.find("figure-close").click()
         shown.find("menu-button").click()
         shown.find("menu-save").click()

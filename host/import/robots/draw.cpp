@@ -16,7 +16,6 @@
 
 #include "base/check.h"
 #include "base/reading.h"
-#include "base/spelling.h"
 #include "import/detail/importers.h"
 #include "import/detail/mesh_file.h"
 #include "import/detail/text_file.h"
@@ -288,7 +287,7 @@ class RobotDrawing {
   }
 
   static bool has_looks(const std::filesystem::path& mesh) {
-    const std::string ending = lower_case(mesh.extension().string());
+    const std::string ending = lower_case_ending(mesh);
     return ending == ".dae" || ending == ".obj";
   }
 
@@ -325,20 +324,18 @@ class RobotDrawing {
     // As in ROS, the up axis of a COLLADA file does not count.
     ImportOptions as_it_is;
     as_it_is.set("up", "y");
-    Scene file = lower_case(geom.mesh.extension().string()) == ".dae"
-                     ? import_dae(geom.mesh, images_, as_it_is)
-                     : import_obj(geom.mesh, images_, as_it_is);
+    Scene file = lower_case_ending(geom.mesh) == ".dae" ? import_dae(geom.mesh, images_, as_it_is)
+                                                        : import_obj(geom.mesh, images_, as_it_is);
+    std::erase_if(file.shapes, [](const Shape& shape) {
+      return std::get<TriangleMeshShape>(shape.geometry).triangles.empty();
+    });
+    if (file.shapes.empty())
+      throw InputError(geom.where, "the mesh '" + geom.mesh.string() + "' holds no faces");
     for (const Shape& shape : file.shapes) {
-      if (std::get<TriangleMeshShape>(shape.geometry).triangles.empty()) continue;
       // The importers' own material for parts without one has no line, and no colours of vertices.
       const Material& look = file.materials.at(shape.material);
       out.push_back({{}, look.where.line > 0 || !look.textures.empty()});
     }
-    if (out.empty())
-      throw InputError(geom.where, "the mesh '" + geom.mesh.string() + "' holds no faces");
-    std::erase_if(file.shapes, [](const Shape& shape) {
-      return std::get<TriangleMeshShape>(shape.geometry).triangles.empty();
-    });
     if (std::ranges::none_of(out, &LookedPart::has_look)) {
       for (std::size_t i = 0; i < out.size(); ++i) out[i].shape = std::move(file.shapes[i]);
       return out;

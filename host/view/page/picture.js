@@ -114,7 +114,7 @@ export class Picture {
     let sum = 0;
     for (let i = 0; i < this.width * this.height; ++i) {
       const a = alpha ? float_of_half[alpha[i]] : objects && objects[i] === NOTHING ? 0 : 1;
-      const light = Math.max(...[0, 1, 2].map((c) => float_of_half[this.color[3 * i + c]])) / (alpha ? a : 1);
+      const light = Math.max(float_of_half[this.color[3 * i]], float_of_half[this.color[3 * i + 1]], float_of_half[this.color[3 * i + 2]]) / (alpha ? a : 1);
       if (!(a > 0 && light > 0 && light < Infinity)) continue;
       const bin = Math.floor((Math.log2(light) + STOPS / 2) * BINS);
       if (bin < 0) continue;
