@@ -88,6 +88,19 @@ TEST(Viewer, PagesKnowWhatIsUnderPictures) {
   }
 }
 
+TEST(Viewer, PagesKnowTheExposure) {
+  for (const PreviewExposure exposure : {PreviewExposure{-1.5, false}, PreviewExposure{0, true}}) {
+    Scene scene = test::some_scene();
+    scene.view.film.exposure = exposure;
+    const json told{{"stops", exposure.stops}, {"auto", exposure.is_automatic}};
+    const Viewer viewer(LiveScene(std::move(scene)), test::test_device(), options_of(1));
+    Guest guest(Place(viewer.address()));
+    EXPECT_EQ(json::parse(guest.until("scene")).at("exposure"), told);
+    guest.say({{"type", "edit"}, {"what", "delete"}, {"goes_on", false}, {"ids", {1}}});
+    EXPECT_EQ(json::parse(guest.until("edited")).at("exposure"), told);
+  }
+}
+
 TEST(Viewer, SavesWhatItsPagesMade) {
   const fs::path folder = test::temporary_folder(), file = folder / "scene.pbrt";
   std::ofstream(file) << test::some_text;
