@@ -10,6 +10,7 @@
 #include <optional>
 #include <system_error>
 
+#include "base/environment.h"
 #include "base/log.h"
 #include "base/own_file.h"
 #include "device/cache.h"
@@ -26,11 +27,6 @@ namespace {
 // PoCL looks for its headers and built-in functions in ../../share/pocl of its library's folder,
 // and for its devices in the folder pocl beside the library.
 constexpr const char* library_in_folder = "lib/caplet/libpocl-caplet.so.2";
-
-std::string variable_of_process(const std::string& name) {
-  const char* value = std::getenv(name.c_str());
-  return value ? value : "";
-}
 
 /// Sets an environment variable for as long as the object lives.
 class ScopedVariable {
@@ -92,7 +88,7 @@ BundledDriver bundled_driver(const fs::path& file,
   return {};
 }
 
-BundledDriver bundled_driver() { return bundled_driver(own_file(), variable_of_process); }
+BundledDriver bundled_driver() { return bundled_driver(own_file(), environment_variable); }
 
 std::vector<cl::Platform> bundled_platforms() {
   static const std::vector<cl::Platform> platforms = load_platforms();
@@ -100,14 +96,14 @@ std::vector<cl::Platform> bundled_platforms() {
 }
 
 std::vector<cl::Device> bundled_devices(const cl::Platform& platform) {
-  const fs::path cache = bundled_cache_folder(variable_of_process);
+  const fs::path cache = bundled_cache_folder(environment_variable);
   std::optional<ScopedVariable> own_cache;
   if (!cache.empty() && why_unwritable(cache).empty())
     own_cache.emplace("POCL_CACHE_DIR", cache.string());
   std::optional<ScopedVariable> level;
   if (const std::string name =
           bundled_level(__builtin_cpu_supports("avx2") != 0, __builtin_cpu_supports("avx") != 0);
-      !name.empty() && variable_of_process("POCL_KERNELLIB_NAME").empty())
+      !name.empty() && environment_variable("POCL_KERNELLIB_NAME").empty())
     level.emplace("POCL_KERNELLIB_NAME", name);
   // Plugins are built for the machine's hwloc, which may have another version.
   const ScopedVariable no_plugins("HWLOC_PLUGINS_PATH", bundled_driver().folder.string());
@@ -137,7 +133,8 @@ void use_bundled_linker() {
   static std::once_flag once;
   std::call_once(once, [] {
     const BundledDriver driver = bundled_driver();
-    if (driver) ::setenv("PATH", with_first(variable_of_process("PATH"), driver.linker).c_str(), 1);
+    if (driver)
+      ::setenv("PATH", with_first(environment_variable("PATH"), driver.linker).c_str(), 1);
   });
 }
 

@@ -6,13 +6,13 @@
 
 #include <atomic>
 #include <cstdint>
-#include <cstdlib>
 #include <fstream>
 #include <iterator>
 #include <mutex>
 
 #include "base/atomic_file.h"
 #include "base/content_hash.h"
+#include "base/environment.h"
 #include "base/error.h"
 #include "base/log.h"
 
@@ -33,18 +33,13 @@ std::string header(std::string_view key, const std::vector<unsigned char>& conte
   return fmt::format("{}{}\n{}\n", magic, content_hash(hashed), contents.size());
 }
 
-fs::path environment_path(const char* name) {
-  const char* value = std::getenv(name);
-  return value ? fs::path(value) : fs::path();
-}
-
 }  // namespace
 
 fs::path cache_folder() {
-  if (fs::path named = environment_path("CAPLET_CACHE"); !named.empty()) return named;
-  if (const fs::path base = environment_path("XDG_CACHE_HOME"); !base.empty())
+  if (fs::path named = environment_variable("CAPLET_CACHE"); !named.empty()) return named;
+  if (const fs::path base = environment_variable("XDG_CACHE_HOME"); !base.empty())
     return base / "caplet";
-  if (const fs::path home = environment_path("HOME"); !home.empty())
+  if (const fs::path home = environment_variable("HOME"); !home.empty())
     return home / ".cache" / "caplet";
   return {};
 }

@@ -14,6 +14,7 @@
 #include <cstring>
 #include <mutex>
 
+#include "base/environment.h"
 #include "base/log.h"
 
 namespace caplet {
@@ -24,13 +25,8 @@ namespace {
 
 std::string told;  // of the cache folder; written by prepare_for_pocl alone
 
-std::string variable(const std::string& name) {
-  const char* value = std::getenv(name.c_str());
-  return value ? value : "";
-}
-
 void replace_cache() {
-  const fs::path folder = pocl_cache_folder(variable);
+  const fs::path folder = pocl_cache_folder(environment_variable);
   if (folder.empty()) return;  // PoCL has a temporary one then
   const std::string why = why_unwritable(folder);
   if (why.empty()) return;

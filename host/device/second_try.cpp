@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "base/atomic_file.h"
+#include "base/environment.h"
 #include "base/log.h"
 #include "device/bundled.h"
 #include "device/pocl_needs.h"
@@ -50,11 +51,6 @@ constexpr char in_vain[] =
     "the reason; `caplet doctor` "
     "tells "
     "more\n";
-
-std::string variable_of_process(const std::string& name) {
-  const char* value = std::getenv(name.c_str());
-  return value ? value : "";
-}
 
 /// Replaces the process; returns when that fails. It is safe in signal handlers.
 void run_again(int number) {
@@ -100,8 +96,8 @@ void handle_signals(bool on) {
 void prepare(const Device& device) {
   variables.clear();
   for (char** one = environ; *one; ++one) variables.emplace_back(*one);
-  const fs::path cache = device.info().bundled ? bundled_cache_folder(variable_of_process)
-                                               : pocl_cache_folder(variable_of_process);
+  const fs::path cache = device.info().bundled ? bundled_cache_folder(environment_variable)
+                                               : pocl_cache_folder(environment_variable);
   variables.push_back(fmt::format("{}={}", cache_marker, cache.string()));
   variables.push_back(fmt::format("{}=00", marker));
   environment.clear();
@@ -150,11 +146,11 @@ FreshPoclCache::~FreshPoclCache() {
 
 SecondTry::SecondTry(char** arguments) {
   program_arguments = arguments;
-  const std::string failed = variable_of_process(marker);
+  const std::string failed = environment_variable(marker);
   is_second = !failed.empty();
   if (!is_second) return;
   ::unsetenv(marker);
-  damaged = variable_of_process(cache_marker);
+  damaged = environment_variable(cache_marker);
   ::unsetenv(cache_marker);
   fresh_.emplace();
   const int number = std::atoi(failed.c_str());

@@ -8,7 +8,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <cstdlib>
+#include "base/environment.h"
 
 namespace caplet::doctor {
 
@@ -16,10 +16,7 @@ namespace fs = std::filesystem;
 
 Surroundings this_machine() {
   Surroundings out;
-  out.variable = [](const std::string& name) {
-    const char* value = std::getenv(name.c_str());
-    return std::string(value ? value : "");
-  };
+  out.variable = environment_variable;
   out.may = [](const fs::path& path, int mode) { return ::access(path.c_str(), mode) == 0; };
   out.group = [](const fs::path& path) {
     struct stat status {};

@@ -121,7 +121,7 @@ const Library& library() {
   throw RunError(fmt::format("Open Image Denoise cannot be loaded ({}); {}", why, remedy));
 }
 
-using Pixels = std::vector<std::array<float, 3>>;
+using RgbPixels = std::vector<std::array<float, 3>>;
 
 /// A device, and what is done with it.
 class Denoiser {
@@ -147,7 +147,7 @@ class Denoiser {
 
   struct Input {
     const char* name;
-    Pixels* pixels;
+    RgbPixels* pixels;
   };
   /// Runs the filter of ray-traced pictures. Its output replaces the first input. Returns false if
   /// it was ended.
@@ -156,8 +156,8 @@ class Denoiser {
     const std::unique_ptr<OpaqueFilter, void (*)(Library::Filter)> filter(
         oidn_.new_filter(device_, "RT"), oidn_.release_filter);
     check();
-    Pixels output(width * height);
-    const auto set = [&](const char* name, Pixels& pixels) {
+    RgbPixels output(width * height);
+    const auto set = [&](const char* name, RgbPixels& pixels) {
       oidn_.set_image(filter.get(), name, pixels.data(), format_float3, width, height, 0, 0, 0);
     };
     for (const Input& input : inputs) set(input.name, *input.pixels);
@@ -204,8 +204,8 @@ constexpr Names color = {"R", "G", "B"}, albedo = {"albedo.R", "albedo.G", "albe
                 normal = {"N.X", "N.Y", "N.Z"}, noisy = {"noisy.R", "noisy.G", "noisy.B"};
 
 /// Returns three channels as one; nothing where one is missing.
-Pixels gathered(const LayeredImage& image, const Names& names) {
-  Pixels out;
+RgbPixels gathered(const LayeredImage& image, const Names& names) {
+  RgbPixels out;
   for (const std::size_t c : {0U, 1U, 2U}) {
     const Channel* channel = image.find(names[c]);
     if (!channel) return {};
@@ -239,8 +239,8 @@ std::string denoiser_name() { return "Open Image Denoise " + Denoiser().version(
 bool denoise(LayeredImage& image, DenoiseQuality quality, const std::function<bool()>& goes_on) {
   const auto width = static_cast<std::size_t>(image.data_width),
              height = static_cast<std::size_t>(image.data_height);
-  Pixels picture = gathered(image, color), albedos = gathered(image, albedo),
-         normals = gathered(image, normal);
+  RgbPixels picture = gathered(image, color), albedos = gathered(image, albedo),
+            normals = gathered(image, normal);
   const Denoiser denoiser(goes_on);
   std::vector<Denoiser::Input> inputs{{"color", &picture}};
   const bool is_guided = !albedos.empty() && !normals.empty();

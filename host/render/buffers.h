@@ -2,6 +2,8 @@
 // Copyright Caplet authors
 //
 // These are the groups of shared/groups.h as buffers of a device: TreeBuffers, SurfacesBuffers, ...
+// One struct of all buffers was tried: a signature then does not say what a kernel reads, and of 47
+// buffers sort_prefix uses 2, extend 7 and shade 39.
 #pragma once
 
 #include <cstdint>

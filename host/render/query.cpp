@@ -13,8 +13,8 @@ namespace {
 
 // PoCL compiles a kernel a second time for 65536 work-items or more: a single query should not wait
 // for that.
-constexpr std::size_t cpu_batch_rays = 65536 - 64;
-constexpr std::size_t gpu_batch_rays = std::size_t{1} << 20;
+constexpr std::size_t cpu_query_rays = 65536 - 64;
+constexpr std::size_t gpu_query_rays = std::size_t{1} << 20;
 constexpr std::size_t batch_hits = std::size_t{1} << 22;  // 64 MB
 
 std::size_t chosen(std::size_t wanted, std::size_t otherwise) {
@@ -26,8 +26,8 @@ std::size_t chosen(std::size_t wanted, std::size_t otherwise) {
 Query::Query(std::shared_ptr<DeviceScene> scene, const QueryOptions& options)
     : scene_(std::move(scene)),
       batch_rays_(chosen(options.batch_rays, scene_->device().profile() == Profile::cpu
-                                                 ? cpu_batch_rays
-                                                 : gpu_batch_rays)),
+                                                 ? cpu_query_rays
+                                                 : gpu_query_rays)),
       batch_hits_(chosen(options.batch_hits, batch_hits)) {
   query_.query = Buffer<QueryRecord>(scene_->device(), 1);
 }

@@ -15,6 +15,7 @@
 #include <ostream>
 
 #include "device_tracer.h"
+#include "floats.h"
 #include "peer.h"
 #include "shared/kinds.h"
 #include "support/test_device.h"
@@ -192,10 +193,6 @@ TEST_P(ThirdOpinion, OnSingles) { compare_singles(GetParam(), false, GetParam().
 TEST_P(ThirdOpinion, OnHardSingles) { compare_singles(GetParam(), true, GetParam().hard); }
 
 // --- Scenes ---
-
-std::array<float, 3> floats(const dvec3& v) {
-  return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
-}
 
 FlatPrimitive scattered(CaseMaker& maker, int shape) {
   const dvec3 a(maker.uniform(-1, 1), maker.uniform(-1, 1), maker.uniform(-1, 1));
