@@ -22,6 +22,7 @@
 #include "cli/commands.h"
 #include "cli/description.h"
 #include "cli/film_output.h"
+#include "cli/frame_source.h"
 #include "cli/frames.h"
 #include "cli/noise_options.h"
 #include "cli/options.h"
@@ -37,7 +38,6 @@
 #include "film/develop.h"
 #include "film/image.h"
 #include "import/import.h"
-#include "import/poses.h"
 #include "lower/fingerprint.h"
 #include "lower/live_scene.h"
 #include "lower/lower.h"
@@ -54,6 +54,7 @@
 #include "report/stereo.h"
 #include "report/summary.h"
 #include "scene/append.h"
+#include "scene/frozen.h"
 
 namespace caplet::cli {
 
@@ -73,7 +74,8 @@ void check_film_options(const RenderFlags& options) {
   if (flag && options.has_frames())
     throw InputError(
         SourceLocation{flag},
-        "does not go with --turntable, --frames and --poses, which --skip-existing goes on with");
+        "does not go with --turntable, --frames, --poses and --play, which --skip-existing goes on "
+        "with");
   if (flag && options.separation)
     throw InputError(SourceLocation{flag}, "does not go with --stereo");
 }
@@ -83,13 +85,13 @@ void check_frame_options(const RenderFlags& options, const Files& files) {
     throw InputError(SourceLocation{flag}, why);
   };
   if (!options.has_frames()) {
+    if (options.shutter > 0) refuse("--shutter", "goes with --turntable, --poses and --play");
     if (options.skip_existing)
-      refuse("--skip-existing", "goes with --turntable, --frames or --poses");
+      refuse("--skip-existing", "goes with --turntable, --frames, --poses or --play");
     return;
   }
-  if (options.separation) refuse("--stereo", "does not go with --turntable, --frames and --poses");
-  if (!options.display.empty())
-    refuse("--display", "does not go with --turntable, --frames and --poses");
+  if (options.separation) refuse("--stereo", "does not go with frames");
+  if (!options.display.empty()) refuse("--display", "does not go with frames");
   if (options.skip_existing && !files.movie.empty())
     refuse("--skip-existing", "does not go with a movie, which has all frames");
   const auto check_numbered = [&](const char* flag, const fs::path& path) {
@@ -463,83 +465,6 @@ void tell_of_bar(const RenderFlags& options, const Scene& scene) {
 
 // --- Frames ---
 
-std::vector<std::string> numbered_all(const std::vector<std::string>& scenes, std::uint32_t frame) {
-  std::vector<std::string> out;
-  for (const std::string& scene : scenes) out.push_back(numbered(scene, frame).string());
-  return out;
-}
-
-/// The source of frames: a turntable camera, numbered files, the models of one file, or poses.
-struct FrameSource {
-  enum class Kind { turntable, files, models, poses } kind = Kind::turntable;
-  FrameRange range;
-  std::vector<std::vector<SceneEdit>> poses = {};  // by frame, from 1
-  /// Returns whether all frames are of one scene.
-  bool has_one_scene() const { return kind == Kind::turntable || kind == Kind::poses; }
-};
-
-FrameSource source_of(const RenderFlags& options) {
-  const auto refuse = [](const std::string& why) {
-    throw InputError(SourceLocation{"--frames"}, why);
-  };
-  const std::optional<FrameRange> asked =
-      options.frames.empty() ? std::nullopt : parse_frames(options.frames);
-  FrameSource source;
-  source.range = {1, options.turntable, options.turntable};
-  const bool has_numbers = std::ranges::any_of(options.scenes, [](const std::string& scene) {
-    std::error_code ignored;
-    return is_numbered(scene) && !fs::exists(scene, ignored);
-  });
-  if (!options.poses.empty()) {
-    if (has_numbers || options.turntable > 0)
-      throw InputError(SourceLocation{"--poses"},
-                       "does not go with --turntable and numbered scene files");
-    source.kind = FrameSource::Kind::poses;
-    const std::uint32_t count = count_poses(options.poses);
-    source.range = {1, count, count};
-  } else if (options.turntable > 0) {
-    if (has_numbers) refuse("numbered scene files do not go with --turntable");
-  } else if (has_numbers) {
-    source.kind = FrameSource::Kind::files;
-    if (!asked) refuse("'all': of numbered scene files it is to be said which, such as 1-100");
-    source.range = *asked;
-  } else {
-    source.kind = FrameSource::Kind::models;
-    if (options.import_options.text("model"))
-      throw InputError(SourceLocation{"--model"}, "does not go with --frames");
-    const auto moves = std::ranges::find_if(options.scenes, [](const std::string& scene) {
-      return std::ranges::find(format_of(scene).options, "model") != format_of(scene).options.end();
-    });
-    if (moves == options.scenes.end())
-      refuse(
-          "the scene has one frame: several are in files of molecules, in numbered files (####), "
-          "or in --turntable N and --poses");
-    ImportOptions of_file;
-    for (const auto& [name, value] : options.import_options.values())
-      if (name == "no-outside" ||
-          std::ranges::find(format_of(*moves).options, name) != format_of(*moves).options.end())
-        of_file.set(name, value);
-    const std::uint32_t count = read_scene(*moves, FileImageReader(), of_file).frames;
-    source.range = {1, count, count};
-  }
-  if (asked && source.kind != FrameSource::Kind::files) {
-    if (asked->last > source.range.last)
-      refuse(fmt::format("'{}': there are {} frames", options.frames, source.range.last));
-    source.range.first = asked->first;
-    source.range.last = asked->last;
-  }
-  return source;
-}
-
-Scene scene_of_frame(const RenderFlags& options, const FrameSource& source, std::uint32_t frame) {
-  if (source.has_one_scene()) return import_files(options.scenes, options.import_options);
-  if (source.kind == FrameSource::Kind::files)
-    return import_files(numbered_all(options.scenes, frame), options.import_options);
-  ImportOptions of_frame = options.import_options;
-  of_frame.set("model", std::to_string(frame));
-  return import_files(options.scenes, of_frame);
-}
-
 /// Frames an automatic camera to the union of up to 17 frames, including the first and the last.
 void frame_all(const RenderFlags& options, const FrameSource& source, const Overrides& overrides,
                Scene& first) {
@@ -582,6 +507,8 @@ RenderResult render_frames(const Work& of_all, const FrameSource& source,
   const Camera camera = scene.view.camera;
   const std::vector<Light> lights = scene.lights;
   const bool is_automatic = scene.automatic_camera;
+  std::optional<Scene> moving;  // what has a time of its own, in which frames have theirs
+  if (source.has_times && moves(scene)) moving = scene;
   LiveScene live(std::move(scene));
   std::vector<SceneEdit> undo;  // of a pose: what leads back to the scene
   std::optional<Session> session;
@@ -598,14 +525,17 @@ RenderResult render_frames(const Work& of_all, const FrameSource& source,
       throw RunError(fmt::format("interrupted: {} of {} frames are written", made, count));
     if (table) {
       View view = live.scene().view;
-      view.camera = table->camera(frame - 1, source.range.count);
+      view.camera = table->camera(frame - 1, source.range.count, options.shutter);
       live.edit(view);
       for (std::uint32_t i = 0; i < lights.size(); ++i)
         if (table->turns(lights[i]))
           live.edit(LightEdit{i, table->turned(lights[i], frame - 1, source.range.count)});
+    } else if (moving) {
+      live.replace(played(options, source, frame, *moving));
     } else if (source.kind == FrameSource::Kind::poses) {
       for (; !undo.empty(); undo.pop_back()) live.edit(undo.back());
-      for (const SceneEdit& edit : source.poses.at(frame - 1)) undo.push_back(live.edit(edit));
+      for (const SceneEdit& edit : edits_of_frame(options, source, frame, live.scene().view.film))
+        undo.push_back(live.edit(edit));
     } else if (session || frame != source.range.first) {
       Scene next = scene_of_frame(options, source, frame);
       apply(overrides, next);
@@ -685,11 +615,7 @@ void run_render(const RenderFlags& given, const Invocation& invocation) {
   post::check(options.overlays, scene, "--");
   if (options.overlays.scale_bar && !options.quiet) tell_of_bar(options, scene);
   widen_to_least(scene);
-  if (frames && frames->kind == FrameSource::Kind::poses) {
-    frames->poses = read_poses(options.poses, scene);
-    if (frames->poses.size() != frames->range.count)
-      throw RunError(fmt::format("'{}' has changed while it was read", options.poses));
-  }
+  if (frames) read_poses_of(options, scene, *frames);
   const auto wanted = static_cast<std::uint32_t>(scene.view.sampler.samples_per_pixel);
   const SampleSpan samples = options.film.samples.empty()
                                  ? SampleSpan{0, wanted}

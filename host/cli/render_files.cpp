@@ -35,7 +35,8 @@ void add_output(const RenderFlags& options, Files& files, const fs::path& path) 
     if (!options.has_frames())
       throw InputError(
           SourceLocation{"-o"},
-          fmt::format("'{}': a movie goes with --turntable, --frames or --poses", path.string()));
+          fmt::format("'{}': a movie goes with --turntable, --frames, --poses or --play",
+                      path.string()));
     if (!files.movie.empty())
       throw InputError(SourceLocation{"-o"}, "one movie at a time is written");
     check_preview_format("frame.png", "-o");

@@ -48,12 +48,24 @@ void add_frames(CLI::App& command, RenderFlags& o) {
   command
       .add_option("--poses", o.poses,
                   "A frame for each line of this file, a JSON object that says where shapes, "
-                  "capsules, instances and the camera are")
+                  "capsules, instances and the camera are; lines with a time are keys of an "
+                  "animation")
       ->type_name("FILE.jsonl");
-  command.add_option("--fps", o.frames_a_second, "Frames a second of a movie")
+  command
+      .add_option("--play", o.play,
+                  "Frames of a scene that moves, from one time to another, in seconds")
+      ->type_name("A:B");
+  command.add_option("--fps", o.frames_a_second, "Frames a second of a movie or an animation")
       ->check(CLI::Range(0.01, 1000.0))
       ->capture_default_str()
       ->type_name("R");
+  command
+      .add_option("--shutter", o.shutter,
+                  "Motion blur: the part of a frame's time for which the shutter is open, of a "
+                  "turntable or an animation")
+      ->check(CLI::Range(0.0, 1.0))
+      ->capture_default_str()
+      ->type_name("SHARE");
   command.add_flag("--skip-existing", o.skip_existing, "Leave out frames whose files are there");
 }
 

@@ -23,7 +23,7 @@ struct RenderFlags {
   Encoding encoding = Encoding::automatic;
   std::vector<std::string> scenes;
   std::vector<std::string> outputs;
-  std::string preview, stats, device, size, crop, frames, poses, preset;
+  std::string preview, stats, device, size, crop, frames, poses, play, preset;
   ImportOptions import_options;
   post::Overlays overlays;
   std::optional<std::string> layers;
@@ -37,9 +37,11 @@ struct RenderFlags {
   double patience = 60;
   std::size_t batch_paths = 0;
   std::uint32_t turntable = 0;
-  double frames_a_second = 25;
+  double frames_a_second = 25, shutter = 0;
   bool variance = false, denoise = false, quiet = false, skip_existing = false;
-  bool has_frames() const { return turntable > 0 || !frames.empty() || !poses.empty(); }
+  bool has_frames() const {
+    return turntable > 0 || !frames.empty() || !poses.empty() || !play.empty();
+  }
 };
 
 /// Adds the options but for the scene files to the command, which sets `o`.

@@ -42,28 +42,38 @@ void for_lines(const fs::path& file, const std::function<void(std::string_view, 
   }
 }
 
-/// PoseReader makes edits of one line.
+/// Parses a line. Throws InputError.
+json parsed(std::string_view line, SourceLocation where) {
+  try {
+    return json::parse(line);
+  } catch (const json::parse_error& error) {
+    where.column =
+        static_cast<int>(std::min<std::size_t>(error.byte, std::numeric_limits<int>::max()));
+    throw InputError(where, "this is no JSON object");
+  } catch (const json::exception&) {
+    throw InputError(where, "a number is too large");
+  }
+}
+
+double time_of(const json& value, const SourceLocation& where) {
+  if (!value.is_number()) throw InputError(where, "time: a number of seconds is needed");
+  return value.get<double>();
+}
+
+/// PoseReader makes the pose of one line.
 class PoseReader {
  public:
   PoseReader(const Scene& scene, SourceLocation where) : scene_(scene), where_(std::move(where)) {}
 
-  std::vector<SceneEdit> read(std::string_view line) {
-    json pose;
-    try {
-      pose = json::parse(line);
-    } catch (const json::parse_error& error) {
-      where_.column =
-          static_cast<int>(std::min<std::size_t>(error.byte, std::numeric_limits<int>::max()));
-      fail("this is no JSON object");
-    } catch (const json::exception&) {
-      fail("a number is too large");
-    }
-    for_keys(pose, "a pose",
-             {{"shapes", [&](const json& value) { shapes(value); }},
+  ScenePose read(std::string_view line) {
+    pose_.where = where_;
+    for_keys(parsed(line, where_), "a pose",
+             {{"time", [&](const json& value) { pose_.time = time_of(value, where_); }},
+              {"shapes", [&](const json& value) { shapes(value); }},
               {"instances", [&](const json& value) { instances(value); }},
               {"capsules", [&](const json& value) { capsules(value); }},
               {"camera", [&](const json& value) { camera(value); }}});
-    return std::move(edits_);
+    return std::move(pose_);
   }
 
  private:
@@ -141,7 +151,7 @@ class PoseReader {
     } catch (const InputError& error) {
       fail(fmt::format("{}: {}", what, error.what()));
     }
-    edits_.push_back(std::move(edit));
+    pose_.edits.push_back(std::move(edit));
   }
 
   void shapes(const json& value) {
@@ -218,6 +228,7 @@ class PoseReader {
     if (eye.has_value() != target.has_value()) fail("camera: eye and target go together");
     if (eye && place) fail("camera: transform does not go with eye and target");
     if (eye) {
+      pose_.look = LookAt{*eye, *target, up.value_or(glm::dvec3(0, 1, 0))};
       place = camera_looking(*eye, *target, up.value_or(glm::dvec3(0, 1, 0)));
       if (!place)
         fail("the camera has no direction: eye and target coincide, or up lies along the view");
@@ -235,26 +246,41 @@ class PoseReader {
 
   const Scene& scene_;
   SourceLocation where_;
-  std::vector<SceneEdit> edits_;
+  ScenePose pose_;
 };
 
 }  // namespace
 
-std::uint32_t count_poses(const fs::path& file) {
-  std::uint32_t count = 0;
-  for_lines(file, [&](std::string_view, int number) {
-    if (++count > most_poses)
-      throw InputError({file.string(), number, 0},
-                       fmt::format("there are more than {} poses", most_poses));
+PoseCount count_poses(const fs::path& file) {
+  PoseCount out;
+  for_lines(file, [&](std::string_view line, int number) {
+    const SourceLocation where{file.string(), number, 0};
+    if (++out.poses > most_poses)
+      throw InputError(where, fmt::format("there are more than {} poses", most_poses));
+    if (out.poses > 1 && !out.seconds) return;
+    const json pose = parsed(line, where);
+    const auto time = pose.find("time");
+    if (time == pose.end()) {
+      if (out.seconds) throw InputError(where, "time is missing, which the poses before have");
+      return;
+    }
+    const double seconds = time_of(*time, where);
+    if (out.seconds && !(seconds > out.seconds->second))
+      throw InputError(where, fmt::format("time: {} is not after {}, the time of the pose before",
+                                          seconds, out.seconds->second));
+    out.seconds = {out.seconds ? out.seconds->first : seconds, seconds};
   });
-  if (count == 0) throw InputError({file.string(), 0, 0}, "it has no poses");
-  return count;
+  if (out.poses == 0) throw InputError({file.string(), 0, 0}, "it has no poses");
+  return out;
 }
 
-std::vector<std::vector<SceneEdit>> read_poses(const fs::path& file, const Scene& scene) {
-  std::vector<std::vector<SceneEdit>> out;
+std::vector<ScenePose> read_poses(const fs::path& file, const Scene& scene) {
+  std::vector<ScenePose> out;
   for_lines(file, [&](std::string_view line, int number) {
-    out.push_back(PoseReader(scene, {file.string(), number, 0}).read(line));
+    const SourceLocation where{file.string(), number, 0};
+    out.push_back(PoseReader(scene, where).read(line));
+    if (out.back().time.has_value() != out.front().time.has_value())
+      throw InputError(where, "time is in all poses or in none");
   });
   return out;
 }

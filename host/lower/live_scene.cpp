@@ -15,6 +15,7 @@
 #include "lower/detail/shapes.h"
 #include "lower/detail/tree_edit.h"
 #include "lower/lower.h"
+#include "scene/frozen.h"
 
 namespace caplet {
 
@@ -212,7 +213,7 @@ struct LiveScene::State {
   bool follow(const View& edit, const View& before) {
     const bool same_shutter = edit.film.shutter_open == before.film.shutter_open &&
                               edit.film.open_time() == before.film.open_time();
-    return (same_shutter || !instances_move()) && edit.film.space == before.film.space &&
+    return (same_shutter || !moves(scene)) && edit.film.space == before.film.space &&
            edit.film.backdrop.has_value() == before.film.backdrop.has_value();
   }
 

@@ -10,6 +10,7 @@
 #include <numbers>
 
 #include "present/lights.h"
+#include "present/open_shutter.h"
 #include "present/present.h"
 
 namespace caplet {
@@ -64,7 +65,7 @@ struct Swept {
 }  // namespace
 
 Turntable::Turntable(const Scene& scene)
-    : camera_(scene.view.camera), is_automatic_(scene.automatic_camera) {
+    : camera_(scene.view.camera), film_(scene.view.film), is_automatic_(scene.automatic_camera) {
   const Bounds bounds = bounds_or_unit_of(scene);
   middle_ = 0.5 * (bounds.min + bounds.max);
   axis_ = glm::normalize(glm::dvec3(camera_.world_from_camera[1]));
@@ -113,17 +114,22 @@ void Turntable::step_back(const Scene& scene) {
   camera_.world_from_camera[3] = glm::dvec4(target - distance * forward, 1);
 }
 
-glm::dmat4 Turntable::turn(std::uint32_t number, std::uint32_t count) const {
+glm::dmat4 Turntable::turn(double number, std::uint32_t count) const {
   const double angle = 2 * std::numbers::pi * number / count;
   const glm::dmat4 about = glm::rotate(glm::dmat4(1), angle, axis_);
   return glm::translate(glm::dmat4(1), middle_) * about * glm::translate(glm::dmat4(1), -middle_);
 }
 
-Camera Turntable::camera(std::uint32_t number, std::uint32_t count) const {
+Camera Turntable::camera(std::uint32_t number, std::uint32_t count, double shutter) const {
   Camera out = camera_;
-  if (number == 0) return out;
-  out.world_from_camera = turn(number, count) * camera_.world_from_camera;
-  move(out.motion, turn(number, count));
+  if (number > 0) {
+    out.world_from_camera = turn(number, count) * camera_.world_from_camera;
+    move(out.motion, turn(number, count));
+  }
+  if (shutter > 0)
+    out.motion = keys_while_open(film_, [&](double u) {
+      return turn(number + u * shutter, count) * camera_.world_from_camera;
+    });
   return out;
 }
 

@@ -21,18 +21,20 @@ class Turntable {
   explicit Turntable(const Scene& scene);
 
   /// Returns the camera of frame `number`, from 0, of `count`: it has gone this part of a turn to
-  /// its right. Frame 0 has the scene's camera except for its distance.
-  Camera camera(std::uint32_t number, std::uint32_t count) const;
+  /// its right. Frame 0 has the scene's camera except for its distance. While the shutter is open
+  /// the camera goes on by a share `shutter` of the way to the next frame.
+  Camera camera(std::uint32_t number, std::uint32_t count, double shutter = 0) const;
   /// Returns whether `light` turns with the camera.
   bool turns(const Light& light) const;
   /// Returns the light of that frame.
   Light turned(const Light& light, std::uint32_t number, std::uint32_t count) const;
 
  private:
-  glm::dmat4 turn(std::uint32_t number, std::uint32_t count) const;
+  glm::dmat4 turn(double number, std::uint32_t count) const;
   void step_back(const Scene& scene);
 
   Camera camera_;
+  FilmSettings film_;
   glm::dvec3 axis_{0, 1, 0}, middle_{0};
   bool is_automatic_;
 };

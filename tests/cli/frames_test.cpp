@@ -11,6 +11,8 @@
 #include <cmath>
 #include <csignal>
 #include <cstdlib>
+#include <iterator>
+#include <ranges>
 
 #include "film/image.h"
 #include "film/preview.h"
@@ -324,6 +326,145 @@ TEST(Frames, AreThePosesOfAFile) {
   EXPECT_FALSE(fs::exists(folder / "only2.exr"));
 }
 
+// Poses with times are keys: frames are between them, and while the shutter is open the picture is
+// that of a scene file whose camera and instance move so.
+TEST(Frames, AreAnAnimationBetweenPosesWithTimes) {
+  const auto scene = [](const std::string& camera, const std::string& bead) {
+    return "Scale -1 1 1\n" + camera +
+           "Camera \"perspective\" \"float fov\" 40\nWorldBegin\nLightSource \"infinite\"\n"
+           "LightSource \"point\" \"point3 from\" [ 3 4 9 ] \"float scale\" 50\n"
+           "Shape \"sphere\"\nObjectBegin \"bead\"\nShape \"sphere\" \"float radius\" 0.4\n"
+           "ObjectEnd\nAttributeBegin\n" +
+           bead + "ObjectInstance \"bead\"\nAttributeEnd\n";
+  };
+  const auto moving = [](const std::string& from, const std::string& to) {
+    return "ActiveTransform StartTime\n" + from + "ActiveTransform EndTime\n" + to +
+           "ActiveTransform All\n";
+  };
+  const std::string first = "LookAt 0 0 9 0 0 0 0 1 0\n", middle = "LookAt 2 0 9 2 0 0 0 1 0\n";
+  const fs::path folder =
+      folder_of({{"1.pbrt", scene(first, "Translate 1 1 0\n")},
+                 {"2.pbrt", scene(middle, "Translate 1 0 0\n")},
+                 {"3.pbrt", scene("LookAt 4 0 9 4 0 0 0 1 0\n", "Translate 1 -1 0\n")},
+                 {"open.pbrt",
+                  scene(moving(first, middle), moving("Translate 1 1 0\n", "Translate 1 0 0\n"))},
+                 {"poses.jsonl",
+                  "{\"time\": 7, \"camera\": {\"eye\": [0, 0, 9], \"target\": [0, 0, 0]}, "
+                  "\"instances\": {\"0\": [1, 0, 0, 1, 0, 1, 0, 1, 0, 0, 1, 0]}}\n"
+                  "{\"time\": 8, \"camera\": {\"eye\": [4, 0, 9], \"target\": [4, 0, 0]}, "
+                  "\"instances\": {\"0\": [1, 0, 0, 1, 0, 1, 0, -1, 0, 0, 1, 0]}}\n"}});
+  const Names animated{"1.pbrt", "--poses", "poses.jsonl", "--fps", "2"};
+  const auto with = [&](Names more) {
+    more.insert(more.begin(), animated.begin(), animated.end());
+    return run(folder, more);
+  };
+  const Result result = with({"-o", "a#.exr"});
+  ASSERT_EQ(result.code, 0) << result.err;
+  for (const char* number : {"1", "2", "3"}) {
+    ASSERT_EQ(run(folder, {fmt::format("{}.pbrt", number), "-o", "alone.exr"}).code, 0);
+    expect_equal(folder / fmt::format("a{}.exr", number), folder / "alone.exr");
+  }
+  EXPECT_FALSE(fs::exists(folder / "a4.exr"));
+  ASSERT_EQ(with({"--shutter", "1", "--frames", "1", "-o", "open#.exr"}).code, 0);
+  ASSERT_EQ(run(folder, {"open.pbrt", "-o", "file.exr"}).code, 0);
+  // Five keys on a line instead of two: positions differ by roundings, which move edges a little.
+  const std::vector<float> is = read_exr(folder / "open1.exr").find("R")->floats,
+                           wanted = read_exr(folder / "file.exr").find("R")->floats;
+  ASSERT_EQ(is.size(), wanted.size());
+  const auto apart = std::ranges::count_if(
+      std::views::iota(std::size_t{0}, is.size()),
+      [&](auto i) { return std::abs(is[i] - wanted[i]) > 1e-3F * (1 + wanted[i]); });
+  EXPECT_LE(apart, std::ssize(is) / 50);
+  EXPECT_TRUE(differ(folder / "open1.exr", folder / "a1.exr"));
+
+  EXPECT_THAT(with({"--frames", "4", "-o", "b#.exr"}).err, HasSubstr("there are 3 frames"));
+  write_file(folder / "far.jsonl", "{\"time\": 0}\n{\"time\": 1e9}\n");
+  EXPECT_THAT(run(folder, {"1.pbrt", "--poses", "far.jsonl", "-o", "b#.exr"}).err,
+              HasSubstr("there are 2.5e+10 frames from 0 s to 1e+09 s"));
+  write_file(folder / "still.jsonl", "{}\n");
+  EXPECT_THAT(
+      run(folder, {"1.pbrt", "--poses", "still.jsonl", "--shutter", "0.5", "-o", "b#.exr"}).err,
+      HasSubstr("--shutter: goes with --turntable, --play, and --poses that have times"));
+}
+
+// A scene that moves is played: frames are those of files in which everything is where it is then,
+// or of a file whose shutter is open for as long. Poses move what they name beside it.
+TEST(Frames, AreThoseOfASceneThatMoves) {
+  const auto scene = [](const std::string& bead, const std::string& more = "",
+                        const std::string& eye = "0 0 8") {
+    return fmt::format(
+        "Option \"string rendercoordsys\" \"world\"\nLookAt {} 0 0 0 0 1 0\n"
+        "Camera \"perspective\" \"float fov\" 40 {}\nWorldBegin\nLightSource \"infinite\"\n"
+        "LightSource \"point\" \"point3 from\" [ 3 4 9 ] \"float scale\" 50\n"
+        "ObjectBegin \"bead\"\nShape \"sphere\" \"float radius\" 0.5\nObjectEnd\n"
+        "AttributeBegin\n{}ObjectInstance \"bead\"\nAttributeEnd\n",
+        eye, more, bead);
+  };
+  const std::string moves =
+      "ActiveTransform StartTime\nTranslate -1 0 0\nActiveTransform EndTime\nTranslate 1 0 0\n"
+      "ActiveTransform All\n";
+  const fs::path folder = folder_of(
+      {{"moves.pbrt", scene(moves)},
+       {"1.pbrt", scene("Translate -1 0 0\n")},
+       {"2.pbrt", scene("Translate 0 0 0\n")},
+       {"3.pbrt", scene("Translate 1 0 0\n")},
+       {"3.seen.pbrt", scene("Translate 1 0 0\n", "", "0 0 4")},
+       {"open.pbrt", scene(moves, "\"float shutteropen\" 0.5 \"float shutterclose\" 0.75")},
+       {"keys.jsonl",
+        "{\"time\": 0.5, \"camera\": {\"eye\": [0, 0, 8], \"target\": [0, 0, 0]}}\n"
+        "{\"time\": 1, \"camera\": {\"eye\": [0, 0, 4], \"target\": [0, 0, 0]}}\n"}});
+  const Result result = run(folder, {"moves.pbrt", "--play", "0:1", "--fps", "2", "-o", "p#.exr"});
+  ASSERT_EQ(result.code, 0) << result.err;
+  for (const char* number : {"1", "2", "3"}) {
+    ASSERT_EQ(run(folder, {fmt::format("{}.pbrt", number), "-o", "alone.exr"}).code, 0);
+    expect_equal(folder / fmt::format("p{}.exr", number), folder / "alone.exr");
+  }
+  EXPECT_FALSE(fs::exists(folder / "p4.exr"));
+
+  ASSERT_EQ(run(folder, {"moves.pbrt", "--play", "0.5:1", "--fps", "2", "--shutter", "0.5",
+                         "--frames", "1", "-o", "open#.exr"})
+                .code,
+            0);
+  // Exposed for a quarter of the seconds, this file's picture is a quarter as bright.
+  ASSERT_EQ(run(folder, {"open.pbrt", "-o", "file.exr"}).code, 0);
+  const std::vector<float> is = read_exr(folder / "open1.exr").find("G")->floats,
+                           wanted = read_exr(folder / "file.exr").find("G")->floats;
+  ASSERT_EQ(is.size(), wanted.size());
+  for (std::size_t i = 0; i < is.size(); ++i) EXPECT_NEAR(is[i], 4 * wanted[i], 1e-5F * is[i]) << i;
+  EXPECT_TRUE(differ(folder / "open1.exr", folder / "p2.exr"));
+
+  ASSERT_EQ(run(folder, {"moves.pbrt", "--poses", "keys.jsonl", "--fps", "2", "-o", "k#.exr"}).code,
+            0);
+  expect_equal(folder / "k1.exr", folder / "p2.exr");
+  ASSERT_EQ(run(folder, {"3.seen.pbrt", "-o", "seen.exr"}).code, 0);
+  expect_equal(folder / "k2.exr", folder / "seen.exr");
+
+  const auto refused = [&](Names arguments, const std::string& why) {
+    const Result failed = run(folder, arguments);
+    EXPECT_EQ(failed.code, 2);
+    EXPECT_THAT(failed.err, HasSubstr(why));
+  };
+  for (const char* text : {"1", "1:", "a:2", "2:1", ":", "0:1x", "0:inf"})
+    refused({"moves.pbrt", "--play", text, "-o", "r#.exr"}, "is not A:B, two times in seconds");
+  refused({"1.pbrt", "--play", "0:1", "-o", "r#.exr"}, "--play: nothing in the scene moves");
+  refused({"moves.pbrt", "--play", "0:1e9", "-o", "r#.exr"}, "--play: there are 2.5e+10 frames");
+  refused({"moves.pbrt", "--play", "0:1", "--turntable", "3", "-o", "r#.exr"},
+          "--play: does not go with --turntable");
+  refused({"moves.pbrt", "--play", "0:1", "--poses", "keys.jsonl", "-o", "r#.exr"},
+          "--poses: does not go with --turntable, --play");
+}
+
+// A turntable's camera goes on while the shutter is open: for a full share, to the next frame.
+TEST(Frames, ATurntableIsBlurredByItsTurn) {
+  const fs::path folder = folder_of({{"a.swc", neuron}});
+  ASSERT_EQ(run(folder, {"a.swc", "--turntable", "3", "-o", "still#.exr"}).code, 0);
+  ASSERT_EQ(
+      run(folder, {"a.swc", "--turntable", "3", "--shutter", "0.5", "-o", "blurred#.exr"}).code, 0);
+  for (const char* number : {"1", "2", "3"})
+    EXPECT_TRUE(differ(folder / fmt::format("still{}.exr", number),
+                       folder / fmt::format("blurred{}.exr", number)));
+}
+
 TEST(Frames, SayWhatIsWrongInAFileOfPoses) {
   const fs::path folder = folder_of({{"s.pbrt", Posed().text()}, {"empty.jsonl", "\n \n"}});
   const auto refused = [&](const std::string& line, const std::string& why) {
@@ -399,7 +540,9 @@ TEST(Frames, SayWhatIsWrong) {
   refused({"m.xyz", "--frames", "all", "--model", "2", "-o", "t#.exr"}, "--model", "does not go");
   refused({"n.#.swc", "--frames", "all", "-o", "t#.exr"}, "--frames", "such as 1-100");
   refused({"n.#.swc", "--frames", "1-2", "-o", "t#.exr"}, "n.1.swc", "no such file");
-  refused({"a.swc", "-o", "m.mp4"}, "-o", "goes with --turntable, --frames or --poses");
+  refused({"a.swc", "--shutter", "0.5", "-o", "a.exr"}, "--shutter",
+          "goes with --turntable, --poses and --play");
+  refused({"a.swc", "-o", "m.mp4"}, "-o", "goes with --turntable, --frames, --poses or --play");
   refused({"a.swc", "-o", "m.xyzzy"}, "-o", "pictures are written as .exr");
   refused({"a.swc", "--skip-existing", "-o", "t.exr"}, "--skip-existing", "goes with");
   refused({"a.swc", "--turntable", "3", "--stereo", "1", "-o", "t#.exr"}, "--stereo",

@@ -386,6 +386,26 @@ TEST_F(OneEdit, ALight) {
                   "an emissive capsule is moved");
 }
 
+// Kernels know moving capsules by the shutter's times.
+TEST(AnEdit, OfTheShutterReachesCapsulesThatMove) {
+  Scene scene = mixed_scene(20);
+  Shape bar;
+  CapsulesShape moving;
+  moving.p0 = {{-2, 0, 1}, {2, 0, 1}};
+  moving.p1 = {{-2, 2, 1}, {2, 2, 3}};
+  moving.radius0 = {0.4F, 0.4F};
+  moving.times = {0, 1};
+  bar.geometry = moving;
+  scene.shapes.push_back(bar);
+  scene.instances.clear();
+  Edited edited(scene);
+  View view = edited.live.scene().view;
+  view.film.shutter_open = 0.25;
+  view.film.exposure_time = 0.5;
+  edited.edit(view);
+  edited.expect_fresh("under another shutter");
+}
+
 // Motions come, go along with what they are of, and go again; other edits keep them.
 TEST_F(OneEdit, AMotion) {
   const dmat4 place = glm::translate(dmat4(1), dvec3(0.5, 0.2, 1)),

@@ -245,6 +245,78 @@ def links(program, scenes, out):
         shown.until("the view that was saved", lambda: shown.apart(turned, 2) == 0)
 
 
+PATH = """const done = arguments[0];
+Promise.all(['./path.js', './camera.js'].map((name) => import(name))).then(([{ camera_at, point_at }, { Camera }]) => {
+  const line = { towards: (a, b) => b.map((v, i) => v - a[i]), moved: (a, by, f) => a.map((v, i) => v + f * by[i]) };
+  // Views from a circle around [1, 2, 3], 80 degrees apart, ever nearer; the camera's right is the picture's left in the second list.
+  const views = (hand) => [0, 1, 2].map((k) => {
+    const a = 80 * k * Math.PI / 180, s = Math.sin(a), c = Math.cos(a), r = 10 * 2 ** -k;
+    const camera = new Camera({ world_from_camera: [hand * c, 0, -s, 1 + r * s, 0, 1, 0, 2, -hand * s, 0, -c, 3 + r * c], fov: 0.5 + 0.1 * k, lens_radius: 0, focal_distance: 1 });
+    return Object.assign(camera, { target: [1, 2, 3] });
+  });
+  done({
+    line: [1, 1.25, 2, 5].map((t) => point_at(line, [[2], [2], [6]], t)[0]),
+    at: [1, -1].map((hand) => [0, 0.5, 1, 1.75, 2, 3].map((t) => { const camera = camera_at(views(hand), t); return [camera.matrix(), camera.fov, camera.target].flat(); })),
+  });
+});"""
+
+
+def paths(program, scenes, out):
+    """Saved views are played as a camera path and saved as poses, which the program renders to the same views."""
+    with work(program, out) as at:
+        shown = at.shown
+        got = shown.driver.execute_async_script(PATH)
+        u = 0.25  # Hermite's polynomials: the velocity is 0 at the key that is given twice, and 4 at the last
+        assert all(abs(a - b) < 1e-12 for a, b in zip(got["line"], [2, 2 + 4 * (3 * u**2 - 2 * u**3) + 4 * (u**3 - u**2), 6, 6])), got["line"]
+        for hand, cameras in zip((1, -1), got["at"]):
+            for t, is_at in zip((0, 0.5, 1, 1.75, 2, 2), cameras):
+                a, r = math.radians(80 * t), 10 * 2**-t
+                s, c = math.sin(a), math.cos(a)
+                wanted = [hand * c, 0, -s, 1 + r * s, 0, 1, 0, 2, -hand * s, 0, -c, 3 + r * c, 0, 0, 0, 1, 0.5 + 0.1 * t, 1, 2, 3]
+                assert all(abs(x - y) < 1e-9 for x, y in zip(is_at, wanted)), (hand, t, is_at, wanted)
+
+        shown.tab("camera")
+        shown.find("keep").click()
+        assert not shown.find("path").is_displayed(), "one view makes no path"
+        shown.press("7")
+        at.changed("from above")
+        above = at.before
+        shown.find("keep").click()
+        assert shown.find("path").is_displayed()
+        shown.press("0")
+        shown.until("the scene's camera", lambda: shown.apart(at.first, 2) == 0)
+        shown.script("const input = document.getElementById('path-seconds'); input.value = '0.5'")
+        shown.find("play").click()
+        assert shown.text("play") == "Stop"
+        shown.until("the end of the path", lambda: shown.text("play") == "Play")
+        shown.until("the last view", lambda: shown.apart(above, 2) == 0)
+        # Whoever touches the picture goes on alone.
+        shown.script("document.getElementById('path-seconds').value = '600'")
+        shown.find("play").click()
+        shown.press("0")
+        assert shown.text("play") == "Play"
+        shown.until("the scene's camera again", lambda: shown.apart(at.first, 2) == 0)
+
+        shown.script("document.getElementById('path-seconds').value = '1.5'; window.saved = []; const make = URL.createObjectURL; URL.createObjectURL = (blob) => { blob.text().then((text) => window.saved.push(text)); return make.call(URL, blob); }")
+        shown.find("save-path").click()
+        text = shown.until("the path's file", lambda: shown.script("return window.saved[0]"))
+        assert [json.loads(line)["time"] for line in text.splitlines()] == [0, 1.5], text
+        keys = out / "forms.path.jsonl"
+        keys.write_text(text)
+        width, height, _ = shown.pixels()
+        subprocess.run([program, "render", out / "forms.pbrt", "--poses", keys, "--fps", "2", "--size", f"{width}x{height}", "--spp", "2", "-q", "-o", out / "path.#.exr", "-o", out / "path.#.png"], check=True)
+        assert sorted(p.name for p in out.glob("path.*.png")) == [f"path.{i}.png" for i in (1, 2, 3, 4)]
+        views = {}
+        for number in (1, 4):
+            shown.script("window.loaded = null; const image = new Image(); image.onload = () => { const canvas = document.createElement('canvas'); canvas.width = image.naturalWidth; canvas.height = image.naturalHeight; const brush = canvas.getContext('2d'); brush.drawImage(image, 0, 0); window.loaded = [...brush.getImageData(0, 0, canvas.width, canvas.height).data]; }; image.src = arguments[0]",
+                         "data:image/png;base64," + base64.b64encode((out / f"path.{number}.png").read_bytes()).decode())
+            views[number] = (width, height, bytes(shown.until("the picture", lambda: shown.script("return window.loaded"))))
+        # The same views, at two samples a pixel each: nearer to the page's than to one another's.
+        for number, page_picture in ((1, at.first), (4, above)):
+            same, other = (page_test.mean_difference(page_picture, views[n]) for n in (number, 5 - number))
+            assert same < other / 3, (number, same, other)
+
+
 LAYOUT = """const box = (id) => document.getElementById(id).getBoundingClientRect(), tops = [...document.querySelectorAll('#bar button')].filter((b) => b.checkVisibility()).map((b) => b.getBoundingClientRect().top);
     const stage = box('stage'), covered = ['file-tools', 'view-tools', 'rail', 'line', 'under', 'hint'].map(box).reduce((sum, b) => sum + b.width * b.height, 0);
     return { rows: new Set(tops.map(Math.round)).size, share: covered / stage.width / stage.height, panel: document.getElementById('panel').checkVisibility(), stage: stage.width, tops: tops.length };"""
@@ -494,7 +566,7 @@ def modules(program, scenes, out):
         assert abs(x - box["width"] / 2) < 1 and abs(y - box["height"] / 2) < 1, (x, y, box)
 
 
-CASES = [modules, tools, measures, inspects, numbers, never_waits, links, figure, screens]
+CASES = [modules, tools, measures, inspects, numbers, never_waits, links, paths, figure, screens]
 
 
 if __name__ == "__main__":

@@ -5,6 +5,7 @@ const span = (s) => s < 60 ? `${Math.ceil(s)} s` : s < 3600 ? `${Math.ceil(s / 6
 
 export const texts = {
   menu: "Menu", fit: "Fit all", frame: "Frame what is selected", home: "Scene's camera", undo: "Last view", redo: "Next view", keep: "Save view", kept: "Saved views", saved_view: (n) => `View ${n}`, forget_view: (n) => `Forget view ${n}`,
+  path_seconds: "Seconds from view to view", play: "Play", stop: "Stop", save_path: "Save camera path",
   axis: "Look along an axis", axes: { "+x": "from +x", "-x": "from −x", "+y": "from +y", "-y": "from −y", "+z": "from +z", "-z": "from −z" },
   link: "Copy a link to this view", copied: "Copied", save_as: "Save as…", discard: "Discard changes…",
   tools: "Tools", tool_names: { select: "Select and change", move: "Move", turn: "Rotate", scale: "Scale", measure: "Measure", inspect: "Inspect a ray" },

@@ -12,6 +12,7 @@ import { Inspector } from "./inspector.js";
 import { Keep } from "./keep.js";
 import { KEYS, action_of, is_taken } from "./keys.js";
 import { complain, scrubs, trouble_with, value_of } from "./numbers.js";
+import { Path } from "./path.js";
 import { Picture } from "./picture.js";
 import { Progress } from "./progress.js";
 import { LAYOUTS, arranged, share, view_pixel } from "./stereo.js";
@@ -552,7 +553,9 @@ for (const [id, text, keys, work] of [
 menu($("menu-button"), $("menu"));
 menu($("add-button"), $("add-menu"));
 menu($("export-button"), $("export-menu"));
+const path = new Path({ views: () => kept, begin: remember, show: (next) => { camera = next; look(); }, save, name: () => keep.now.name || scene.name });
 function fill_kept() {
+  path.changed();
   $("kept").replaceChildren(...kept.map((view, i) => {
     const row = document.createElement("li"), go = document.createElement("button"), forget = document.createElement("button");
     Object.assign(go, { textContent: texts.saved_view(i + 1), onclick: () => change(() => { camera = view.copy(); }) });
