@@ -5,8 +5,10 @@
 // Specification").
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
+#include <glm/gtc/quaternion.hpp>
 #include <glm/mat4x4.hpp>
 #include <glm/vec2.hpp>
 #include <map>
@@ -21,6 +23,13 @@
 #include "scene/scene.h"
 
 namespace caplet::gltf {
+
+/// What a node's transform is made of.
+struct Parts {
+  glm::dvec3 translation{0}, scale{1};
+  glm::dquat rotation{1, 0, 0, 0};  // w, x, y, z
+  glm::dmat4 matrix() const;
+};
 
 /// A file as text or GLB. Missing members take the given default. Members of another type, out of
 /// range or not finite throw InputError.
@@ -63,6 +72,8 @@ class File {
                                    const char* what) const;
   /// Returns the node's `matrix`, or the product of its translation, rotation and scale.
   glm::dmat4 transform_of(const Json& node) const;
+  /// Returns them of a node without a matrix.
+  Parts parts_of(const Json& node) const;
 
   /// Returns the values of an accessor with 1 to 4 components of any type; they are finite.
   template <class Vector>
@@ -88,6 +99,39 @@ class File {
   std::uintmax_t held_ = 0,
                  taken_ =
                      0;  // bytes of the file and its buffers, and bytes that accessors have read
+};
+
+/// The file's first animation, of translations, rotations and scales.
+class Animation {
+ public:
+  /// Reads the animation, if there is one. Throws InputError; warns of what it leaves out.
+  explicit Animation(File& file);
+
+  /// Returns the transforms of the last of `nodes`, each of which is a child of the one before,
+  /// within a `world`: at the times at which one of them has a key, and, where the way between them
+  /// is curved, at times between these. None: no node moves. A key can be alone.
+  TransformKeys keys(const std::vector<std::size_t>& nodes, const glm::dmat4& world);
+
+ private:
+  using Json = nlohmann::json;
+  enum class Way { step, linear, cubic };
+  enum Part : std::size_t { translation, rotation, scale };
+  static constexpr std::array<std::string_view, 3> part_names = {"translation", "rotation",
+                                                                 "scale"};
+  struct Channel {
+    Way way = Way::linear;
+    std::vector<double> times;
+    std::vector<glm::dvec4> values;
+    glm::dvec4 at(double time, bool turns) const;
+  };
+
+  void add(std::size_t node, std::size_t part, const Json& sampler);
+  void warn(const std::string& what) const;
+  glm::dmat4 transform_at(std::size_t node, double time) const;
+
+  File& file_;
+  std::map<std::size_t, std::array<std::optional<Channel>, part_names.size()>> nodes_;
+  std::size_t keys_ = 0;  // so far
 };
 
 /// What a shape takes from a glTF material.

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// glTF 2.0 and GLB: nodes, meshes (instanced where nodes share them), metallic-roughness materials,
-// cameras, lights.
+// glTF 2.0 and GLB: nodes, meshes (instanced where nodes share them or move), metallic-roughness
+// materials, cameras, lights, animations.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -25,6 +25,7 @@ namespace {
 constexpr std::size_t kDeepestChild = 256;      // nesting of nodes
 constexpr std::size_t kMostNodes = 10'000'000;  // placed nodes; shared children count each time
 constexpr double kLumensPerWatt = 683;          // as in Blender's exporter
+constexpr double kExposure = 0.02;              // seconds, of a file that moves
 constexpr double kHighestPicture = 65535;       // pixels, of an orthographic camera's window
 
 using Json = nlohmann::json;
@@ -35,7 +36,8 @@ class GltfReader {
       : file_(std::move(file)),
         json_(file_.json),
         options_(options),
-        materials_(file_, scene_, reader) {
+        materials_(file_, scene_, reader),
+        animation_(file_) {
     scene_.source = file_.path.string();
     scene_.unit = "m";
   }
@@ -54,11 +56,16 @@ class GltfReader {
     }
     const glm::dmat4 world = world_from_file(options_, "y");
     scene_.world_from_file = glm::dmat3(world);
+    world_ = world;
     for (const std::size_t root : roots) visit(root, world, 0);
     place_meshes();
     if (scene_.shapes.empty() && scene_.instances.empty()) file_.fail("holds no triangles");
     const bool is_lit = !scene_.lights.empty() || (emits_ && camera_);
     if (camera_) scene_.view.camera = *camera_;
+    if (moves_) {  // its picture is as bright as one that is open for a second
+      scene_.view.film.iso *= scene_.view.film.exposure_time / kExposure;
+      scene_.view.film.exposure_time = kExposure;
+    }
     Imported out(std::move(scene_));
     out.has_camera = camera_.has_value();
     out.is_lit = is_lit;
@@ -73,19 +80,24 @@ class GltfReader {
     if (++visited_ > kMostNodes)
       file_.fail(fmt::format("more than {} nodes are placed", kMostNodes));
     const Json& node = file_.list("nodes")[index];
-    const glm::dmat4 world = parent * file_.transform_of(node);
+    chain_.push_back(index);
+    glm::dmat4 world = parent * file_.transform_of(node);
+    TransformKeys keys = animation_.keys(chain_, world_);
+    if (!keys.empty()) world = keys.front().matrix;
+    if (keys.size() < 2) keys.clear();
     const std::string name = file_.text(node, "name", "");
     if (const auto mesh = file_.index(node, "mesh", file_.list("meshes").size(), "mesh"))
-      placed_[*mesh].push_back({world, name});
+      placed_[*mesh].push_back({world, name, keys});
     if (const auto camera = file_.index(node, "camera", file_.list("cameras").size(), "camera");
         camera && !camera_)
-      add_camera(file_.list("cameras")[*camera], world);
+      add_camera(file_.list("cameras")[*camera], world, keys);
     add_light(node, world);
     for (const Json& child : file_.list_of(node, "children"))
       visit(file_.index_value(child, file_.list("nodes").size(), "node"), world, depth + 1);
+    chain_.pop_back();
   }
 
-  void add_camera(const Json& camera, const glm::dmat4& world) {
+  void add_camera(const Json& camera, const glm::dmat4& world, const TransformKeys& keys) {
     Camera out = scene_.view.camera;
     if (file_.text(camera, "type", "") == "orthographic") {
       const Json& window = file_.object(camera, "orthographic");
@@ -103,10 +115,15 @@ class GltfReader {
       out.projection = PerspectiveProjection{fov};
     }
     // glTF's camera looks along -z, ours along +z.
-    glm::dmat4 rigid(1);
-    for (int k = 0; k < 3; ++k) rigid[k] = glm::dvec4(glm::normalize(glm::dvec3(world[k])), 0);
-    rigid[3] = world[3];
-    out.world_from_camera = glm::scale(rigid, glm::dvec3(1, 1, -1));
+    const auto rigid = [](const glm::dmat4& node) {
+      glm::dmat4 turned(1);
+      for (int k = 0; k < 3; ++k) turned[k] = glm::dvec4(glm::normalize(glm::dvec3(node[k])), 0);
+      turned[3] = node[3];
+      return glm::scale(turned, glm::dvec3(1, 1, -1));
+    };
+    out.world_from_camera = rigid(world);
+    for (const TransformKey& key : keys) out.motion.push_back({key.time, rigid(key.matrix)});
+    moves_ |= !keys.empty();
     camera_ = out;
   }
 
@@ -147,6 +164,7 @@ class GltfReader {
   struct Placed {
     glm::dmat4 world;
     std::string name;
+    TransformKeys motion;
   };
 
   void place_meshes() {
@@ -154,10 +172,11 @@ class GltfReader {
       std::vector<Shape> shapes = shapes_of(mesh);
       if (shapes.empty()) continue;
       for (const Shape& shape : shapes) emits_ |= shape.emission.has_value();
-      if (places.size() == 1) {
+      if (places.size() == 1 && !places[0].name.empty())
+        for (Shape& shape : shapes) shape.name = places[0].name;
+      if (places.size() == 1 && places[0].motion.empty()) {
         for (Shape& shape : shapes) {
           shape.world_from_object = places[0].world;
-          if (!places[0].name.empty()) shape.name = places[0].name;
           scene_.shapes.push_back(std::move(shape));
         }
         continue;
@@ -166,9 +185,11 @@ class GltfReader {
       object.name = shapes[0].name;
       object.where = {scene_.source, 0, 0};
       object.shapes = std::move(shapes);
-      for (const Placed& place : places)
-        scene_.instances.push_back(
-            {narrow<std::uint32_t>(scene_.objects.size()), place.world, object.where});
+      for (Placed& place : places) {
+        moves_ |= !place.motion.empty();
+        scene_.instances.push_back({narrow<std::uint32_t>(scene_.objects.size()), place.world,
+                                    object.where, std::move(place.motion)});
+      }
       scene_.objects.push_back(std::move(object));
     }
   }
@@ -259,6 +280,10 @@ class GltfReader {
   const ImportOptions& options_;
   Scene scene_;
   gltf::Materials materials_;
+  gltf::Animation animation_;
+  glm::dmat4 world_{1};
+  std::vector<std::size_t> chain_;  // the node that is visited, behind all that it lies within
+  bool moves_ = false;
   std::optional<Camera> camera_;
   std::map<std::size_t, std::vector<Placed>> placed_;
   std::size_t visited_ = 0;

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <glm/ext/vector_float1.hpp>
 #include <glm/gtc/matrix_transform.hpp>
 #include <glm/gtc/quaternion.hpp>
 
@@ -167,13 +168,22 @@ glm::dmat4 File::transform_of(const Json& node) const {
       out[i / 4][i % 4] = number_value(matrix[static_cast<std::size_t>(i)], "matrix");
     return out;
   }
-  const auto t = vector(node, "translation", glm::dvec3(0)),
-             s = vector(node, "scale", glm::dvec3(1));
+  return parts_of(node).matrix();
+}
+
+Parts File::parts_of(const Json& node) const {
+  Parts out;
+  out.translation = vector(node, "translation", glm::dvec3(0));
+  out.scale = vector(node, "scale", glm::dvec3(1));
   const auto r = vector(node, "rotation", glm::dvec4(0, 0, 0, 1));
   if (!(glm::length(r) > 0)) fail("a rotation is no quaternion");
   const glm::dvec4 q = glm::normalize(r);
-  return glm::scale(
-      glm::translate(glm::dmat4(1), t) * glm::mat4_cast(glm::dquat(q.w, q.x, q.y, q.z)), s);
+  out.rotation = glm::dquat(q.w, q.x, q.y, q.z);
+  return out;
+}
+
+glm::dmat4 Parts::matrix() const {
+  return glm::scale(glm::translate(glm::dmat4(1), translation) * glm::mat4_cast(rotation), scale);
 }
 
 std::optional<std::string> File::data_uri(const std::string& uri) const {
@@ -323,6 +333,8 @@ std::vector<Vector> File::vectors(std::size_t accessor) {
     }
   return out;
 }
+template std::vector<glm::vec1> File::vectors<glm::vec1>(std::size_t accessor);
+template std::vector<glm::vec4> File::vectors<glm::vec4>(std::size_t accessor);
 template std::vector<glm::vec2> File::vectors<glm::vec2>(std::size_t accessor);
 template std::vector<glm::vec3> File::vectors<glm::vec3>(std::size_t accessor);
 
