@@ -55,7 +55,7 @@ void add_frames(CLI::App& command, RenderFlags& o) {
       .add_option("--play", o.play,
                   "Frames of a scene that moves, from one time to another, in seconds")
       ->type_name("A:B");
-  command.add_option("--fps", o.frames_a_second, "Frames a second of a movie or an animation")
+  command.add_option("--fps", o.frames_a_second, "Frames a second of movies, animations")
       ->check(CLI::Range(0.01, 1000.0))
       ->capture_default_str()
       ->type_name("R");

@@ -111,8 +111,7 @@ TEST(GltfAnimation, AChildFollowsWhatItLiesWithin) {
   const auto h = static_cast<float>(half_angle);
   const Scene scene = scene_of(
       R"([{"children":[1]},{"children":[2],"translation":[1,0,0]},{"mesh":0,"scale":[3,3,3]}])",
-      {{0, "rotation", {0, 1}, {0, 0, 0, 1, 0, 0, h, h}},
-       {1, "scale", {0, 1}, {1, 1, 1, 1, 1, 1}}});
+      {{0, "rotation", {0, 1}, {0, 0, 0, 1, 0, 0, h, h}}});
   const TransformKeys& motion = scene.instances.at(0).motion;
   ASSERT_GE(motion.size(), 2U);
   const AnimatedTransform at(motion);
@@ -122,6 +121,18 @@ TEST(GltfAnimation, AChildFollowsWhatItLiesWithin) {
     expect_point(place(at.at(t), {0, 0, 0}), {std::cos(angle), std::sin(angle), 0},
                  1 - std::cos(pi / 128) + 1e-6);
     expect_point(place(at.at(t), {0, 0, 1}) - place(at.at(t), {0, 0, 0}), {0, 0, 3});
+  }
+}
+
+// What turns within a node that is twice as wide follows an ellipse.
+TEST(GltfAnimation, AChildIsStretchedByWhatItLiesWithin) {
+  const auto h = static_cast<float>(half_angle);
+  const Scene scene = scene_of(R"([{"children":[1],"scale":[2,1,1]},{"mesh":0}])",
+                               {{1, "rotation", {0, 1}, {0, 0, 0, 1, 0, 0, h, h}}});
+  const AnimatedTransform at(scene.instances.at(0).motion);
+  for (double t = 0; t <= 1; t += 0.01) {
+    const double angle = pi / 2 * t;
+    expect_point(place(at.at(t), {1, 0, 0}), {2 * std::cos(angle), std::sin(angle), 0}, 1e-3);
   }
 }
 

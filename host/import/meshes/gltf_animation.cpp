@@ -130,12 +130,12 @@ glm::dmat4 Animation::transform_at(std::size_t node, double time) const {
 TransformKeys Animation::keys(const std::vector<std::size_t>& nodes, const glm::dmat4& world) {
   if (nodes_.empty()) return {};
   std::vector<double> times;
-  std::size_t moving = 0;
   bool is_curved = false;
   for (const std::size_t node : nodes) {
     const auto found = nodes_.find(node);
     if (found == nodes_.end()) continue;
-    ++moving;
+    // A node alone turns about its own origin, as AnimatedTransform does.
+    is_curved |= nodes.size() > 1 && (found->second[rotation] || found->second[scale]);
     for (const std::optional<Channel>& channel : found->second) {
       if (!channel) continue;
       times.insert(times.end(), channel->times.begin(), channel->times.end());
@@ -148,7 +148,6 @@ TransformKeys Animation::keys(const std::vector<std::size_t>& nodes, const glm::
   std::ranges::sort(times);
   const auto twice = std::ranges::unique(times);
   times.erase(twice.begin(), twice.end());
-  is_curved |= moving > 1;
   TransformKeys out;
   const auto add = [&](double time) {
     if (++keys_ > kMostKeys)
