@@ -438,6 +438,15 @@ TEST(Frames, AreThoseOfASceneThatMoves) {
   expect_equal(folder / "k1.exr", folder / "p2.exr");
   ASSERT_EQ(run(folder, {"3.seen.pbrt", "-o", "seen.exr"}).code, 0);
   expect_equal(folder / "k2.exr", folder / "seen.exr");
+  // A camera that rests between its keys sees what is played.
+  const std::string eye = "\"camera\": {\"eye\": [0, 0, 8], \"target\": [0, 0, 0]}}\n";
+  write_file(folder / "rest.jsonl", "{\"time\": 0.5, " + eye + "{\"time\": 1, " + eye);
+  ASSERT_EQ(run(folder, {"moves.pbrt", "--poses", "rest.jsonl", "--fps", "2", "--shutter", "0.5",
+                         "--frames", "1", "-o", "rest#.exr"})
+                .code,
+            0);
+  const std::vector<float> rests = read_exr(folder / "rest1.exr").find("G")->floats;
+  for (std::size_t i = 0; i < is.size(); ++i) EXPECT_NEAR(rests[i], is[i], 1e-3F * is[i]) << i;
 
   const auto refused = [&](Names arguments, const std::string& why) {
     const Result failed = run(folder, arguments);

@@ -170,6 +170,20 @@ TEST(PoseAnimation, ACameraOfTransformsGoesOnAsTransformsDo) {
                 {{-h, 0, h, 0}, {0, 1, 0, 0}, {-h, 0, -h, 0}, {5, 0, 5, 1}});
 }
 
+TEST(PoseAnimation, ACameraOfWhichOneKeyIsATransformGoesStraight) {
+  const Scene scene = scene_with("Shape \"sphere\"");
+  for (const char* lines :
+       {"{\"time\": 0, \"camera\": {\"transform\": [-1, 0, 0, 0,  0, 1, 0, 0,  0, 0, -1, 10]}}\n"
+        "{\"time\": 2, \"camera\": {\"eye\": [10, 0, 0], \"target\": [0, 0, 0]}}\n",
+        "{\"time\": 0, \"camera\": {\"eye\": [0, 0, 10], \"target\": [0, 0, 0]}}\n"
+        "{\"time\": 2, \"camera\": {\"transform\": [0, 0, -1, 10,  0, 1, 0, 0,  1, 0, 0, 0]}}\n"}) {
+    const glm::dmat4 m =
+        scene_at(scene, animation_of(scene, lines), 1).view.camera.world_from_camera;
+    EXPECT_NEAR(m[3].x, 5, 1e-12) << lines;
+    EXPECT_NEAR(m[3].z, 5, 1e-12) << lines;
+  }
+}
+
 // Everything follows the poses that name it. Transforms turn about the middle of what they place.
 TEST(PoseAnimation, PartsFollowThePosesThatNameThem) {
   const Scene scene = scene_with(parts);

@@ -85,7 +85,7 @@ void expect_point(const glm::dvec3& is, const glm::dvec3& should, double within 
 TEST(GltfAnimation, KeysAreThoseOfTheFile) {
   const auto h = static_cast<float>(half_angle);
   const Scene scene = scene_of(R"([{"mesh":0,"name":"it","translation":[9,9,9],"scale":[2,1,1]}])",
-                               {{0, "translation", {0.5F, 1.5F}, {0, 0, 1, 4, 0, 1}},
+                               {{0, "translation", {1.5F, 2.5F}, {0, 0, 1, 4, 0, 1}},
                                 {0, "rotation", {0.5F, 2.5F}, {0, 0, 0, 1, 0, 0, h, h}}});
   ASSERT_EQ(scene.instances.size(), 1U);
   ASSERT_TRUE(scene.shapes.empty());
@@ -98,7 +98,7 @@ TEST(GltfAnimation, KeysAreThoseOfTheFile) {
   EXPECT_EQ(it.world_from_object, it.motion[0].matrix);
   expect_point(place(it.motion[0].matrix, {1, 0, 0}), {2, 0, 1});
   // After half of the turn x points along the diagonal; its scale stays.
-  expect_point(place(it.motion[1].matrix, {1, 0, 0}), {4 + 2 * half_angle, 2 * half_angle, 1});
+  expect_point(place(it.motion[1].matrix, {1, 0, 0}), {2 * half_angle, 2 * half_angle, 1});
   expect_point(place(it.motion[2].matrix, {1, 0, 0}), {4, 2, 1});
   // The exposure is short, and the picture as bright as that of a file that rests.
   EXPECT_EQ(scene.view.film.shutter_open, 0);
@@ -156,24 +156,27 @@ TEST(GltfAnimation, SplinesHaveVelocities) {
       scene_of(R"([{"mesh":0}])", {{0,
                                     "translation",
                                     {0, 2},
-                                    {8, 8, 8, 0, 0, 0, 1, 0, 0, 3, 0, 0, 4, 0, 0, 8, 8, 8},
+                                    {8, 8, 8, 5, 0, 0, 1, 0, 0, 3, 0, 0, 4, 0, 0, 8, 8, 8},
                                     "CUBICSPLINE"}});
   const AnimatedTransform at(scene.instances.at(0).motion);
   for (double t = 0; t <= 2; t += 0.0625) {  // where there are keys
     const double u = t / 2;
-    EXPECT_NEAR(
-        at.at(t)[3].x,
-        2 * (u * u * u - 2 * u * u + u) + 4 * (3 * u * u - 2 * u * u * u) + 6 * (u * u * u - u * u),
-        1e-9)
+    EXPECT_NEAR(at.at(t)[3].x,
+                5 * (1 - 3 * u * u + 2 * u * u * u) + 2 * (u * u * u - 2 * u * u + u) +
+                    4 * (3 * u * u - 2 * u * u * u) + 6 * (u * u * u - u * u),
+                1e-9)
         << t;
   }
 }
 
 TEST(GltfAnimation, ACameraMoves) {
-  const Scene scene = scene_of(R"([{"mesh":0,"children":[1]},{"camera":0,"scale":[2,2,2]}])",
-                               {{1, "translation", {0, 1}, {0, 0, 4, 2, 0, 4}}},
-                               R"(,"cameras":[{"perspective":{"yfov":0.5},"type":"perspective"}])");
-  EXPECT_TRUE(scene.instances.empty()) << "the triangle rests";
+  const Scene scene =
+      scene_of(R"([{"mesh":0,"children":[1,2]},{"camera":0,"scale":[2,2,2]},{"mesh":0}])",
+               {{1, "translation", {0, 1}, {0, 0, 4, 2, 0, 4}}},
+               R"(,"cameras":[{"perspective":{"yfov":0.5},"type":"perspective"}])");
+  ASSERT_EQ(scene.instances.size(), 2U);
+  for (const Instance& one : scene.instances)
+    EXPECT_TRUE(one.motion.empty()) << "what is around and beside the camera rests";
   const Camera& camera = scene.view.camera;
   ASSERT_EQ(camera.motion.size(), 2U);
   expect_point(place(camera.motion[1].matrix, {1, 2, 3}), {3, 2, 1});
