@@ -146,8 +146,8 @@ TransformKeys Animation::keys(const std::vector<std::size_t>& nodes, const glm::
     }
   }
   std::ranges::sort(times);
-  const auto twice = std::ranges::unique(times);
-  times.erase(twice.begin(), twice.end());
+  times.erase(std::unique(times.begin(), times.end()),
+              times.end());  // clang 14 lacks ranges::unique
   TransformKeys out;
   const auto add = [&](double time) {
     if (++keys_ > kMostKeys)
