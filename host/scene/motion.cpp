@@ -53,8 +53,9 @@ AnimatedTransform::AnimatedTransform(const TransformKeys& keys, const glm::dvec3
 }
 
 glm::dmat4 AnimatedTransform::at(double time) const {
-  std::size_t i = 0;
-  while (i + 2 < keys_.size() && keys_[i + 1].time <= time) ++i;
+  const auto after = std::upper_bound(keys_.begin() + 1, keys_.end() - (keys_.size() > 1 ? 1 : 0),
+                                      time, [](double t, const Key& key) { return t < key.time; });
+  const auto i = static_cast<std::size_t>(after - keys_.begin()) - 1;
   const Key& a = keys_[i];
   const Key& b = keys_[std::min(i + 1, keys_.size() - 1)];
   const double length = b.time - a.time,

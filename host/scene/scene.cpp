@@ -18,6 +18,12 @@ std::array<int, 2> strata_of(const SamplerSettings& sampler) {
   return {across, samples / across};
 }
 
+namespace {
+
+constexpr std::size_t most_bounded_keys = 16;  // whose vertices are looked at one by one
+
+}  // namespace
+
 Bounds bounds_of(const Scene& scene) {
   Bounds bounds;
   for (const Shape& shape : scene.shapes) bounds.extend(bounds_of(shape));
@@ -31,6 +37,19 @@ Bounds bounds_of(const Scene& scene) {
       continue;
     }
     const AnimatedTransform animated(instance.motion, instance.pivot);
+    Bounds box;
+    for (const Shape& shape : scene.objects[instance.object].shapes) box.extend(bounds_of(shape));
+    const auto add_box = [&](const glm::dmat4& world_from_object) {
+      for (int corner = 0; corner < 8 && !box.empty(); ++corner)
+        bounds.extend(
+            glm::dvec3(world_from_object * glm::dvec4(corner & 1 ? box.max.x : box.min.x,
+                                                      corner & 2 ? box.max.y : box.min.y,
+                                                      corner & 4 ? box.max.z : box.min.z, 1)));
+    };
+    if (instance.motion.size() > most_bounded_keys) {
+      for (const TransformKey& key : instance.motion) add_box(key.matrix);
+      continue;
+    }
     for (std::size_t i = 1; i < instance.motion.size(); ++i)
       for (int k = 0; k <= 16; ++k)
         add(animated.at(instance.motion[i - 1].time +

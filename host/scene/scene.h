@@ -90,7 +90,8 @@ struct Scene {
 };
 
 /// Returns the bounds of all shapes in the world, including instances. Those that move count where
-/// they are at each key and at 15 times between keys, whether the shutter is open then or not.
+/// they are at each key and at 15 times between keys, whether the shutter is open then or not. Of
+/// those with more than 16 keys the corners of their boxes count, at each key.
 Bounds bounds_of(const Scene& scene);
 
 /// Counts primitives by kind, with instances expanded. Kinds are the names of shapes in scene

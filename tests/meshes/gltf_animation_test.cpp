@@ -169,6 +169,24 @@ TEST(GltfAnimation, SplinesHaveVelocities) {
   }
 }
 
+// The triangle's corner (1, 0, 0) turns by up to 240 degrees about the origin: what is far from all
+// keys' boxes is outside, and the keys' boxes are inside.
+TEST(GltfAnimation, BoundsHoldTheWholeWay) {
+  std::vector<float> times, turns;
+  for (int i = 0; i <= 24; ++i) {
+    const double half = pi / 180 * 10 * i / 2;
+    times.push_back(static_cast<float>(i));
+    for (const double v : {0.0, 0.0, std::sin(half), std::cos(half)})
+      turns.push_back(static_cast<float>(v));
+  }
+  const Bounds bounds = bounds_of(scene_of(R"([{"mesh":0}])", {{0, "rotation", times, turns}}));
+  // The box of the triangle is a square of side 1, whose corner (1, 1) is furthest.
+  EXPECT_NEAR(bounds.min.x, -std::sqrt(2.0), 0.01);
+  EXPECT_NEAR(bounds.max.y, std::sqrt(2.0), 0.01);
+  EXPECT_NEAR(bounds.min.y, -std::sqrt(2.0), 0.01);
+  EXPECT_NEAR(bounds.max.x, 1, 1e-6);
+}
+
 TEST(GltfAnimation, ACameraMoves) {
   const Scene scene =
       scene_of(R"([{"mesh":0,"children":[1,2]},{"camera":0,"scale":[2,2,2]},{"mesh":0}])",
