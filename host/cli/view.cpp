@@ -70,6 +70,27 @@ view::Keeper::ReadAs read_as(const ImportOptions& options) {
   return out;
 }
 
+/// Returns how the scene's files are read again with other options of their formats.
+view::SceneFiles files_of(const std::vector<std::string>& paths, const std::string& name,
+                          const ImportOptions& options) {
+  view::SceneFiles out;
+  view::FileOptions others = options.values();
+  for (const ImportOptionRow& row :
+       format_options_of(std::vector<std::filesystem::path>(paths.begin(), paths.end()))) {
+    if (row.name == "camera") continue;
+    out.options.push_back({row.name, row.values, row.help, row.is_list});
+    if (const auto now = others.extract(row.name)) out.now[row.name] = now.mapped();
+  }
+  if (out.options.empty()) return {};
+  out.read = [paths, name, others](view::FileOptions all) {
+    all.insert(others.begin(), others.end());
+    Scene scene = import_files(paths, ImportOptions(std::move(all)));
+    scene.source = name;
+    return scene;
+  };
+  return out;
+}
+
 /// Describes what others can do if they reach the address.
 std::string opened_to(const ViewFlags& options, bool saves, std::uint16_t port) {
   std::vector<std::string> where;
@@ -97,8 +118,9 @@ void run_view(const ViewFlags& options) {
   // If several files make one scene, its changes belong to none of them.
   if (!options.read_only && options.scenes.size() == 1 && std::filesystem::is_regular_file(name))
     keeper = std::make_unique<view::Keeper>(name, read_as(options.import_options));
-  Scene scene = import_files(keeper ? std::vector{keeper->base().string()} : options.scenes,
-                             options.import_options);
+  const std::vector<std::string> paths =
+      keeper ? std::vector{keeper->base().string()} : options.scenes;
+  Scene scene = import_files(paths, options.import_options);
   if (keeper) {
     scene.source = name;
     keeper->has_read(noted_inputs());
@@ -114,6 +136,7 @@ void run_view(const ViewFlags& options) {
   viewer_options.server.token =
       options.port ? view::kept_token(options.host, options.port, name) : view::random_token();
   viewer_options.server.is_embedded = options.embed;
+  viewer_options.files = files_of(paths, name, options.import_options);
   viewer_options.read_only = options.read_only;
   viewer_options.denoises = !options.no_denoise && has_denoiser();
   viewer_options.samples = options.samples;

@@ -38,14 +38,14 @@ class SceneWriter {
     const auto& [textures, materials, media, shapes, objects, instances, lights, view, source,
                  automatic_camera, has_no_up, framing, world_from_file, unit, legend, contents] =
         scene_;
-    const auto& [camera, filter, film, sampler, integrator] = view;
+    const auto& [camera, filter, film, sampler, integrator, clip] = view;
     order_materials();
     order_media();
     name_all();
     stream_.text << written_first_line;
     set_space(stream_, film.space);
     write_times();
-    write_camera(camera);
+    write_camera(camera, clip);
     write_film(film);
     write_filter(filter);
     write_sampler(sampler, integrator);
@@ -232,7 +232,7 @@ class SceneWriter {
                  << end << "ActiveTransform All\n";
   }
 
-  void write_camera(const Camera& camera) {
+  void write_camera(const Camera& camera, const std::optional<ClipPlane>& clip) {
     const auto& [world_from_camera, projection, frame_aspect_ratio, screen_window, lens_radius,
                  focal_distance, medium, motion, blades, blade_rotation] = camera;
     const SourceLocation where{here()};
@@ -264,6 +264,9 @@ class SceneWriter {
     if (scene_.has_no_up) out.boolean("noup", true);
     if (scene_.framing.toward_viewer) out.vector("view", *scene_.framing.toward_viewer);
     if (scene_.framing.up) out.vector("up", *scene_.framing.up);
+    if (clip)
+      out.numbers("float", "clipplane",
+                  {clip->normal.x, clip->normal.y, clip->normal.z, clip->offset});
     if (!scene_.unit.empty()) out.text("unit", scene_.unit);
     if (const glm::dmat3& a = scene_.world_from_file; a != glm::dmat3(1))
       out.numbers("float", "fileaxes",

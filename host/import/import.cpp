@@ -299,6 +299,19 @@ Imported import_file(const Format& format, const fs::path& path, const ImageRead
 
 }  // namespace
 
+std::vector<ImportOptionRow> format_options_of(std::span<const fs::path> paths) {
+  std::vector<ImportOptionRow> out;
+  for (const ImportOptionRow& row : import_option_rows()) {
+    const auto knows = [&](const fs::path& path) {
+      return std::ranges::find(format_of(placed_file(path).path).options, row.name) !=
+             format_of(placed_file(path).path).options.end();
+    };
+    if (row.of == ImportOptionRow::Of::format && std::ranges::any_of(paths, knows))
+      out.push_back(row);
+  }
+  return out;
+}
+
 Imported read_scene(const fs::path& path, const ImageReader& images, const ImportOptions& options,
                     const Format* format) {
   const Fence fence(path, options);

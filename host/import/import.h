@@ -60,6 +60,10 @@ Scene import_scene(const std::filesystem::path& path, const ImageReader& images,
 Scene import_scenes(std::span<const std::filesystem::path> paths, const ImageReader& images,
                     const ImportOptions& options = {});
 
+/// Returns the options that the format of at least one of these files knows. Throws InputError for
+/// an unknown extension.
+std::vector<ImportOptionRow> format_options_of(std::span<const std::filesystem::path> paths);
+
 /// Reads one file and adds no camera or light; `format` overrides the format of its name. Throws
 /// InputError.
 Imported read_scene(const std::filesystem::path& path, const ImageReader& images,

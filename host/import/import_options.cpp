@@ -84,6 +84,11 @@ const std::vector<ImportOptionRow>& import_option_rows() {
       {"least-width", "PIXELS",
        "Capsules and spheres are drawn at least so wide (0: as they are); not for pick and verify",
        Of::picture},
+      {"clip", "DIRECTION[=PLACE]",
+       "Cuts away what lies in this direction (x|y|z|-x|-y|-z, view: towards the camera, or X,Y,Z) "
+       "behind a plane, at a coordinate or a share that is kept, such as x=1.5 or view=30%; none: "
+       "not even what the file says",
+       Of::picture},
       {"exposure", "STOPS|auto",
        "Previews, .png and .jpg are so much brighter; auto: as the picture needs it. The .exr and "
        "the background stay",

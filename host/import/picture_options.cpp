@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "import/detail/text_file.h"
+#include "present/clip.h"
 #include "present/picture_options.h"
 #include "present/present.h"
 
@@ -53,6 +54,9 @@ void apply_picture_options(Scene& scene, const ImageReader& images, const Import
     scene.view.film.backdrop = parse_backdrop(*backdrop, images, "--background");
   if (const auto width = options.text("least-width"))
     scene.view.film.least_width = width_of(*width);
+  if (const auto clip = options.text("clip"))
+    scene.view.clip =
+        *clip == "none" ? std::nullopt : std::optional(parse_clip(*clip, scene, "--clip"));
   if (const auto exposure = options.text("exposure"))
     scene.view.film.exposure = parse_exposure(*exposure, "--exposure");
 }

@@ -31,6 +31,15 @@ void lower_camera(const Scene& scene, FlatView& out) {
   view.crop_width = narrow<uint>(window[1] - window[0]);
   view.crop_height = narrow<uint>(window[3] - window[2]);
 
+  view.clip_x = view.clip_y = view.clip_z = 0;
+  view.clip_offset = std::numeric_limits<float>::infinity();
+  if (const auto& clip = scene.view.clip) {
+    view.clip_x = static_cast<float>(clip->normal.x);
+    view.clip_y = static_cast<float>(clip->normal.y);
+    view.clip_z = static_cast<float>(clip->normal.z);
+    view.clip_offset = static_cast<float>(clip->offset);
+  }
+
   CameraRecord& record = out.camera;
   record = CameraRecord{};
   out.camera_table.clear();
@@ -82,7 +91,7 @@ void lower_camera(const Scene& scene, FlatView& out) {
   const bool is_parallel =
       std::visit([](const auto& of) { return of.is_parallel; }, camera.projection);
   // Other solids may hold the camera while it, or they, move.
-  record.origins = is_parallel || record.lens_radius > 0 || moves(scene) ? 1 : 0;
+  record.origins = is_parallel || record.lens_radius > 0 || moves(scene) || scene.view.clip ? 1 : 0;
 }
 
 RayRecord ray_of_pixel(const Scene& scene, int x, int y) {
@@ -101,6 +110,16 @@ RayRecord ray_of_pixel(const Scene& scene, int x, int y) {
   ray.dy = static_cast<float>(direction.y);
   ray.dz = static_cast<float>(direction.z);
   ray.t_max = std::numeric_limits<float>::infinity();
+  if (const auto& clip = scene.view.clip) {
+    const double height = glm::dot(clip->normal, origin) - clip->offset,
+                 rate = glm::dot(clip->normal, direction);
+    if (height > 0 && rate < 0)
+      ray.t_min = static_cast<float>(height / -rate);
+    else if (height > 0)
+      ray.t_max = 0;
+    else if (rate > 0)
+      ray.t_max = static_cast<float>(-height / rate);
+  }
   return ray;
 }
 

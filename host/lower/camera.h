@@ -15,8 +15,8 @@ namespace caplet {
 void lower_camera(const Scene& scene, FlatView& out);
 
 /// Returns the ray through the middle of pixel (x, y) of the full image, from the top left, and the
-/// middle of the lens: world space, unit direction, t in (0, infinity). It is the ray of
-/// kernels/camera/camera.cl, up to rounding.
+/// middle of the lens: world space, unit direction, t in (0, infinity), but only on this side of a
+/// clipping plane. It is the ray of kernels/stages/generate.cl, up to rounding.
 RayRecord ray_of_pixel(const Scene& scene, int x, int y);
 
 }  // namespace caplet

@@ -5,6 +5,7 @@
 // scene and of a view of it.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -53,6 +54,9 @@ struct FlatScene {
 struct FlatView {
   VIEW_GROUPS
 };
+
+/// Returns whether a plane cuts what the view shows.
+inline bool has_clip(const FlatView& view) { return std::isfinite(view.view.clip_offset); }
 
 #undef GROUP_BEGIN
 #undef GROUP_END

@@ -8,12 +8,15 @@
 
 namespace caplet {
 
+void expose(FilmSettings& film, double seconds) {
+  film.iso *= film.exposure_time / seconds;
+  film.exposure_time = seconds;
+}
+
 Scene seen_from(Scene scene, double time, double exposure) {
   if (!(exposure > 0)) return frozen_at(std::move(scene), time);
-  FilmSettings& film = scene.view.film;
-  film.iso *= film.exposure_time / exposure;
-  film.exposure_time = exposure;
-  film.shutter_open = time;
+  expose(scene.view.film, exposure);
+  scene.view.film.shutter_open = time;
   return scene;
 }
 

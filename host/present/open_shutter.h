@@ -21,6 +21,9 @@ TransformKeys keys_while_open(const FilmSettings& film, const At& at) {
   return keys;
 }
 
+/// Keeps the shutter open for so many seconds; the picture stays as bright as it is.
+void expose(FilmSettings& film, double seconds);
+
 /// Returns the scene with a shutter that opens at `time` for `exposure` seconds, or, where these
 /// are 0, with everything where it is at that time. The picture stays as bright as it is.
 Scene seen_from(Scene scene, double time, double exposure);

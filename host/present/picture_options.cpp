@@ -27,20 +27,6 @@ namespace {
   throw InputError(SourceLocation{flag}, "'" + text + "' " + why);
 }
 
-/// Parses three numbers separated by commas; no value for anything else.
-std::optional<glm::dvec3> three_numbers(std::string_view text) {
-  glm::dvec3 out(0);
-  for (int i = 0; i < 3; ++i) {
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), out[i]);
-    if (error != std::errc() || !std::isfinite(out[i])) return std::nullopt;
-    text.remove_prefix(static_cast<std::size_t>(end - text.data()));
-    if (i == 2) break;
-    if (text.empty() || text.front() != ',') return std::nullopt;
-    text.remove_prefix(1);
-  }
-  return text.empty() ? std::optional(out) : std::nullopt;
-}
-
 /// Normalises as scene files do.
 glm::dvec3 normalized(const glm::dvec3& v) {
   return is_unit(glm::length(v)) ? v : v / glm::length(v);
@@ -64,6 +50,19 @@ const std::map<std::string, glm::dvec3>& named_colors() {
 }
 
 }  // namespace
+
+std::optional<glm::dvec3> three_numbers(std::string_view text) {
+  glm::dvec3 out(0);
+  for (int i = 0; i < 3; ++i) {
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), out[i]);
+    if (error != std::errc() || !std::isfinite(out[i])) return std::nullopt;
+    text.remove_prefix(static_cast<std::size_t>(end - text.data()));
+    if (i == 2) break;
+    if (text.empty() || text.front() != ',') return std::nullopt;
+    text.remove_prefix(1);
+  }
+  return text.empty() ? std::optional(out) : std::nullopt;
+}
 
 glm::dvec3 parse_axis(const std::string& text, const std::string& flag) {
   const bool is_negative = text.starts_with('-');

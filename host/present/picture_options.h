@@ -15,6 +15,9 @@
 
 namespace caplet {
 
+/// Parses three finite numbers separated by commas; no value for anything else.
+std::optional<glm::dvec3> three_numbers(std::string_view text);
+
 /// Parses "x", "-z"...: the unit vector along that axis. Throws InputError that names `flag`.
 glm::dvec3 parse_axis(const std::string& text, const std::string& flag);
 

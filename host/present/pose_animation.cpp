@@ -18,6 +18,8 @@ namespace caplet {
 
 namespace {
 
+bool mirrors(const glm::dmat4& m) { return glm::determinant(glm::dmat3(m)) < 0; }
+
 glm::dvec3 middle_of(const Bounds& bounds) {
   return bounds.empty() ? glm::dvec3(0) : 0.5 * (bounds.min + bounds.max);
 }
@@ -75,7 +77,6 @@ void PoseAnimation::add(const Scene& scene, const ScenePose& pose, const SceneEd
 }
 
 void PoseAnimation::add(Moving& to, const ScenePose& pose, const glm::dmat4& matrix) {
-  const auto mirrors = [](const glm::dmat4& m) { return glm::determinant(glm::dmat3(m)) < 0; };
   if (!to.keys.empty() && mirrors(to.keys.back().matrix) != mirrors(matrix))
     throw InputError(pose.where,
                      "a transform mirrors what the one of the pose before does not mirror");
@@ -114,7 +115,6 @@ glm::dmat4 PoseAnimation::camera_at(double time) const {
   // Where the curve goes over the pole, up is that of the transforms.
   if (!out) out = camera_looking(eye, target, glm::dvec3(camera_.transform->at(time)[1]));
   if (!out) return camera_.transform->at(time);
-  const auto mirrors = [](const glm::dmat4& m) { return glm::determinant(glm::dmat3(m)) < 0; };
   if (mirrors(*out) != mirrors(camera_.keys.front().matrix)) (*out)[0] *= -1;
   return *out;
 }

@@ -48,6 +48,7 @@ void DeviceScene::prepare_for(const FlatView& view) {
   // Viewers switch between these two cameras, which cost next to nothing.
   options.rows["cameras"] |=
       std::uint64_t{1} << view.camera.kind | 1U << camera_perspective | 1U << camera_orthographic;
+  options.clip |= has_clip(view);
   if (options == options_) return;
   kernels_ = Kernels(device_, options);
   options_ = std::move(options);

@@ -177,6 +177,7 @@ StageOptions stage_options(const FlatScene& scene, const Device& device) {
 
 StageOptions StageOptions::together_with(const StageOptions& others) const {
   StageOptions out = others;
+  out.clip |= clip;
   if (compiler == others.compiler)
     for (auto& [list, rows_of_list] : out.rows) {
       const auto here = rows.find(list);
@@ -200,8 +201,8 @@ void Kernels::compile(std::span<const Stage> stages) {
     if (compiled) continue;
     const std::string name = row_of(stage).name;
     const std::string source = stage_source(stage, options_.rows);
-    Program program =
-        Program::from_source(device_, name, source, options_of(source, options_.compiler));
+    const std::string options = options_.compiler + (options_.clip ? " -DCAPLET_CLIP" : "");
+    Program program = Program::from_source(device_, name, source, options_of(source, options));
     cl::Kernel kernel = program.kernel(name);
     const Launch launch = row_of(stage).launch;
     const bool is_one = launch == Launch::one ||

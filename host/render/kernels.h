@@ -31,6 +31,7 @@ struct StageNeeds {
   bool camera_stage = false;  // camera rays have a traversal of their own
   bool alpha = false;         // shapes let rays through
   bool media = false;
+  bool clip = false;              // a clipping plane cuts the scene
   bool counts_on_device = false;  // rounds are launched without asking how many paths are left
 };
 
@@ -46,6 +47,7 @@ std::size_t buffer_count(Stage stage);
 struct StageOptions {
   std::string compiler;  // its options: how traversal is shaped (Device::encoding)
   RowMasks rows;         // the kinds of shapes, materials, textures and lights that there are
+  bool clip = false;     // views may have a clipping plane
 
   bool operator==(const StageOptions&) const = default;
   /// Returns options for these and `others`: kernels that were built for more kinds than there are

@@ -70,8 +70,8 @@ PathNeeds needs_of(const DeviceScene& scene, Layers layers) {
   return {layers, scene.has_textures(), scene.has_light_tree(), scene.has_media(), scene.moves()};
 }
 
-StageNeeds stage_needs(const DeviceScene& scene) {
-  return {scene.has_camera_stage(), scene.has_alpha(), scene.has_media(),
+StageNeeds stage_needs(const DeviceScene& scene, bool has_clip) {
+  return {scene.has_camera_stage(), scene.has_alpha(), scene.has_media(), has_clip,
           launch_policy_of(scene.device()).counts_on_device};
 }
 
@@ -167,7 +167,8 @@ void Renderer::reset(const FlatView& view) {
   film_.layout = layout;
   film_.parts.clear();
   is_old_ = true;
-  const StageNeeds needs = stage_needs(scene_);
+  has_clip_ = has_clip(view);
+  const StageNeeds needs = stage_needs(scene_, has_clip_);
   stages_ = {first_needed({Stage::extend_alpha, Stage::extend_camera, Stage::extend}, needs),
              first_needed({Stage::extend_alpha, Stage::extend}, needs),
              first_needed({Stage::shade, Stage::shade_media}, needs),
@@ -290,6 +291,8 @@ void Renderer::trace_and_shade(Bindings& bindings, Stage extend, std::size_t pat
   Kernels& kernels = scene_.kernels();
   if (sort_bits_ != CAPLET_NONE) paths_.sort.sort_bins.clear();
   kernels.run(extend, bindings, paths, 0, counter);
+  if (has_clip_)
+    kernels.run(scene_.has_media() ? Stage::clip_media : Stage::clip, bindings, paths, 0, counter);
   if (scene_.has_media()) {
     kernels.run(Stage::recount_media, bindings, paths, 0, counter);
     kernels.run(Stage::sample_distance, bindings, paths, 0, counter);

@@ -99,6 +99,7 @@ class Renderer {
   PathBuffers paths_;
   std::uint32_t sort_bits_;
   bool origins_differ_ = false;  // of camera rays
+  bool has_clip_ = false;
   struct {
     Stage extend_camera, extend, shade, connect;
   } stages_{};         // those of a round, of this scene

@@ -91,7 +91,8 @@ double open_edges(const Shape& shape) {
 }
 
 bool is_watertight(const Shape& shape) {
-  if (is_closed(shape)) return true;
+  if (is_closed(shape) || std::holds_alternative<MolecularSurfaceShape>(shape.geometry))
+    return true;
   EdgeParity edges;
   add_faces(shape, edges);
   return edges.is_even();

@@ -13,6 +13,7 @@
 
 #include "scene/field.h"
 #include "scene/scene.h"
+#include "scene/transform.h"
 
 namespace caplet {
 
@@ -61,6 +62,7 @@ class Validator {
     if (said_.empty()) open_surfaces();
     for (const Light& one : scene_.lights) light(one);
     camera(file);
+    clip(file);
     film(file);
   }
 
@@ -636,6 +638,15 @@ class Validator {
       error(file,
             "the camera's lens radius must be at most 1e18, and 1e18 times its focal distance, "
             "where 32-bit floats end");
+  }
+
+  void clip(const SourceLocation& file) {
+    const auto& clip = scene_.view.clip;
+    if (!clip) return;
+    if (!is_unit(glm::length(clip->normal)))
+      error(file, "the normal of the clipping plane must be a unit vector");
+    if (!(std::abs(clip->offset) <= largest_length))
+      error(file, "the clipping plane must be within 1e18 of the origin");
   }
 
   void film(const SourceLocation& file) {

@@ -37,6 +37,8 @@ constexpr std::array camera_rows = {
     Row{{"noup", "an automatic camera may turn the scene within the picture"}, "bool", "false"},
     Row{{"view", "direction towards an automatic camera"}, "vector3"},
     Row{{"up", "direction that is up for an automatic camera"}, "vector3"},
+    Row{{"clipplane", "a, b, c, d: what lies beyond a x + b y + c z = d in the world is cut away"},
+        "float"},
     Row{{"unit", "unit of lengths, for scale bars"}, "string"},
     Row{{"fileaxes", "the axes that are drawn: x, y and z, each a column of a rotation"}, "float"},
     Row{{"legend", "title of the colours' legend"}, "string"},

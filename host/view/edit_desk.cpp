@@ -38,7 +38,18 @@ EditDesk::EditDesk(const LiveScene& live, const Editor& editor, Keeping& keeping
       device_(std::move(device)) {}
 
 nlohmann::ordered_json EditDesk::told_scene() const {
-  return scene_text(live_.scene(), device_, films_.target(), films_.noise_target());
+  nlohmann::ordered_json out =
+      scene_text(live_.scene(), device_, films_.target(), films_.noise_target());
+  const SceneFiles& files = editor_.files();
+  out["options"] = nlohmann::ordered_json::array();
+  for (const FileOption& each : files.options) {
+    const auto now = files.now.find(each.name);
+    out["options"].push_back({{"name", each.name},
+                              {"values", each.values},
+                              {"help", each.help},
+                              {"now", now == files.now.end() ? "" : now->second}});
+  }
+  return out;
 }
 
 nlohmann::ordered_json EditDesk::told_parts() const {

@@ -121,6 +121,7 @@ Editor::Step Editor::step_of(const Change& change) const {
     }
     return painting<Rearrange>(std::move(out));
   }
+  if (const auto* again = std::get_if<Redraw>(&change)) return redraw(*again);
   if (auto part = step_of_part(change)) return *std::move(part);
   std::vector<std::size_t> shapes, instances;
   const auto sort_out = [&](const std::vector<std::uint32_t>& ids) {
@@ -155,6 +156,30 @@ Editor::Step Editor::step_of(const Change& change) const {
   return removal<Rearrange>(std::move(shapes), std::move(instances));
 }
 
+namespace {
+
+/// Returns the rearrangement that puts another scene in place of the present one.
+template <class Rearrange>
+Rearrange replacement(std::shared_ptr<const Scene> by) {
+  return {[by = std::move(by)](Scene& scene, HiddenPointer&) {
+    auto before = std::make_shared<const Scene>(std::move(scene));
+    scene = *by;
+    return replacement<Rearrange>(std::move(before));
+  }};
+}
+
+}  // namespace
+
+Editor::Step Editor::redraw(const Redraw& redraw) const {
+  if (!files_.read) throw InputError("the scene's files are not read again");
+  FileOptions options = changed_options(files_, files_.now, redraw.options);
+  auto out = replacement<Rearrange>(
+      std::make_shared<const Scene>(redrawn(files_, options, live_.scene())));
+  out.hidden = std::make_shared<const Hidden>();
+  out.options = std::move(options);
+  return out;
+}
+
 /// Makes the step and returns the one that undoes it. Throws InputError and then changes nothing.
 Editor::Step Editor::take(const Step& step) {
   if (const auto* rearrange = std::get_if<Rearrange>(&step)) {
@@ -163,6 +188,7 @@ Editor::Step Editor::take(const Step& step) {
     Rearrange back = rearrange->work(scene, hidden);
     if (rearrange->hidden) hidden = rearrange->hidden;
     back.hidden = hidden_;
+    if (rearrange->options) back.options = files_.now;
     Diagnostics diagnostics;
     validate(scene, diagnostics);
     diagnostics.finish();
@@ -173,6 +199,7 @@ Editor::Step Editor::take(const Step& step) {
     ++rearrangements_;
     live_.replace(std::move(scene));
     hidden_ = std::move(hidden);
+    if (rearrange->options) files_.now = *rearrange->options;
     return back;
   }
   if (const auto* setting = std::get_if<Setting>(&step)) return take_setting(*setting);
@@ -189,7 +216,10 @@ Editor::Step Editor::take(const Step& step) {
 
 Editor::Step Editor::take_setting(const Setting& setting) {
   View to = view_;
-  if (setting.part == FormSubject::Kind::camera) to.camera = setting.to.camera;
+  if (setting.part == FormSubject::Kind::camera) {
+    to.camera = setting.to.camera;
+    to.clip = setting.to.clip;
+  }
   if (setting.part == FormSubject::Kind::film) to.film = setting.to.film;
   if (setting.part == FormSubject::Kind::filter) to.filter = setting.to.filter;
   if (setting.part == FormSubject::Kind::sampler) to.sampler = setting.to.sampler;

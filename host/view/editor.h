@@ -16,6 +16,7 @@
 #include "view/hidden.h"
 #include "view/messages.h"
 #include "view/parts.h"
+#include "view/redraw.h"
 
 namespace caplet::view {
 
@@ -24,8 +25,10 @@ namespace caplet::view {
 /// one, but of the document only.
 class Editor {
  public:
-  /// `live` must outlive this, and only this may change it (except for its view).
-  explicit Editor(LiveScene& live) : live_(live), view_(live.scene().view) {}
+  /// `live` must outlive this, and only this may change it (except for its view). It was read from
+  /// `files`.
+  explicit Editor(LiveScene& live, SceneFiles files = {})
+      : live_(live), view_(live.scene().view), files_(std::move(files)) {}
 
   /// Throws InputError when the thing does not exist or validate() would refuse the result.
   /// `goes_on`: merges the change with the one before if both affect the same things.
@@ -55,12 +58,18 @@ class Editor {
   /// lost.
   std::optional<bool> way_to_saved() const { return log_.way_to_saved(); }
 
+  /// Returns the files that the scene was read from, with the options that it is drawn with now.
+  const SceneFiles& files() const { return files_; }
   /// Returns the hidden things, listed as shapes, then instances.
   const Hidden& hidden() const { return *hidden_; }
   /// Returns the settings that the scene itself is rendered with, independent of the present view.
   const View& view() const { return view_; }
-  /// Makes a camera that is saved the document's. That is no change, and undoing others leaves it.
-  void adopt_camera(const Camera& camera) { view_.camera = camera; }
+  /// Makes the camera and the clipping plane of a view that is saved the document's. That is no
+  /// change, and undoing others leaves them.
+  void adopt_camera(const View& saved) {
+    view_.camera = saved.camera;
+    view_.clip = saved.clip;
+  }
   /// Returns the scene to save: with hidden things, and with its own view.
   Scene document() const;
   /// Returns what the last change made: numbers of things, or the index of a part.
@@ -79,7 +88,8 @@ class Editor {
   using InPlace = std::vector<SceneEdit>;
   struct Rearrange {
     std::function<Rearrange(Scene&, HiddenPointer&)> work;
-    HiddenPointer hidden = {};  // for undo: the things that were hidden
+    HiddenPointer hidden = {};                // for undo: the things that were hidden
+    std::optional<FileOptions> options = {};  // that the files are then drawn with
   };
   /// Changes one part of the document's settings.
   struct Setting {
@@ -90,6 +100,7 @@ class Editor {
 
   Step step_of(const Change& change) const;
   std::optional<Step> step_of_part(const Change& change) const;
+  Step redraw(const Redraw& redraw) const;
   Step set(const Set& set) const;
   Step add(const Add& add) const;
   Step hide(const Hide& hide) const;
@@ -102,6 +113,7 @@ class Editor {
   LiveScene& live_;
   HiddenPointer hidden_ = std::make_shared<const Hidden>();
   View view_;
+  SceneFiles files_;
   std::vector<std::uint32_t> made_;
   EditLog<Step> log_;
   std::uint64_t states_ = 0, rearrangements_ = 0, renumberings_ = 0, camera_changes_ = 0;

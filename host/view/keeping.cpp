@@ -76,12 +76,17 @@ void Keeping::set_own(ShowView look) {
   own_ = look;
 }
 
-/// Returns the document's camera as `own` has it, in the shape of the document's film.
-Camera Keeping::camera_of(ShowView own) const {
+/// Returns the document's settings with the camera and the clipping plane of `own`, in the shape of
+/// the document's film.
+View Keeping::view_of(ShowView own) const {
   own.separation = 0;
   own.width = editor_.view().film.width;
   own.height = editor_.view().film.height;
-  return shown_view(editor_.view(), own, 1, 0).camera;
+  View out = editor_.view();
+  const View shown = shown_view(out, own, 1, 0);
+  out.camera = shown.camera;
+  out.clip = shown.clip;
+  return out;
 }
 
 /// Returns whether the change could be made.
@@ -95,7 +100,7 @@ bool Keeping::make_line(const std::string& line) try {
     look["width"] = look["height"] = 1;
     set_own(std::get<ShowView>(parse_message(json_dump(look))));
     own_is_new_ = true;
-    editor_.adopt_camera(camera_of(own_));
+    editor_.adopt_camera(view_of(own_));
   }
   return true;
 } catch (const InputError&) {
@@ -162,13 +167,13 @@ Json Keeping::save(const Save& save, const ShowView& look, const std::function<b
   const bool camera_is_new = save.camera || own_is_new_;
   const ShowView own = save.camera ? look : own_;
   Scene scene = editor_.document();
-  if (camera_is_new) scene.view.camera = camera_of(own);
+  if (camera_is_new) scene.view = view_of(own);
   Json mark = Json::object();
   if (camera_is_new) mark["camera"] = camera_text(own);
   keeper_->save(scene, target, json_dump(mark), cancelled);
   own_ = own;
   own_is_new_ = camera_is_new;
-  if (camera_is_new) editor_.adopt_camera(scene.view.camera);
+  if (camera_is_new) editor_.adopt_camera(scene.view);
   editor_.mark_saved();
   restored_ = 0;
   log::info("wrote {}", target.string());

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/geometric.hpp>
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
@@ -18,6 +19,17 @@ namespace {
 using namespace message;
 
 constexpr int deepest = 8;
+
+std::optional<ClipPlane> clip(const json& of) {
+  const json& plane = field(of, "clip");
+  if (plane.is_null()) return std::nullopt;
+  if (!plane.is_object()) refuse("clip", "is no object");
+  ClipPlane out{point(plane, "normal"), number(field(plane, "offset"), "offset", -1e18, 1e18)};
+  const double length = glm::length(out.normal);
+  if (!(length > 0)) refuse("normal", "has no direction");
+  out.normal /= length;
+  return out;
+}
 
 ShowView look(const json& of) {
   ShowView out;
@@ -32,6 +44,7 @@ ShowView look(const json& of) {
     out.convergence = number(of["convergence"], "convergence", 0, 1e12);
   if (of.contains("orthographic"))
     out.orthographic = number(of["orthographic"], "orthographic", 0, 1e18);
+  if (of.contains("clip")) out.clip = clip(of);
   return out;
 }
 
@@ -82,10 +95,20 @@ Change change(const json& of) {
   }
   if (what == "duplicate") return Duplicate{ids(of), point(of, "by")};
   if (what == "delete") return Delete{ids(of)};
+  if (what == "redraw") {
+    constexpr std::size_t most_options = 64, longest = 1000;
+    const json& options = field(of, "options");
+    if (!options.is_object() || options.size() > most_options)
+      refuse("options", fmt::format("is no object of at most {} texts", most_options));
+    Redraw out;
+    for (const auto& [name, value] : options.items())
+      out.options[name] = text(options, name.c_str(), longest);
+    return out;
+  }
   if (const auto of_form = form_change(of))
     return std::visit([](const auto& one) { return Change(one); }, *of_form);
-  refuse("what",
-         fmt::format("is none of move, reshape, paint, duplicate, delete, {}", form_changes));
+  refuse("what", fmt::format("is none of move, reshape, paint, duplicate, delete, redraw, {}",
+                             form_changes));
 }
 
 Save save(const json& of) {

@@ -14,7 +14,9 @@
 #include <variant>
 #include <vector>
 
+#include "scene/view.h"
 #include "view/parts.h"
+#include "view/redraw.h"
 
 namespace caplet::view {
 
@@ -27,6 +29,7 @@ struct ShowView {
   double orthographic = 0;  // half the shorter side of a parallel view; 0: perspective
   double separation = 0;    // distance of the eyes of a stereo pair; 0: a single eye
   double convergence = 0;   // distance at which both views coincide; 0: infinity
+  std::optional<ClipPlane> clip = {};
 };
 /// Whether pictures are denoised, for all pages.
 struct Denoise {
@@ -93,7 +96,13 @@ struct Duplicate {
 struct Delete {
   std::vector<std::uint32_t> ids;
 };
-using Change = std::variant<Move, Reshape, Paint, Duplicate, Delete, Set, Add, Remove, Hide, Show>;
+/// Draws the scene's files anew with these options, and all others as they are. Other changes of
+/// things and materials are undone by it.
+struct Redraw {
+  FileOptions options;  // an empty text takes an option away
+};
+using Change =
+    std::variant<Move, Reshape, Paint, Duplicate, Delete, Set, Add, Remove, Hide, Show, Redraw>;
 
 struct Edit {
   Change change;

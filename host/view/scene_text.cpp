@@ -31,13 +31,16 @@ Json to_json(const Bounds& bounds) {
 Json to_json(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
 
 Json camera_text(const ShowView& look) {
+  Json clip;
+  if (look.clip) clip = {{"normal", to_json(look.clip->normal)}, {"offset", look.clip->offset}};
   return {{"world_from_camera", to_json(look.world_from_camera)},
           {"fov", look.fov},
           {"lens_radius", look.lens_radius},
           {"focal_distance", look.focal_distance},
           {"orthographic", look.orthographic},
           {"separation", look.separation},
-          {"convergence", look.convergence}};
+          {"convergence", look.convergence},
+          {"clip", clip}};
 }
 
 Json exposure_text(const PreviewExposure& exposure) {

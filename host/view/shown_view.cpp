@@ -25,6 +25,7 @@ ShowView look_of(const View& own) {
   out.fov = fov_of(camera) > 0 ? fov_of(camera) : usual_fov;
   out.lens_radius = camera.lens_radius;
   out.focal_distance = camera.focal_distance;
+  out.clip = own.clip;
   if (!is_orthographic(camera)) return out;
   const std::array<double, 4> window = screen_window_of(camera, own.film);
   out.orthographic = 0.5 * std::min(window[1] - window[0], window[3] - window[2]);
@@ -38,6 +39,7 @@ View shown_view(const View& own, const ShowView& look, int scale, int eye) {
   view.camera.projection = PerspectiveProjection{look.fov};
   view.camera.lens_radius = look.lens_radius;
   view.camera.focal_distance = look.focal_distance;
+  view.clip = look.clip;
   if (look.orthographic > 0) {
     const double pixel = look.orthographic / std::min(look.width, look.height);
     const double x = pixel * look.width, y = pixel * look.height;

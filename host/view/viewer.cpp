@@ -31,7 +31,7 @@ class Viewer::State {
   State(LiveScene scene, const Device& device, const ViewerOptions& options,
         std::unique_ptr<Keeper> keeper)
       : live_(std::move(scene)),
-        editor_(live_),
+        editor_(live_, options.files),
         keeping_(live_, editor_, std::move(keeper)),
         clients_(look_of_scene(live_.scene()), options.read_only),
         films_(live_, editor_, device, options, options.denoises),

@@ -4,12 +4,14 @@
 
 #include <cstddef>
 
+#include "view/redraw.h"
 #include "view/server.h"
 
 namespace caplet::view {
 
 struct ViewerOptions {
   ServerOptions server;
+  SceneFiles files;        // that the scene was read from
   bool read_only = false;  // refuse changes
   bool denoises = false;   // pages may have pictures without noise; the denoiser is there
   int samples = 0;         // per pixel of a finished picture; 0: the scene's own

@@ -136,7 +136,7 @@
   /* refracted through (or CAPLET_NONE), unused */                                                              \
   BUFFER(path_scatter, float4, STATE)                                                                           \
   BUFFER(path_normal, uint, STATE_SIDES) /* with a light tree: normal_bits of the last scattering, or CAPLET_NONE */ \
-  BUFFER(path_flags, uint, STATE) /* bit 0: last scattering was specular (delta); bits 8..31 depth */           \
+  BUFFER(path_flags, uint, STATE) /* PATH_... of stages/path.cl; bits 8..31: depth */                              \
   GROUP_END(Carried)
 
 // Textured scenes have these: the width of a path's ray where it begins (world), and its growth

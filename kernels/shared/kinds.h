@@ -138,6 +138,8 @@ enum {
 #define CAPLET_INSTANCE_NO_ENTERING 4u     // entering ones (open shapes of reversed orientation)
 // HitRecord.surface
 #define CAPLET_LEAVING 0x10000             // seen from inside; open shapes: along the normal
+#define CAPLET_CLIPPED 0x20000             // on the face that the clipping plane makes, not on the surface
+#define CAPLET_CLIPPED_REVERSED 0x40000    // and the normals of its solid point inward
 #define CAPLET_SURFACE_MASK 0xffffu
 // surface_materials
 #define CAPLET_SURFACE_DARK 0x80000000u    // this surface of an emitting shape does not emit

@@ -9,6 +9,12 @@
 static void stage_item(const Stage* g, uint item) {
   SEE_AT(PATH_TIME(g, item));
   RayRecord ray = g->rays.path_ray[item];
+  // With a clipping plane rays may begin there.
+  if (ray.t_min > 0.0f && ray.t_min < INFINITY) {
+    ray.ox += ray.t_min * ray.dx;
+    ray.oy += ray.t_min * ray.dy;
+    ray.oz += ray.t_min * ray.dz;
+  }
   ray.t_min = 0.0f;
   ray.dx = 0.371391f;
   ray.dy = 0.557086f;

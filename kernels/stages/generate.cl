@@ -7,6 +7,7 @@
 #include "math/filter.cl"
 #include "math/motion.cl"
 #include "math/spectrum.cl"
+#include "stages/clip_plane.cl"
 #include "stages/cone_share.cl"
 #include "stages/layers.cl"
 #include "stages/path.cl"
@@ -40,8 +41,11 @@ static void stage_item(const Stage* g, uint path) {
       filter_sample(g->camera.filter_table, view->filter_width, view->filter_height,
                     sampler_2d(s, CAMERA_SAMPLE(filter)), &filter_weight);
   const float2 raster = (float2)((float)s.x + 0.5f, (float)s.y + 0.5f) + offset;
-  g->rays.path_ray[path] =
+  RayRecord ray =
       camera_ray_at(g, path, s, raster, sampler_2d(s, CAMERA_SAMPLE(lens)), &camera_weight);
+  int comes_in = 0;
+  if (has_clip) clip_ray(view, &ray, &comes_in);
+  g->rays.path_ray[path] = ray;
 
   float4 pdf;
   const float4 wavelengths = wavelengths_sample(g->observer.wavelength_table,
@@ -50,7 +54,7 @@ static void stage_item(const Stage* g, uint path) {
   g->carried.path_wavelength_pdfs[path] = pdf;
   g->carried.path_throughput[path] = (float4)(filter_weight * camera_weight);
   g->carried.path_scatter[path] = (float4)(0.0f, 1.0f, 0.0f, 0.0f);
-  g->carried.path_flags[path] = PATH_SPECULAR;
+  g->carried.path_flags[path] = PATH_SPECULAR | (comes_in ? PATH_FROM_PLANE : 0u);
   g->radiance.path_radiance[path] = (float4)(0.0f);
   layers_of_nothing(g->batch.batch, path, g->layers.path_layers);
   if (has_cones)

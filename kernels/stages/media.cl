@@ -54,6 +54,7 @@ static inline int media_passes(const Stage* g, Outbox* out, uint path, uint mate
   if (!material_passes(&g->materials, material)) return 0;
   media_crossed(g, path, hit);
   g->rays.path_ray[path].t_min = hit->t;
+  if (has_clip) g->carried.path_flags[path] &= ~PATH_FROM_PLANE;
   const float3 o = (float3)(ray->ox, ray->oy, ray->oz), d = (float3)(ray->dx, ray->dy, ray->dz);
   append_path(g, out, path, o + hit->t * d, d);
   return 1;

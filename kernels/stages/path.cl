@@ -17,6 +17,8 @@
 // path_flags
 #define PATH_SPECULAR \
   1u  // the last scattering was a delta: light sampling could not have found what is hit next
+#define PATH_FROM_PLANE 2u  // a camera ray that begins at the clipping plane
+#define PATH_INSIDE 4u      // with a clipping plane: the ray began within a closed solid
 #define PATH_DEPTH_SHIFT 8
 
 // These are addresses of random numbers (dimensions.def).
@@ -70,6 +72,13 @@ static inline float path_pdf(__global const ViewRecord* view, float pdf) {
 // Returns PATH_SPECULAR where the next hit counts in full.
 static inline uint path_flag(__global const ViewRecord* view, int specular) {
   return specular || (view->strategy & CAPLET_STRATEGY_NO_LIGHTS) != 0u ? PATH_SPECULAR : 0u;
+}
+
+// Returns whether a path's ray still begins at the camera, with these flags: surfaces that let
+// light pass set t_min.
+static inline int path_begins(uint flags, const RayRecord* ray) {
+  return (flags >> PATH_DEPTH_SHIFT) == 0u &&
+         (ray->t_min == 0.0f || (flags & PATH_FROM_PLANE) != 0u);
 }
 
 // Returns a key for the HASHED_DIMENSIONs of a scattering.
@@ -134,8 +143,9 @@ static inline RayRecord path_onward(float3 origin, float3 direction) {
 
 // Applies Russian roulette: returns whether a path goes on, and scales its throughput. The square
 // root keeps paths longer than their throughput alone would, and the first three scatterings always
-// go on: variance falls faster than time grows (decision 3). eta_scale takes the squared indices of
-// refractions out of the throughput.
+// go on: with pbrt's rule, by the throughput itself from the second scattering on, the product of
+// variance and time doubles on a scene of capsules under a sky. eta_scale takes the squared indices
+// of refractions out of the throughput.
 static inline int path_survives(PathSample at, uint depth, float eta_scale, float4* throughput) {
   const float survival = fmin(1.0f, sqrt(max4(fabs(*throughput)) * eta_scale));
   if (depth < 3 || survival >= 1.0f) return 1;

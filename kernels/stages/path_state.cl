@@ -7,6 +7,7 @@
 #define CAPLET_STAGES_PATH_STATE_CL
 
 #include "lights/lights.cl"
+#include "stages/clip_plane.cl"
 #include "stages/cone_share.cl"
 #include "stages/outbox.cl"
 #include "stages/path.cl"
@@ -20,6 +21,7 @@ typedef struct {
   uint crossed_light;  // of the primitive that the last direction crossed; CAPLET_NONE: none
   uint depth;          // scatterings so far
   int specular;        // the last one was a delta, so that no light sample could have found its hit
+  int inside;          // the last direction leads into a closed solid; told where has_clip
 } PathState;
 
 static inline PathState load_path_state(const Stage* g, uint path) {
@@ -33,6 +35,7 @@ static inline PathState load_path_state(const Stage* g, uint path) {
   out.crossed_light = as_uint(scatter.z);
   out.depth = flags >> PATH_DEPTH_SHIFT;
   out.specular = (flags & PATH_SPECULAR) != 0u;
+  out.inside = has_clip && (flags & PATH_INSIDE) != 0u;
   return out;
 }
 
@@ -42,8 +45,9 @@ static inline void store_path_state(const Stage* g, uint path, const PathState* 
   g->carried.path_throughput[path] = state->throughput;
   g->carried.path_scatter[path] =
       (float4)(state->last_pdf, state->eta_scale, as_float(state->crossed_light), 0.0f);
-  g->carried.path_flags[path] =
-      (state->depth << PATH_DEPTH_SHIFT) | path_flag(g->view.view, state->specular);
+  g->carried.path_flags[path] = (state->depth << PATH_DEPTH_SHIFT) |
+                                path_flag(g->view.view, state->specular) |
+                                (has_clip && state->inside ? PATH_INSIDE : 0u);
 }
 
 // Return and set the side of the last scattering that light samples saw: normal_bits, or
@@ -76,7 +80,9 @@ static inline void append_path(const Stage* g, Outbox* out, uint path, float3 fr
 // Sends the path on by a ray from `origin`, after a scattering that made `state`.
 static inline void continue_path(const Stage* g, Outbox* out, uint path, const PathState* state,
                                  uint side, float3 origin, float3 direction) {
-  g->rays.path_ray[path] = path_onward(origin, direction);
+  RayRecord ray = path_onward(origin, direction);
+  if (has_clip) clip_onward(g->view.view, &ray);
+  g->rays.path_ray[path] = ray;
   store_path_state(g, path, state);
   set_path_side(g, path, side);
   append_path(g, out, path, origin, direction);
@@ -89,10 +95,18 @@ static inline int takes_light_sample(const Stage* g) {
 }
 
 // Sends the shadow ray of a light sample, from `origin`. `contribution` counts where it is free.
+// inside: it leads into a closed solid.
 static inline void send_shadow_ray(const Stage* g, Outbox* out, uint path, const LightSample* light,
-                                   float3 origin, float4 contribution) {
+                                   float3 origin, float4 contribution, int inside) {
   ShadowTarget target;
-  g->shadows.path_shadow[path] = shadow_ray(light, origin, &target);
+  RayRecord ray = shadow_ray(light, origin, &target);
+  if (has_clip) {
+    const float t_max = ray.t_max;
+    clip_onward(g->view.view, &ray);
+    // The light is cut away, or the face that closes the solid is before it.
+    if (ray.t_max < t_max && (target.slot != CAPLET_NONE || inside)) return;
+  }
+  g->shadows.path_shadow[path] = ray;
   g->shadows.path_shadow_target[path] = target;
   g->shadows.path_shadow_radiance[path] = contribution;
   append_shadow(g, out, path);

@@ -13,7 +13,7 @@ static void stage_item(const Stage* g, uint item) {
   SEE_AT(PATH_TIME(g, path));
   const RayRecord ray = g->rays.path_ray[path];
   const HitRecord hit = g->rays.path_hit[path];
-  const int begins = (g->carried.path_flags[path] >> PATH_DEPTH_SHIFT) == 0u && ray.t_min == 0.0f;
+  const int begins = path_begins(g->carried.path_flags[path], &ray);
   if (!begins && g->medium_stacks.path_near[path] == CAPLET_RECOUNT) {
     MediumStack stack = {g->medium_stacks.path_inside[path], g->medium_stacks.path_around[path]};
     stack = medium_stack_counted(&g->tree, &g->surfaces, &g->media, ray, stack);

@@ -51,7 +51,7 @@ static inline void sample_light(const Stage* g, Outbox* out, const Scene* scene,
   set_shadow_medium_stack(g, path, point->stack, point->is_alone);
   g->medium_stacks.shadow_pdfs[path] =
       (float2)(light.pdf, light.delta ? 0.0f : path_pdf(g->view.view, phase));
-  send_shadow_ray(g, out, path, &light, point->p, contribution);
+  send_shadow_ray(g, out, path, &light, point->p, contribution, state->inside);
 }
 
 // Scatters a path at a point of a medium, `t` along its ray.
@@ -84,9 +84,12 @@ static void sending_item(const Stage* g, Outbox* out, uint item) {
   const HitRecord hit = g->rays.path_hit[path];
   PathState state = load_path_state(g, path);
   MediumWeights weights;
-  const int begins = state.depth == 0u && ray.t_min == 0.0f;
+  const int begins = path_begins(g->carried.path_flags[path], &ray);
   const MediumStack stack = load_media(g, path, begins, &weights);
-  const MediumStack here = medium_stack_before(&g->tree, &g->surfaces, &g->media, &hit, 1, stack);
+  // Behind a clipping plane there is no medium.
+  const float t_end = has_clip ? fmin(hit.t, ray.t_max) : hit.t;
+  const MediumStack here =
+      medium_stack_before(&g->tree, &g->surfaces, &g->media, &hit, hit.t == t_end, stack);
   const uint medium = medium_stack_medium(&g->media, &here);
   if (medium == CAPLET_NONE || (g->view.view->strategy & CAPLET_STRATEGY_OCCLUSION) != 0u) return;
 
@@ -99,7 +102,7 @@ static void sending_item(const Stage* g, Outbox* out, uint item) {
   const float u = ray.t_min == 0.0f ? sampler_1d(at, MEDIUM_SAMPLE(distance, state.depth))
                                     : medium_number(&numbers);
   const MediumSegment segment =
-      medium_segment(&g->media, &g->spectra, medium, state.wavelengths, &ray, ray.t_min, hit.t);
+      medium_segment(&g->media, &g->spectra, medium, state.wavelengths, &ray, ray.t_min, t_end);
   weights.throughput = state.throughput;
   float4 emitted = (float4)(0.0f);
   float t;
@@ -126,7 +129,7 @@ static void sending_item(const Stage* g, Outbox* out, uint item) {
   const ScatteringPoint point = {
       o + t * d, d,
       medium_g(g->media.mediums[medium].kind, g->media.media_data + g->media.mediums[medium].data),
-      here, t - ray.t_min > ends && hit.t - t > ends};
+      here, t - ray.t_min > ends && t_end - t > ends};
   g->medium_stacks.path_near[path] = point.is_alone ? CAPLET_ALONE : CAPLET_RECOUNT;
   const Scene scene = {g->tree, g->surfaces, g->spectra, g->lights, g->materials};
   if (takes_light_sample(g)) sample_light(g, out, &scene, path, &point, &state, at);

@@ -11,6 +11,7 @@
 #include "bsdf/bsdf.cl"
 #include "bsdf/bump.cl"
 #include "lights/lights.cl"
+#include "stages/clip_face.cl"
 #include "stages/cone.cl"
 #include "stages/layers.cl"
 #include "stages/times.cl"
@@ -133,8 +134,9 @@ static inline void sample_light(const Stage* g, Outbox* out, const Scene* scene,
   const float weight = media_light_weight(g, point->path, &point->hit, &light, crosses, bsdf_pdf);
   const float4 contribution = state->throughput * f * light.radiance * (weight / light.pdf);
   if (!(max4(fabs(contribution)) > 0.0f)) return;  // the filter's weight may be negative
-  send_shadow_ray(g, out, point->path, &light, offset_origin(s->p, s->ng, s->error, light.wi),
-                  contribution);
+  send_shadow_ray(
+      g, out, point->path, &light, offset_origin(s->p, s->ng, s->error, light.wi), contribution,
+      has_clip && clip_leads_inside(&g->surfaces, s, &point->hit, state->inside, crosses));
 }
 
 // Samples a direction uniformly over the hemisphere of wo, or over the sphere where the BSDF or the
@@ -174,10 +176,12 @@ static inline void send_occlusion_ray(const Stage* g, Outbox* out, const Shading
   const float3 wi = to_world(&frame, wi_local);
   state->depth = 1u;
   state->specular = 1;
+  state->inside = 0;
   media_scattered(g, point->path, &point->hit, 0);
   continue_path(g, out, point->path, state, CAPLET_NONE, offset_origin(s->p, s->ng, s->error, wi),
                 wi);
-  g->rays.path_ray[point->path].t_max = view->max_distance;
+  g->rays.path_ray[point->path].t_max =
+      fmin(g->rays.path_ray[point->path].t_max, view->max_distance);
 }
 
 #if defined(CAPLET_PREFETCH) && !defined(SHADE_IN_MEDIA)
@@ -267,7 +271,8 @@ static inline void find_material(const Stage* g, ShadingPoint* point, const Path
 static inline void make_bsdf(const Stage* g, ShadingPoint* point, const PathState* state) {
   Surface* s = &point->surface;
   const uint material = point->material;
-  point->bumped = any_bump != 0 && g->materials.materials[material].bump != CAPLET_NONE;
+  point->bumped = any_bump != 0 && g->materials.materials[material].bump != CAPLET_NONE &&
+                  !on_clip_face(&point->hit);
   if (point->bumped) {
     BumpDerivatives of = {s->dpdu, s->dpdv, (float3)(0.0f), (float3)(0.0f)};
     if (any_displacement && g->materials.materials[material].bump_kind == texture_displacement)
@@ -321,12 +326,16 @@ static inline void scatter(const Stage* g, Outbox* out, const ShadingPoint* poin
     return;
   state->depth = depth + 1u;
   state->specular = sample.specular;
+  if (has_clip)
+    state->inside = clip_leads_inside(&g->surfaces, s, &point->hit, state->inside, crosses);
   if (has_cones) {
     float2 cone = point->cone;
     if (sample.specular) {
       const float side = dot(point->wo, s->ng) < 0.0f ? -1.0f : 1.0f;
-      const float bend = surface_bend(&g->tree, &g->surfaces, &point->ray, &point->hit, s,
-                                      fmax(cone.x, 1e3f * s->error));
+      float bend = 0.0f;
+      if (!on_clip_face(&point->hit))
+        bend = surface_bend(&g->tree, &g->surfaces, &point->ray, &point->hit, s,
+                            fmax(cone.x, 1e3f * s->error));
       // eta_scale is the squared index of the side of wi over that of wo.
       cone = cone_turned(cone.x, cone.y, side * bend, fabs(dot(point->wo, s->ng)),
                          sample.transmitted ? rsqrt(sample.eta_scale) : 0.0f);
@@ -355,6 +364,7 @@ static void sending_item(const Stage* g, Outbox* out, uint item) {
   }
   if (is_occlusion && state.depth > 0u) return;
   point.surface = surface_at(&g->tree, &g->surfaces, &point.ray, &point.hit);
+  if (on_clip_face(&point.hit)) clip_surface(g->view.view, &point.ray, &point.hit, &point.surface);
   point.wo = -(float3)(point.ray.dx, point.ray.dy, point.ray.dz);
   if (any_surface_light && point.surface.light != CAPLET_NONE && !is_occlusion)
     add_emission(g, &scene, &point, &state);

@@ -537,6 +537,10 @@ class Maker {
     scene_.view.camera.frame_aspect_ratio = random_.uniform(0.5, 2);
     scene_.view.camera.screen_window = {-random_.uniform(0.5, 1), 0.9, -0.8,
                                         random_.uniform(0.5, 1)};
+    if (random_.one_in(2))
+      scene_.view.clip =
+          ClipPlane{glm::normalize(glm::dvec3(random_.uniform(-1, 1), random_.uniform(-1, 1), 2)),
+                    random_.uniform(-9, 9)};
     scene_.view.camera.lens_radius = random_.uniform(0.01, 0.1);
     scene_.view.camera.focal_distance = random_.uniform(1, 30);
     scene_.view.filter = {static_cast<PixelFilter::Kind>(random_.below(5)), random_.uniform(0.5, 2),

@@ -44,6 +44,69 @@ TEST(Editor, MovesShapesAndInstances) {
   EXPECT_FALSE(editor.redo());
 }
 
+/// Files that have a ball of the radius that the option `size` says.
+SceneFiles balls() {
+  SceneFiles files;
+  files.options = {{"size", "R", "Radius", false}, {"color", "red|FILE", "Colour", false}};
+  files.now = {{"color", "red"}};
+  files.read = [](const FileOptions& options) {
+    const auto size = options.find("size");
+    return test::scene_of_text(
+        "Camera \"perspective\" \"float fov\" 10\nWorldBegin\nLightSource \"distant\"\n"
+        "Shape \"sphere\" \"string name\" \"file\" \"float radius\" " +
+        (size == options.end() ? "1" : size->second) + "\n");
+  };
+  return files;
+}
+
+TEST(Editor, DrawsFilesAnew) {
+  LiveScene live(some_scene());
+  Editor editor(live, balls());
+  const auto first = picture_of(live);
+  const Scene before = live.scene();
+  editor.make(Hide{{0}, false});
+  editor.make(Redraw{{{"size", "0.5"}}});
+  EXPECT_EQ(editor.files().now, (FileOptions{{"color", "red"}, {"size", "0.5"}}));
+  ASSERT_EQ(live.scene().shapes.size(), 1u);
+  EXPECT_EQ(std::get<SphereShape>(live.scene().shapes[0].geometry).radius, 0.5);
+  EXPECT_TRUE(editor.hidden().empty());
+  // The view, the lights and the name stay.
+  EXPECT_EQ(fov_of(live.scene().view.camera), fov_of(before.view.camera));
+  EXPECT_EQ(live.scene().view.film.width, 40);
+  EXPECT_EQ(live.scene().lights.size(), before.lights.size());
+  EXPECT_EQ(live.scene().source, before.source);
+  EXPECT_EQ(picture_of(live), fresh_picture_of(live.scene()));
+  // An empty text takes an option away.
+  editor.make(Redraw{{{"size", ""}, {"color", ""}}});
+  EXPECT_EQ(editor.files().now, FileOptions{});
+  EXPECT_EQ(std::get<SphereShape>(live.scene().shapes[0].geometry).radius, 1);
+  EXPECT_TRUE(editor.undo());
+  EXPECT_EQ(editor.files().now, (FileOptions{{"color", "red"}, {"size", "0.5"}}));
+  EXPECT_EQ(std::get<SphereShape>(live.scene().shapes[0].geometry).radius, 0.5);
+  EXPECT_TRUE(editor.undo());
+  EXPECT_EQ(editor.files().now, (FileOptions{{"color", "red"}}));
+  EXPECT_EQ(editor.hidden().shapes.size(), 1u);
+  EXPECT_TRUE(editor.undo());
+  EXPECT_EQ(picture_of(live), first);
+  EXPECT_TRUE(editor.redo());
+  EXPECT_TRUE(editor.redo());
+  EXPECT_EQ(std::get<SphereShape>(live.scene().shapes[0].geometry).radius, 0.5);
+}
+
+TEST(Editor, RefusesOptionsThatFilesDoNotHave) {
+  LiveScene live(some_scene());
+  Editor editor(live, balls()), none(live);
+  const auto refused = [](Editor& by, const FileOptions& options, const char* why) {
+    EXPECT_THAT([&] { by.make(Redraw{options}); }, ThrowsMessage<InputError>(HasSubstr(why)));
+  };
+  refused(editor, {{"style", "sticks"}}, "style: the scene's files have no such option");
+  refused(editor, {{"color", "/etc/passwd"}}, "may not name files of other folders");
+  refused(editor, {{"size", "none"}}, "none");
+  refused(none, {{"size", "1"}}, "the scene's files are not read again");
+  EXPECT_EQ(editor.files().now, (FileOptions{{"color", "red"}}));
+  EXPECT_FALSE(editor.can_undo());
+}
+
 TEST(Editor, ReshapesCapsulesInTheWorld) {
   LiveScene live(some_scene());
   Editor editor(live);

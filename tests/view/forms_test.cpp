@@ -397,12 +397,14 @@ TEST(Forms, SetTheCameraOfTheDocument) {
   EXPECT_EQ(editor.camera_changes(), 5u);
   EXPECT_THROW(editor.make(Set{camera, "kind", std::string("nonesuch")}), InputError);
   // A camera that is saved stays when other settings are undone.
-  Camera saved = editor.document().view.camera;
-  saved.world_from_camera[3].x += 2;
+  View saved = editor.document().view;
+  saved.camera.world_from_camera[3].x += 2;
+  saved.clip = ClipPlane{{0, 0, 1}, 2};
   editor.adopt_camera(saved);
   editor.make(Set{{Kind::film}, "iso", 300.0});
   EXPECT_TRUE(editor.undo());
-  EXPECT_EQ(editor.document().view.camera.world_from_camera, saved.world_from_camera);
+  EXPECT_EQ(editor.document().view.camera.world_from_camera, saved.camera.world_from_camera);
+  EXPECT_EQ(editor.document().view.clip->offset, 2);
   while (editor.undo()) {
   }
   EXPECT_EQ(text_of(editor.document()), before);

@@ -559,6 +559,7 @@ TEST(Keeping, SavesTheViewWhereItIsAskedTo) {
     look.width = 777;
     look.fov = 0.5;
     look.world_from_camera[3].x += 1;
+    look.clip = ClipPlane{{0, 0, 1}, 0.75};
     // The page's size and camera are not the scene's.
     View page = run.live.scene().view;
     page.film.width = 123;
@@ -574,10 +575,12 @@ TEST(Keeping, SavesTheViewWhereItIsAskedTo) {
     EXPECT_EQ(saved.view.film.width, 40);
     EXPECT_EQ(fov_of(saved.view.camera), 0.5);
     EXPECT_EQ(saved.view.camera.world_from_camera, look.world_from_camera);
+    EXPECT_EQ(saved.view.clip.value().offset, 0.75);
     run.say(move_line(1, 0.5));
   }
   Sitting run(file);
   run.save();
+  EXPECT_EQ(import_scene(file, FileImageReader()).view.clip.value().offset, 0.75);
   EXPECT_EQ(fov_of(import_scene(file, FileImageReader()).view.camera), 0.5);
 }
 

@@ -132,6 +132,18 @@ TEST(Orthographic, IsKeptInFiles) {
   EXPECT_GT(looked.fov, 0);
 }
 
+TEST(Looks, CutScenes) {
+  ShowView look = look_at(64, 48);
+  look.clip = ClipPlane{{0, 1, 0}, -0.25};
+  Scene scene = looked_at(look, 1, 0);
+  scene.view.clip = shown_view(scene.view, look, 1, 0).clip;
+  ASSERT_TRUE(scene.view.clip);
+  EXPECT_EQ(scene.view.clip->offset, -0.25);
+  EXPECT_EQ(look_of_scene(scene).clip->normal, glm::dvec3(0, 1, 0));
+  look.clip.reset();
+  EXPECT_FALSE(shown_view(scene.view, look, 1, 0).clip);
+}
+
 TEST(Orthographic, TakesWindowsInSceneUnits) {
   const Scene scene = test::scene_of_text(R"(
 Camera "orthographic" "float screenwindow" [ -4 2 -1 3 ]

@@ -38,6 +38,29 @@ TEST(Messages, SayHowOneLooks) {
   EXPECT_EQ(said.world_from_camera[0], glm::dvec4(1, 5, 9, 0));
 }
 
+TEST(Messages, CutAway) {
+  EXPECT_FALSE(std::get<ShowView>(parse_message(look("clip", "null"))).clip);
+  const auto clip =
+      std::get<ShowView>(parse_message(look("clip", R"({"normal":[0,-2,0],"offset":3.5})"))).clip;
+  ASSERT_TRUE(clip);
+  EXPECT_EQ(clip->normal, glm::dvec3(0, -1, 0));
+  EXPECT_EQ(clip->offset, 3.5);
+  EXPECT_EQ(refusal(look("clip", "7")), "clip: is no object");
+  EXPECT_EQ(refusal(look("clip", R"({"normal":[0,0,0],"offset":1})")), "normal: has no direction");
+  EXPECT_EQ(refusal(look("clip", R"({"normal":[0,0,1]})")), "offset: is missing");
+}
+
+TEST(Messages, DrawFilesAnew) {
+  const Message said = parse_message(
+      R"({"type":"edit","what":"redraw","options":{"style":"cartoon","show":""},"goes_on":false})");
+  const auto& redraw = std::get<Redraw>(std::get<Edit>(said).change);
+  EXPECT_EQ(redraw.options, (FileOptions{{"show", ""}, {"style", "cartoon"}}));
+  EXPECT_EQ(refusal(R"({"type":"edit","what":"redraw","options":[],"goes_on":false})"),
+            "options: is no object of at most 64 texts");
+  EXPECT_EQ(refusal(R"({"type":"edit","what":"redraw","options":{"style":1},"goes_on":false})"),
+            "style: is no text");
+}
+
 TEST(Messages, AskAndSee) {
   const Ask asked = std::get<Ask>(
       parse_message(R"({"type":"ask","number":17,"x":3,"y":4,"all":true,"reference":false})"));

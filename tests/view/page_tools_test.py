@@ -13,6 +13,7 @@ import random
 import subprocess
 import sys
 
+import page_forms_test
 import page_test
 from page_forms_test import PAGES, SCENE, work
 from page_test import RATIO, ActionChains, By, Keys, page
@@ -317,6 +318,75 @@ def paths(program, scenes, out):
             assert same < other / 3, (number, same, other)
 
 
+def clips(program, scenes, out):
+    """The scene is cut away from a side, as the program's --clip cuts it; undo, saved views and links know the plane."""
+    with work(program, out) as at:
+        shown = at.shown
+        got = shown.driver.execute_async_script("""const done = arguments[0]; import('./clip.js').then(({ extent, name_of, plane, share_of }) => {
+            const box = [[-1, 0, 2], [3, 1, 4]];
+            done({ extent: [extent(box, [1, 0, 0]), extent(box, [0, 0, -1]), extent(box, [0.6, 0.8, 0])], names: [null, { normal: [0, -1, 0] }, { normal: [0.6, 0.8, 0] }].map(name_of),
+                   planes: [plane("off", 0.5, box), plane("x", 0.25, box), plane("-z", 0, box), plane("view", 1, box, [0, -2, 0])], share: [share_of({ normal: [1, 0, 0], offset: 1 }, box), share_of({ normal: [1, 0, 0], offset: 9 }, box)] }); });""")
+        assert got["extent"][:2] == [[-1, 3], [-4, -2]] and all(abs(a - b) < 1e-12 for a, b in zip(got["extent"][2], (-0.6, 2.6))), got
+        assert got["names"] == ["off", "-y", "view"] and got["share"] == [0.5, 1], got
+        assert got["planes"] == [None, {"normal": [1, 0, 0], "offset": 0}, {"normal": [0, 0, -1], "offset": -4}, {"normal": [0, 1, 0], "offset": 1}], got
+
+        shown.tab("camera")
+        assert not shown.find("clip-box").is_displayed()
+        at.pick("clip", "z")
+        at.changed("half of it")
+        half = at.before
+        assert shown.find("clip-box").is_displayed() and shown.find("clip-share").get_attribute("value") == "50"
+        place = shown.text("clip-told").split(" = ")
+        assert place[0] == "z", place
+        shown.picture(out / "cut.png")
+        width, height, _ = shown.pixels()
+        subprocess.run([program, "render", out / "forms.pbrt", f"--clip=z={place[1]}", "--size", f"{width}x{height}", "--spp", "2", "-q", "-o", out / "cut.exr", "-o", out / "cut-there.png"], check=True)
+        shown.script("window.loaded = null; const image = new Image(); image.onload = () => { const canvas = document.createElement('canvas'); canvas.width = image.naturalWidth; canvas.height = image.naturalHeight; const brush = canvas.getContext('2d'); brush.drawImage(image, 0, 0); window.loaded = [...brush.getImageData(0, 0, canvas.width, canvas.height).data]; }; image.src = arguments[0]",
+                     "data:image/png;base64," + base64.b64encode((out / "cut-there.png").read_bytes()).decode())
+        there = (width, height, bytes(shown.until("the picture", lambda: shown.script("return window.loaded"))))
+        same, other = page_test.mean_difference(half, there), page_test.mean_difference(at.first, there)
+        assert same < 0.65 * other, (same, other)  # both have the noise of two samples
+        shown.script("const s = document.getElementById('clip-share'); for (const v of [40, 30, 20]) { s.value = v; s.dispatchEvent(new Event('input')); } s.dispatchEvent(new Event('change'))")
+        at.changed("less of it")
+        less = at.before
+        shown.find("keep").click()
+        # One gesture is one step.
+        shown.find("undo").click()
+        shown.until("half of it again", lambda: shown.apart(half, 2) == 0)
+        shown.find("undo").click()
+        shown.until("all of it", lambda: shown.apart(at.first, 2) == 0)
+        assert shown.find("clip").get_attribute("value") == "off"
+        shown.driver.find_element(By.CSS_SELECTOR, "#kept button").click()
+        shown.until("the saved view's plane", lambda: shown.apart(less, 2) == 0)
+        shown.press("0")
+        shown.until("the scene's own", lambda: shown.apart(at.first, 2) == 0)
+
+
+def redraws(program, scenes, out):
+    """A neuron is drawn in other colours; what is wrong is said at its field, and undo leads back."""
+    scene = page_test.editable(pathlib.Path(scenes) / "neuron.swc", out)
+    with page_test.viewer(program, scene, "--spp", "2") as served, page(served.address) as shown:
+        at = page_forms_test.Work(shown)
+        shown.tab("object")
+        assert shown.find("redraw").is_displayed()
+        field = shown.find("option-color")
+        assert field.get_attribute("list") == "option-color-choices" and "order" in shown.words("#option-color-choices option")
+        at.pick("option-color", "order")
+        at.changed("colours by branch order")
+        by_order = at.before
+        at.pick("option-color", "nothing")
+        note = shown.until("the error", lambda: shown.driver.find_elements(By.CSS_SELECTOR, "#option-color-error"))
+        assert "nothing" in note[0].text, note[0].text
+        assert shown.apart(by_order, 2) == 0
+        at.pick("option-color", "depth")
+        at.changed("colours by depth")
+        shown.find("back").click()
+        shown.until("by order again", lambda: shown.apart(by_order, 2) == 0)
+        shown.until("what it is", lambda: shown.find("option-color").get_attribute("value") == "order")
+        at.undo_all()
+        assert shown.find("option-color").get_attribute("value") == ""
+
+
 LAYOUT = """const box = (id) => document.getElementById(id).getBoundingClientRect(), tops = [...document.querySelectorAll('#bar button')].filter((b) => b.checkVisibility()).map((b) => b.getBoundingClientRect().top);
     const stage = box('stage'), covered = ['file-tools', 'view-tools', 'rail', 'line', 'under', 'hint'].map(box).reduce((sum, b) => sum + b.width * b.height, 0);
     return { rows: new Set(tops.map(Math.round)).size, share: covered / stage.width / stage.height, panel: document.getElementById('panel').checkVisibility(), stage: stage.width, tops: tops.length };"""
@@ -566,7 +636,7 @@ def modules(program, scenes, out):
         assert abs(x - box["width"] / 2) < 1 and abs(y - box["height"] / 2) < 1, (x, y, box)
 
 
-CASES = [modules, tools, measures, inspects, numbers, never_waits, links, paths, figure, screens]
+CASES = [modules, tools, measures, inspects, numbers, never_waits, links, paths, clips, redraws, figure, screens]
 
 
 if __name__ == "__main__":

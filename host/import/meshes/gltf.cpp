@@ -17,6 +17,7 @@
 #include "import/detail/gzip_file.h"
 #include "import/detail/importers.h"
 #include "import/detail/mesh_file.h"
+#include "present/open_shutter.h"
 
 namespace caplet {
 
@@ -62,10 +63,7 @@ class GltfReader {
     if (scene_.shapes.empty() && scene_.instances.empty()) file_.fail("holds no triangles");
     const bool is_lit = !scene_.lights.empty() || (emits_ && camera_);
     if (camera_) scene_.view.camera = *camera_;
-    if (moves_) {  // its picture is as bright as one that is open for a second
-      scene_.view.film.iso *= scene_.view.film.exposure_time / kExposure;
-      scene_.view.film.exposure_time = kExposure;
-    }
+    if (moves_) expose(scene_.view.film, kExposure);
     Imported out(std::move(scene_));
     out.has_camera = camera_.has_value();
     out.is_lit = is_lit;

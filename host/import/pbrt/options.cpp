@@ -116,6 +116,25 @@ glm::dmat3 file_axes_of(Parameters& parameters) {
   return out;
 }
 
+/// Reads the clipping plane: what lies beyond a x + b y + c z = d is cut away.
+std::optional<ClipPlane> clip_of(Parameters& parameters) {
+  const Parameter* plane = parameters.values("clipplane", {"float"});
+  if (!plane) return std::nullopt;
+  const std::vector<double>& v = plane->numbers;
+  if (v.size() != 4) {
+    parameters.error("clipplane", "takes 4 values, not " + std::to_string(v.size()));
+    return std::nullopt;
+  }
+  const glm::dvec3 normal(v[0], v[1], v[2]);
+  const double length = glm::length(normal);
+  if (!(length > 0) || !std::isfinite(length) || !std::isfinite(v[3] / length)) {
+    parameters.error("clipplane", "is no plane");
+    return std::nullopt;
+  }
+  if (is_unit(length)) return ClipPlane{normal, v[3]};
+  return ClipPlane{normal / length, v[3] / length};
+}
+
 /// Reads the legend of the colours; none without a title.
 std::optional<Legend> legend_of(Parameters& parameters) {
   Legend out;
@@ -292,6 +311,7 @@ void set_camera(const std::string& type, Parameters& parameters,
   scene.automatic_camera = parameters.boolean("automatic", false);
   scene.has_no_up = parameters.boolean("noup", false);
   scene.framing = framing_of(parameters, is_orthographic(camera) && scene.automatic_camera);
+  scene.view.clip = clip_of(parameters);
   scene.unit = parameters.text("unit", "");
   scene.world_from_file = file_axes_of(parameters);
   scene.legend = legend_of(parameters);

@@ -49,7 +49,7 @@ class Keeping {
   bool go(bool again);
   void follow_camera();
   void set_own(ShowView look);
-  Camera camera_of(ShowView own) const;
+  View view_of(ShowView own) const;
   bool make_line(const std::string& line);
   std::size_t make_lines(const std::vector<std::string>& lines);
 

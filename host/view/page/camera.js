@@ -23,6 +23,7 @@ export class Camera {
     this.fov = from.fov; this.lens_radius = from.lens_radius; this.focal_distance = from.focal_distance;
     this.target = null;
     this.separation = from.separation ?? 0; this.convergence = from.convergence ?? 0;
+    this.clip = from.clip ?? null;
     this.parallel = from.orthographic > 0;
     // This is the distance at which a perspective camera has the same frame.
     if (this.parallel) this.target = add(this.eye, mul(unit(this.forward), from.orthographic / Math.tan(this.fov / 2)));

@@ -18,6 +18,7 @@ export function command_of(file, figure) {
   if (figure.denoise) out.push("--denoise");
   if (figure.background !== null) out.push("--background", quoted(figure.background));
   if (figure.exposure !== null) out.push(`--exposure=${figure.exposure}`);
+  if (figure.clip) out.push(`--clip=${[...figure.clip.normal].map((n) => +n.toPrecision(9)).join(",")}=${figure.clip.offset}`);
   for (const [name, value] of Object.entries(figure.drawn)) out.push(value ? `--${name}=${quoted(value)}` : `--${name}`);
   return [...out, "-o", quoted(`${stem}.png`)].join(" ");
 }
@@ -89,7 +90,7 @@ export class Figure {
 
   // Returns what the fields say; null where one of them is wrong, which then says why.
   asked() {
-    const out = { samples: 0, denoise: !this.denoises.hidden && this.denoise.checked, background: this.background.value.trim() || null, exposure: this.exposure(), drawn: {} };
+    const out = { samples: 0, denoise: !this.denoises.hidden && this.denoise.checked, background: this.background.value.trim() || null, exposure: this.exposure(), clip: this.look().clip, drawn: {} };
     let is_good = true;
     for (const [name, input] of [["width", this.width], ["height", this.height], ["samples", this.samples]]) {
       const { low, high } = input.dataset, trouble = trouble_with(input.value, 1), value = Math.round(value_of(input.value));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 import { Camera, add, dot, length, mul, sub, unit } from "./camera.js";
+import { Clip } from "./clip.js";
 import { tell } from "./dialog.js";
 import { Panel, dress, menu } from "./dock.js";
 import { Edits } from "./edit.js";
@@ -15,6 +16,7 @@ import { complain, scrubs, trouble_with, value_of } from "./numbers.js";
 import { Path } from "./path.js";
 import { Picture } from "./picture.js";
 import { Progress } from "./progress.js";
+import { Redraw } from "./redraw.js";
 import { LAYOUTS, arranged, share, view_pixel } from "./stereo.js";
 import { texts } from "./texts.js";
 import { Notes, Tools } from "./tools.js";
@@ -173,6 +175,8 @@ function edited(message) {
       edits.renumber();
     }
     fill_tree();
+    redraw.told(scene.options);
+    notes.unit = scene.unit ?? "";
   }
   scene.samples = message.samples;
   scene.backdrop = message.backdrop;
@@ -217,6 +221,7 @@ function begin(message) {
   $("again").disabled = !scene.can_redo;
   keep.begin(scene);
   fill_tree();
+  redraw.told(scene.options);
   look();
   draw();
 }
@@ -252,9 +257,10 @@ function show_lens() {
   put("fov", (camera.fov * 180 / Math.PI).toFixed(1));
   put("radius", +camera.lens_radius.toPrecision(6));
   put("focus", +camera.focal_distance.toPrecision(6));
+  clip.draw();
 }
 
-const view_message = (width, height) => ({ type: "look", width, height, world_from_camera: camera.matrix(), fov: camera.fov, lens_radius: camera.lens_radius, focal_distance: camera.focal_distance, orthographic: camera.parallel ? camera.half() : 0, separation: camera.separation, convergence: camera.convergence });
+const view_message = (width, height) => ({ type: "look", width, height, world_from_camera: camera.matrix(), fov: camera.fov, lens_radius: camera.lens_radius, focal_distance: camera.focal_distance, orthographic: camera.parallel ? camera.half() : 0, separation: camera.separation, convergence: camera.convergence, clip: camera.clip });
 
 let looked = "";
 function look() {
@@ -304,7 +310,7 @@ function view_of_link() {
   try { camera_of(JSON.parse(decodeURIComponent(location.hash.slice(6)))); } catch { tell(texts.bad_link); }
 }
 function copy_link() {
-  const view = { world_from_camera: camera.matrix(), fov: camera.fov, lens_radius: camera.lens_radius, focal_distance: camera.focal_distance, orthographic: camera.parallel ? camera.half() : 0 };
+  const view = { world_from_camera: camera.matrix(), fov: camera.fov, lens_radius: camera.lens_radius, focal_distance: camera.focal_distance, orthographic: camera.parallel ? camera.half() : 0, clip: camera.clip };
   navigator.clipboard?.writeText(`${location.href.replace(/#.*/, "")}#view=${encodeURIComponent(JSON.stringify(view))}`).then(() => tell(texts.copied), (error) => tell(String(error)));
 }
 
@@ -553,6 +559,8 @@ for (const [id, text, keys, work] of [
 menu($("menu-button"), $("menu"));
 menu($("add-button"), $("add-menu"));
 menu($("export-button"), $("export-menu"));
+const redraw = new Redraw({ edit: (what, done) => edit(what, false, done) });
+const clip = new Clip({ camera: () => camera, bounds: () => scene.bounds, begin: remember, look });
 const path = new Path({ views: () => kept, begin: remember, show: (next) => { camera = next; look(); }, save, name: () => keep.now.name || scene.name });
 function fill_kept() {
   path.changed();
