@@ -22,6 +22,19 @@ void add_overlays(CLI::App& command, post::Overlays& overlays) {
           ->group(group);
       continue;
     }
+    if (row.is_list) {
+      command
+          .add_option_function<std::string>(
+              flag,
+              [&overlays, name, flag](const std::string& given) {
+                post::set_overlay(overlays, name, given, flag);
+              },
+              row.help)
+          ->multi_option_policy(CLI::MultiOptionPolicy::Join)
+          ->type_name(row.values)
+          ->group(group);
+      continue;
+    }
     command
         .add_option_function<std::vector<std::string>>(
             flag,

@@ -54,6 +54,7 @@ const std::vector<ImportOptionRow>& import_option_rows() {
        "Chemical components (mmCIF, _chem_comp_bond) whose bonds residues of their names have",
        Of::format},
       {"radius", "R", "Radius of fibres, in the file's unit", Of::format},
+      {"opacity", "X", "How opaque the surfaces of fibres are, above 0 and up to 1", Of::format},
       {"share", "X", "Draws this share of a file's fibres, above 0 and up to 1", Of::format},
       {"lengths", "LOW,HIGH", "Draws fibres of these lengths, in the file's unit", Of::format},
       {"values", "LOW,HIGH", "Draws fibres whose mean value is in this range", Of::format},

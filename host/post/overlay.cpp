@@ -30,6 +30,7 @@ void draw(Shown& picture, const LayeredImage& layers, const Sight& sight,
   if (overlays.scale_bar)
     draw_scale_bar(picture, bar_of(*overlays.scale_bar, sight, "scale-bar"), ink);
   if (overlays.axes) draw_axes(picture, sight.scene, ink);
+  draw_labels(picture, layers, sight.scene, overlays.labels, ink);
   if (!overlays.color_bar || !sight.scene.legend) return;
   const Legend& legend = *sight.scene.legend;
   if (legend.of_directions)

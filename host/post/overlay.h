@@ -1,16 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Overlays on rendered pictures: scale bar, axes, colour bar, outlines, depth cue. The film's
-// layers do not change.
+// Overlays on rendered pictures: scale bar, axes, colour bar, outlines, depth cue, labels. The
+// film's layers do not change.
 #pragma once
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "film/image.h"
 #include "film/layers.h"
 #include "film/preview.h"
+#include "post/labels.h"
 #include "post/scale_bar.h"
 #include "scene/scene.h"
 
@@ -21,8 +23,11 @@ struct Overlays {
   std::optional<double> outline;    // pixels
   std::optional<double> depth_cue;  // share of the background colour at the greatest depth, 0 to 1
   bool axes = false, color_bar = false;
+  std::vector<Label> labels;
 
-  bool any() const { return scale_bar || outline || depth_cue || axes || color_bar; }
+  bool any() const {
+    return scale_bar || outline || depth_cue || axes || color_bar || !labels.empty();
+  }
   /// Returns the layers that the overlays need.
   Layers layers() const;
 };

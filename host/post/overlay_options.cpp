@@ -19,11 +19,11 @@ namespace caplet::post {
 
 namespace {
 
-/// A row sets one member: a length or "auto", a number from `low` to `high`, or a switch.
+/// A row sets one member: a length or "auto", a number from `low` to `high`, a switch, or labels.
 struct Row {
   const char *name, *values, *help;
   std::variant<decltype(&Overlays::scale_bar), decltype(&Overlays::outline),
-               decltype(&Overlays::axes)>
+               decltype(&Overlays::axes), decltype(&Overlays::labels)>
       member;
   double usual = 0, low = 0, high = 0;  // of a number
 };
@@ -40,6 +40,10 @@ constexpr Row rows[] = {
      &Overlays::depth_cue, 0.6, 0, 1},
     {"axes", "", "The file's axes, x red, y green, z blue", &Overlays::axes},
     {"color-bar", "", "What the colours tell, where they tell a number", &Overlays::color_bar},
+    {"label", "X,Y,Z WORDS",
+     "Words at a point of the world, with a line to it; several between semicolons or by "
+     "repetition",
+     &Overlays::labels},
 };
 
 double number_of(const std::string& text, const Row& row, const std::string& flag) {
@@ -60,7 +64,8 @@ const std::vector<OverlayRow>& overlay_rows() {
     std::vector<OverlayRow> out;
     for (const Row& row : rows)
       out.push_back({row.name, row.values,
-                     row.usual != 0 ? fmt::format("{} ({})", row.help, row.usual) : row.help});
+                     row.usual != 0 ? fmt::format("{} ({})", row.help, row.usual) : row.help,
+                     std::holds_alternative<decltype(&Overlays::labels)>(row.member)});
     return out;
   }();
   return all;
@@ -80,6 +85,8 @@ void set_overlay(Overlays& overlays, const std::string& name, const std::string&
     overlays.*(*length) = parse_scale_bar(value == "auto" ? std::string() : value, flag);
   } else if (const auto* number = std::get_if<1>(&row->member)) {
     overlays.*(*number) = number_of(value, *row, flag);
+  } else if (const auto* labels = std::get_if<3>(&row->member)) {
+    overlays.*(*labels) = parse_labels(value, flag);
   } else {
     if (!value.empty())
       throw InputError(SourceLocation{flag}, fmt::format("'{}': it is a switch", value));

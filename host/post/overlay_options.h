@@ -14,6 +14,7 @@ namespace caplet::post {
 
 struct OverlayRow {
   std::string name, values, help;  // values: the allowed values; empty for a switch
+  bool is_list = false;            // several values may be given, as lines of one text
 };
 
 const std::vector<OverlayRow>& overlay_rows();

@@ -3,6 +3,7 @@
 #include "scene/frozen.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "scene/motion.h"
 #include "scene/shapes/capsule_motion.h"
@@ -34,6 +35,23 @@ bool moves(const Scene& scene) {
                              [](const Object& one) { return any_moves(one.shapes); }) ||
          std::ranges::any_of(scene.instances,
                              [](const Instance& one) { return !one.motion.empty(); });
+}
+
+std::optional<std::array<double, 2>> motion_span(const Scene& scene) {
+  if (!moves(scene)) return std::nullopt;
+  std::array<double, 2> out{INFINITY, -INFINITY};
+  const auto add = [&out](double time) { out = {std::min(out[0], time), std::max(out[1], time)}; };
+  const auto add_shapes = [&](const std::vector<Shape>& shapes) {
+    for (const Shape& shape : shapes)
+      if (moves(shape))
+        for (const auto time : std::get<CapsulesShape>(shape.geometry).times) add(double{time});
+  };
+  add_shapes(scene.shapes);
+  for (const Object& object : scene.objects) add_shapes(object.shapes);
+  for (const Instance& instance : scene.instances)
+    for (const TransformKey& key : instance.motion) add(key.time);
+  for (const TransformKey& key : scene.view.camera.motion) add(key.time);
+  return out;
 }
 
 Scene frozen_at(Scene scene, double time) {

@@ -4,7 +4,9 @@
 // Scenes that move, and what they are at one time.
 #pragma once
 
+#include <array>
 #include <glm/vec3.hpp>
+#include <optional>
 
 #include "scene/scene.h"
 
@@ -12,6 +14,9 @@ namespace caplet {
 
 /// Returns whether instances, capsules or the camera have motions.
 bool moves(const Scene& scene);
+
+/// Returns the first and the last time (seconds) of all keys; none where nothing moves.
+std::optional<std::array<double, 2>> motion_span(const Scene& scene);
 
 /// Returns the scene as it is at a time (seconds): nothing of it moves.
 Scene frozen_at(Scene scene, double time);

@@ -117,13 +117,14 @@ void EditDesk::tell_edited(const Counts& before, Server& server) {
                               {"keep", keeping_.text()}};
   if (now.rearrangements != before.rearrangements) told["scene"] = told_scene();
   told["samples"] = films_.target();
+  told["time"] = live_.scene().view.film.shutter_open;
   told["backdrop"] = backdrop_text(live_.scene().view.film.backdrop);
   told["exposure"] = exposure_text(live_.scene().view.film.exposure);
   told["parts"] = told_parts();
   if (now.camera_changes != before.camera_changes) told["home"] = camera_text(keeping_.own_look());
   nlohmann::ordered_json greeting;
   for (const char* name :
-       {"can_undo", "can_redo", "keep", "samples", "backdrop", "exposure", "parts", "home"})
+       {"can_undo", "can_redo", "keep", "samples", "time", "backdrop", "exposure", "parts", "home"})
     if (told.contains(name)) greeting[name] = told[name];
   if (told.contains("scene")) greeting.update(told["scene"]);
   clients_.greet_with(greeting);

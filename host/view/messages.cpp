@@ -60,7 +60,7 @@ Ask ask(const json& of) {
 }
 
 MakeFigure figure(const json& of) {
-  constexpr std::size_t most_drawn = 16, longest = 100;
+  constexpr std::size_t most_drawn = 16, longest = 100, longest_drawn = 4000;
   MakeFigure out;
   out.number = number(field(of, "number"), "number", 0, 1e15);
   out.look = look(of);
@@ -74,7 +74,7 @@ MakeFigure figure(const json& of) {
   if (!drawn.is_object() || drawn.size() > most_drawn)
     refuse("drawn", fmt::format("is no object of at most {} texts", most_drawn));
   for (const auto& [name, value] : drawn.items())
-    out.drawn.emplace_back(name, text(drawn, name.c_str(), longest));
+    out.drawn.emplace_back(name, text(drawn, name.c_str(), longest_drawn));
   return out;
 }
 

@@ -8,6 +8,7 @@
 #include "present/present.h"
 #include "scene/bounds.h"
 #include "scene/edit.h"
+#include "scene/frozen.h"
 #include "view/detail/snapshot.h"
 
 namespace caplet::view {
@@ -62,6 +63,8 @@ Json scene_text(const Scene& scene, const std::string& device, std::uint32_t sam
   out["noise"] = noise;
   out["bounds"] = to_json(bounds_or_unit_of(scene));
   out["unit"] = scene.unit;
+  if (const auto span = motion_span(scene)) out["moves"] = {(*span)[0], (*span)[1]};
+  out["time"] = scene.view.film.shutter_open;
   // Things are numbered as in the layer object.id (lower/identity.h).
   Json things = Json::array();
   for (const Shape& shape : scene.shapes) {

@@ -30,6 +30,8 @@ def _drawn(overlays):
             out[name] = repr(float(value))
         elif isinstance(value, str) and value:
             out[name] = value
+        elif isinstance(value, (list, tuple)) and value and all(isinstance(one, str) for one in value):
+            out[name] = "\n".join(value)
         else:
             raise InputError(f"{keyword}: True, a number or a text is needed, not {value!r}")
     return out

@@ -87,7 +87,8 @@ def test_pictures_are_those_of_the_program(tmp_path, saved, scenes):
     scene.save(tmp_path / "balls.pbrt")
     image = caplet.render(caplet.load(tmp_path / "balls.pbrt"))
     for overlays, options in ((dict(scale_bar="0.5 cells", outline=True, axes=True), ["--scale-bar", "0.5 cells", "--outline", "--axes"]),
-                              (dict(scale_bar=True, depth_cue=0.25), ["--scale-bar", "auto", "--depth-cue", "0.25"]), ({}, [])):
+                              (dict(scale_bar=True, depth_cue=0.25), ["--scale-bar", "auto", "--depth-cue", "0.25"]),
+                              (dict(label=["0,0,0 middle", "0.2,0.1,0 beside"]), ["--label", "0,0,0 middle", "--label", "0.2,0.1,0 beside"]), ({}, [])):
         made = saved(image, **overlays)
         subprocess.run([program, "render", "balls.pbrt", "-q", "--variance", "-o", "none", "--preview", "b.ppm", *options], cwd=tmp_path, check=True)
         assert np.array_equal(made, pixels(tmp_path / "b.ppm")), options

@@ -251,6 +251,21 @@ TEST(FibreChoice, ByLengthAndValue) {
   EXPECT_THAT(told({{{"lengths", "9"}}}), HasSubstr("--lengths: '9' is not LOW,HIGH"));
 }
 
+TEST(FibreOpacity, IsTheShapes) {
+  const auto alpha = [](const ImportOptions& options) {
+    return scene_of("c.vtk", comb(2), options).shapes.at(0).alpha;
+  };
+  EXPECT_FALSE(alpha({}));
+  EXPECT_FALSE(alpha({{{"opacity", "1"}}}));
+  const auto quarter = alpha({{{"opacity", "0.25"}}});
+  ASSERT_TRUE(quarter);
+  EXPECT_EQ(std::get<ConstantSpectrum>(quarter->value).value, 0.25);
+  EXPECT_THAT(complaint([&] {
+                (void)alpha({{{"opacity", "0"}}});
+              }),
+              HasSubstr("--opacity: '0' is no number above 0 and up to 1"));
+}
+
 // A share is even to within four deviations of a binomial count, and holds that of any smaller one.
 TEST(FibreChoice, ByShare) {
   constexpr int count = 4000;

@@ -601,5 +601,72 @@ TEST(Letters, AreOfAnyScript) {
   EXPECT_GT(ink_of(mask), 10);
 }
 
+TEST(Labels, AreParsed) {
+  const std::vector<Label> labels =
+      parse_labels("1,-2.5,3e1 the soma; 0,0,0  a tip \n4,5,6 \u00b5", "--label");
+  ASSERT_EQ(labels.size(), 3u);
+  EXPECT_EQ(labels[0].at, glm::dvec3(1, -2.5, 30));
+  EXPECT_EQ(labels[0].words, "the soma");
+  EXPECT_EQ(labels[1].words, "a tip");
+  EXPECT_EQ(labels[2].words, "\u00b5");
+  for (const char* wrong : {"", ";", "1,2,3", "1,2,3 ", "1,2 tip", "1,2,3,4 tip", "a,b,c tip",
+                            "1,2,nan tip", "1 2 3 tip", "1,2,3 tip; x"})
+    EXPECT_THAT(complaint([&] { parse_labels(wrong, "--label"); }),
+                AllOf(HasSubstr("--label"), HasSubstr("is not X,Y,Z WORDS")))
+        << wrong;
+}
+
+// 4 pixels a unit, the origin in the middle of 400 x 200 pixels: the dot is at the point, the box
+// to its upper right, or to the other sides where there is no room.
+TEST(Labels, StandAtTheirPoints) {
+  const Scene scene = ball();
+  struct Row {
+    glm::dvec3 at;
+    int x, y, across, down;  // of the point; where its box is
+  };
+  for (const Row& row : {Row{{10, 5, 7}, 240, 80, 1, -1}, Row{{-45, -20, 0}, 20, 180, 1, -1},
+                         Row{{48, 0, 0}, 392, 100, -1, -1}, Row{{0, 24, 0}, 200, 4, 1, 1}}) {
+    SCOPED_TRACE(row.x);
+    Canvas made = empty_canvas(400, 200);
+    for (auto& pixel : made.picture.rgb) pixel = {0.5f, 0.5f, 0.5f};
+    Overlays overlays;
+    overlays.labels = {{row.at, "tip"}};
+    EXPECT_TRUE(overlays.any());
+    draw(made.picture, made.layers, Sight(scene), overlays);
+    EXPECT_EQ(red(made.picture, row.x, row.y), 0) << "the dot";
+    int white = 0, other = 0;
+    for (int y = 0; y < 200; ++y)
+      for (int x = 0; x < 400; ++x) {
+        if (red(made.picture, x, y) < 0.99f) continue;
+        const bool is_there = (x - row.x) * row.across > 0 && (y - row.y) * row.down > 0 &&
+                              std::abs(x - row.x) < 60 && std::abs(y - row.y) < 40;
+        (is_there ? white : other)++;
+      }
+    EXPECT_GT(white, 100);
+    EXPECT_EQ(other, 0);
+  }
+}
+
+TEST(Labels, OutsideThePictureAreNotDrawn) {
+  Canvas made = empty_canvas(400, 200);
+  Overlays overlays;
+  overlays.labels = {{{60, 0, 0}, "beside"}, {{0, 0, -90}, "behind"}};
+  draw(made.picture, made.layers, Sight(ball(0.7)), overlays);
+  for (const auto& pixel : made.picture.rgb) ASSERT_EQ(pixel[0], 1);
+}
+
+// In a crop the point keeps its place in the scene.
+TEST(Labels, KnowCrops) {
+  Canvas made = empty_canvas(100, 100);
+  made.layers.width = 400;
+  made.layers.height = 200;
+  made.layers.x = 200;
+  made.layers.y = 50;
+  Overlays overlays;
+  overlays.labels = {{{10, 5, 7}, "tip"}};
+  draw(made.picture, made.layers, Sight(ball()), overlays);
+  EXPECT_EQ(red(made.picture, 40, 30), 0);
+}
+
 }  // namespace
 }  // namespace caplet::post::overlay_test

@@ -10,6 +10,7 @@
 #include <random>
 
 #include "lower/motion.h"
+#include "render_scene.h"
 #include "scene/frozen.h"
 #include "scene/motion.h"
 #include "scene/scene.h"
@@ -63,6 +64,18 @@ TEST(AnimatedTransform, StretchesAlongObliqueAxes) {
 TEST(AnimatedTransform, TakesTheShorterWay) {
   const AnimatedTransform one({{0, dmat4(1)}, {1, turned(200, {0, 0, 1})}});
   EXPECT_LT(difference(one.at(0.5), turned(-80, {0, 0, 1})), 1e-14);
+}
+
+TEST(MotionSpan, IsFromTheFirstKeyToTheLast) {
+  EXPECT_FALSE(motion_span(scene_of_text("WorldBegin\nShape \"sphere\"\n")));
+  const auto span = motion_span(
+      scene_of_text("TransformTimes 0.5 2\nWorldBegin\nActiveTransform EndTime\nTranslate 1 0 0\n"
+                    "ActiveTransform All\nShape \"sphere\"\n"
+                    "Shape \"capsules\" \"float times\" [-1 1] \"point3 p0\" [0 0 0 0 0 0]"
+                    " \"point3 p1\" [1 0 0 0 1 0] \"float radius\" [0.1 0.1]\n"));
+  ASSERT_TRUE(span);
+  EXPECT_EQ((*span)[0], -1);
+  EXPECT_EQ((*span)[1], 2);
 }
 
 TEST(AnimatedTransform, GoesFromKeyToKey) {

@@ -362,6 +362,54 @@ def clips(program, scenes, out):
         shown.until("the scene's own", lambda: shown.apart(at.first, 2) == 0)
 
 
+def labels(program, scenes, out):
+    """A click with the tool asks for words, which stay at their point and stand in the figure."""
+    with work(program, out) as at:
+        shown = at.shown
+        width, height, _ = shown.pixels()
+        shown.press("t")
+        shown.mouse(width // 2, height // 2).click().perform()
+        field = shown.until("the field for words", lambda: shown.driver.find_elements(By.ID, "label-words"))[0]
+        field.send_keys("the ball; red", Keys.ENTER)
+        assert shown.until("the label", lambda: shown.words("#notes text.label")) == ["the ball; red"]
+        spot = shown.script("const c = document.querySelector('#notes circle'); return [+c.getAttribute('cx'), +c.getAttribute('cy')]")
+        assert math.dist([v * RATIO for v in spot], (width / 2, height / 2)) < 3, (spot, width, height)
+        shown.mouse(width // 3, height * 3 // 4).click().perform()
+        shown.until("another field", lambda: shown.driver.find_elements(By.ID, "label-words"))[0].send_keys("none", Keys.ESCAPE)
+        shown.until("no field", lambda: not shown.driver.find_elements(By.ID, "label-words"))
+        assert shown.words("#notes text.label") == ["the ball; red"]
+        assert not shown.words("#tree [aria-selected=true]"), "a label selects nothing"
+        shown.press(Keys.ARROW_LEFT)
+        shown.until("it moves with the scene", lambda: shown.script("return +document.querySelector('#notes circle').getAttribute('cx')") != spot[0] or None)
+        shown.script("document.getElementById('figure-open')?.click() ?? document.getElementById('make-figure').click()")
+        value = shown.until("the figure's labels", lambda: shown.find("figure-label-value").get_attribute("value"))
+        point, words = value.split(" ", 1)
+        assert words == "the ball, red" and len(point.split(",")) == 3 and shown.find("figure-label").is_selected(), value
+        assert "--label=" in shown.script("return document.querySelector('dialog[open]').textContent")
+        shown.find("figure-close").click()
+        shown.find("forget-measures").click()
+        assert not shown.words("#notes text.label")
+
+
+def times(program, scenes, out):
+    """A scene that moves has a slider for the time at which the shutter opens; one gesture is one change."""
+    scene = page_test.editable(pathlib.Path(scenes) / "motion.pbrt", out)
+    with page_test.viewer(program, scene, "--spp", "2") as served, page(served.address) as shown:
+        at = page_forms_test.Work(shown)
+        shown.tab("render")
+        assert shown.find("time-box").is_displayed()
+        low, high, now = (float(shown.find("time").get_attribute(name)) for name in ("min", "max", "value"))
+        assert low < high and low <= now <= high, (low, high, now)
+        shown.script("const s = document.getElementById('time'), to = (+s.min + 3 * +s.max) / 4; for (const v of [(+s.min + +s.max) / 2, to]) { s.value = v; s.dispatchEvent(new Event('input')); } s.dispatchEvent(new Event('change'))")
+        at.changed("a later time")
+        shown.until("the time", lambda: abs(float(shown.text("time-told")) - (low + 3 * high) / 4) < 1e-3 * (high - low))
+        at.undo_all()
+        assert abs(float(shown.find("time").get_attribute("value")) - now) < 1e-9
+    with work(program, out) as at:
+        at.shown.tab("render")
+        assert not at.shown.find("time-box").is_displayed()
+
+
 def redraws(program, scenes, out):
     """A neuron is drawn in other colours; what is wrong is said at its field, and undo leads back."""
     scene = page_test.editable(pathlib.Path(scenes) / "neuron.swc", out)
@@ -636,7 +684,7 @@ def modules(program, scenes, out):
         assert abs(x - box["width"] / 2) < 1 and abs(y - box["height"] / 2) < 1, (x, y, box)
 
 
-CASES = [modules, tools, measures, inspects, numbers, never_waits, links, paths, clips, redraws, figure, screens]
+CASES = [modules, tools, measures, inspects, numbers, never_waits, links, paths, clips, times, redraws, labels, figure, screens]
 
 
 if __name__ == "__main__":

@@ -170,17 +170,23 @@ std::vector<float> shares_along(const glm::vec3* points, std::size_t count) {
   return out;
 }
 
+/// Reads an option that is a share; none if it is not given. Throws InputError.
+std::optional<double> share_asked(const ImportOptions& options, const std::string& name) {
+  const std::optional<std::string> text = options.text(name);
+  if (!text) return std::nullopt;
+  double out = 0;
+  if (!parse_number(*text, out) || !(out > 0 && out <= 1))
+    throw InputError({"--" + name}, caplet::quoted(*text) + " is no number above 0 and up to 1");
+  return out;
+}
+
 /// Which fibres are drawn.
 class FibreChoice {
  public:
   explicit FibreChoice(const ImportOptions& options)
-      : lengths_(options.range("lengths")), values_(options.range("values")) {
-    const std::optional<std::string> share = options.text("share");
-    if (!share) return;
-    share_ = 0;
-    if (!parse_number(*share, *share_) || !(*share_ > 0 && *share_ <= 1))
-      throw InputError({"--share"}, caplet::quoted(*share) + " is no number above 0 and up to 1");
-  }
+      : share_(share_asked(options, "share")),
+        lengths_(options.range("lengths")),
+        values_(options.range("values")) {}
 
   /// `value`: the mean of the fibre's values; NaN where there are none.
   bool keeps(std::size_t fibre, std::span<const glm::vec3> points, double value) const {
@@ -324,6 +330,8 @@ Scene scene_of(const Fibres& fibres, const std::filesystem::path& path,
   Shape shape;
   shape.geometry = std::move(capsules);
   shape.name = path.stem().string();
+  if (const auto opacity = share_asked(options, "opacity"); opacity && *opacity < 1)
+    shape.alpha = TextureOperand(*opacity);
   shape.where = {scene.source, 0, 0};
   shape.world_from_object = world_from_file(options, usual.up);
   scene.world_from_file = glm::dmat3(shape.world_from_object);

@@ -9,6 +9,7 @@
 
 #include "film/image.h"
 #include "post/detail/canvas.h"
+#include "post/labels.h"
 #include "post/scale_bar.h"
 
 namespace caplet::post {
@@ -28,6 +29,10 @@ void draw_color_bar(Shown& picture, const Legend& legend, const std::array<float
 void draw_names(Shown& picture, const Legend& legend, const std::array<float, 3>& ink);
 /// Draws a ball with the colour of each direction, as the camera sees it.
 void draw_directions(Shown& picture, const Scene& scene, const std::array<float, 3>& ink);
+
+/// Draws each label that is in the picture, with a line to its point.
+void draw_labels(Shown& picture, const LayeredImage& layers, const Scene& scene,
+                 const std::vector<Label>& labels, const std::array<float, 3>& ink);
 
 /// Return the height of capitals for the size of the picture, in pixels, and the margin.
 double text_size(const Shown& picture);

@@ -25,9 +25,9 @@ export function command_of(file, figure) {
 
 export class Figure {
   // `ask(message, done)` sends a message with a number; `stop` ends the figure; `look` returns the view's message; `size` the stage's; `save` a file;
-  // `exposure` what the page shows beside the scene's, or null.
-  constructor({ ask, stop, look, size, save, file, exposure }) {
-    Object.assign(this, { ask, stop, look, size, save, file, exposure });
+  // `exposure` what the page shows beside the scene's, or null; `labels` the labels in the picture.
+  constructor({ ask, stop, look, size, save, file, exposure, labels }) {
+    Object.assign(this, { ask, stop, look, size, save, file, exposure, labels });
     this.rows = [];
     this.blob = null;
     this.is_busy = false;
@@ -84,6 +84,8 @@ export class Figure {
     const [width, height] = this.size();
     if (!this.width.value) this.width.value = 1920;
     if (!this.height.value) this.height.value = Math.max(1, Math.round(this.width.value * height / width));
+    const label = this.rows.find(({ name }) => name === "label"), labels = this.labels();
+    if (label && labels) { label.is_on.checked = true; label.value.disabled = false; label.value.value = labels; }
     this.changed();
     this.dialog.showModal();
   }

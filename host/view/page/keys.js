@@ -2,7 +2,7 @@
 // Copyright Caplet authors
 // This table says what each key does; the help lists it.
 export const KEYS = [
-  ["select", "V"], ["move", "G"], ["turn", "R"], ["scale", "S"], ["measure", "M"], ["inspect", "I"],
+  ["select", "V"], ["move", "G"], ["turn", "R"], ["scale", "S"], ["measure", "M"], ["label", "T"], ["inspect", "I"],
   ["frame", "F"], ["all", "Home"], ["scene_camera", "0"], ["parallel", "5"],
   ["front", "1"], ["right", "3"], ["top", "7"], ["rear", "Shift 1"], ["left", "Shift 3"], ["below", "Shift 7"],
   ["nearer", "+", "="], ["farther", "-"], ["last_view", ","], ["next_view", "."],

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
-// The rail of tools, and what they leave on the picture: measured distances and angles, and the inspected ray.
+// The rail of tools, and what they leave on the picture: measured distances and angles, labels, and the inspected ray.
 import { add, dot, length, mul, sub, unit } from "./camera.js";
 import { icon } from "./icons.js";
 import { texts } from "./texts.js";
@@ -12,7 +12,7 @@ const make = (name, attributes, text) => {
   if (text) out.textContent = text;
   return out;
 };
-export const TOOLS = [["select", "V"], ["move", "G"], ["turn", "R"], ["scale", "S"], ["measure", "M"], ["inspect", "I"]];
+export const TOOLS = [["select", "V"], ["move", "G"], ["turn", "R"], ["scale", "S"], ["measure", "M"], ["label", "T"], ["inspect", "I"]];
 
 export class Tools {
   /// `changed` is called when another tool is taken.
@@ -40,10 +40,36 @@ const short = (v) => String(+v.toPrecision(4));
 export class Notes {
   /// `project` converts a point of the world to pixels of the stage, or to null.
   constructor(stage, project, hint, forget) {
-    Object.assign(this, { project, hint, forget, points: [], measures: [], ray: null, unit: "" });
+    Object.assign(this, { project, hint, forget, points: [], measures: [], labels: [], ray: null, unit: "" });
+    this.stage = stage;
     this.svg = stage.appendChild(make("svg", { id: "notes", "aria-hidden": "true" }));
-    forget.onclick = () => { this.measures = []; this.points = []; this.draw(); };
+    forget.onclick = () => { this.measures = []; this.points = []; this.labels = []; this.draw(); };
   }
+  /// Asks at a point for its words; none, or Escape, make no label.
+  label(point) {
+    this.input?.remove();
+    const [x, y] = this.project(point) ?? [0, 0];
+    const input = this.input = this.stage.appendChild(Object.assign(document.createElement("input"), { id: "label-words", autocomplete: "off", maxLength: 80, placeholder: texts.label_words }));
+    input.setAttribute("aria-label", texts.label_words);
+    for (const name of ["pointerdown", "dblclick", "wheel"]) input.addEventListener(name, (event) => event.stopPropagation());
+    input.style.left = `${x}px`;
+    input.style.top = `${y}px`;
+    const done = (words) => {
+      if (this.input !== input) return;
+      this.input = null;
+      input.remove();
+      if (words) this.labels.push({ point, words });
+      this.draw();
+    };
+    input.onkeydown = (event) => {
+      if (event.key === "Enter") done(input.value.trim());
+      if (event.key === "Escape") done("");
+    };
+    input.onblur = () => done(input.value.trim());
+    input.focus();
+  }
+  /// Returns the labels as `caplet render --label` takes them.
+  label_text() { return this.labels.map(({ point, words }) => `${point.map((v) => +v.toPrecision(7)).join(",")} ${words.replaceAll(";", ",")}`).join("; "); }
   /// Takes a point of a surface: the second ends a distance; a third with `is_angle` makes an angle at the second.
   measure(point, is_angle) {
     const last = this.measures.at(-1);
@@ -60,7 +86,7 @@ export class Notes {
   }
   draw(is_shown = true) {
     this.svg.replaceChildren();
-    this.forget.hidden = !this.measures.length && !this.points.length;
+    this.forget.hidden = !this.measures.length && !this.points.length && !this.labels.length;
     if (!is_shown) return;
     for (const points of [...this.measures, this.points]) {
       const at = points.map((p) => this.project(p));
@@ -70,6 +96,10 @@ export class Notes {
       for (const p of at) if (p) this.svg.append(make("circle", { cx: p[0], cy: p[1], r: 4 }));
       const middle = points.length === 3 ? at[1] : points.length === 2 && at[0] && at[1] ? mul(add(at[0], at[1]), 0.5) : null;
       if (middle) this.svg.append(make("text", { x: middle[0], y: middle[1] - 8 }, this.words(points)));
+    }
+    for (const { point, words } of this.labels) {
+      const p = this.project(point);
+      if (p) this.svg.append(make("line", { x1: p[0], y1: p[1], x2: p[0] + 16, y2: p[1] - 16 }), make("circle", { cx: p[0], cy: p[1], r: 4 }), make("text", { x: p[0] + 18, y: p[1] - 18, class: "label" }, words));
     }
     this.draw_ray();
   }

@@ -86,7 +86,7 @@ const tools = new Tools($("rail"), (name) => {
   edits.tool = name;
   $("hint").hidden = !texts.hints[name];
   $("hint").firstChild.textContent = texts.hints[name] ?? "";
-  $("forget-measures").hidden = name !== "measure" || !notes.measures.length;
+  $("forget-measures").hidden = !(name === "measure" && notes.measures.length) && !(name === "label" && notes.labels.length);
   if (camera) edits.draw();
 });
 
@@ -97,7 +97,7 @@ const keep = new Keep({
 
 const figure = new Figure({
   ask: (message, done) => { waiting.set(++number, done); say({ ...message, number }); }, stop: () => say({ type: "end_figure" }),
-  look: () => view_message(1, 1), size: () => [stage.clientWidth, stage.clientHeight], save: (blob, name) => save(blob, name), file: () => keep.name.value.trim() || keep.now.name || scene.name,
+  look: () => view_message(1, 1), size: () => [stage.clientWidth, stage.clientHeight], save: (blob, name) => save(blob, name), labels: () => notes.label_text(), file: () => keep.name.value.trim() || keep.now.name || scene.name,
   exposure: () => {
     const { stops, auto } = scene.exposure, slider = +$("exposure").value, is_auto = $("auto-exposure").checked;
     if (slider === 0 && is_auto === auto) return null;  // as the scene says
@@ -155,6 +155,15 @@ function save(blob, name) {
   setTimeout(() => URL.revokeObjectURL(link.href), 10000);
 }
 
+// Shows the time at which the shutter opens, where the scene moves.
+function show_time() {
+  $("time-box").hidden = !scene.moves;
+  if (!scene.moves || $("time").dataset.moving) return;
+  [$("time").min, $("time").max] = scene.moves;
+  $("time").value = scene.time;
+  $("time-told").value = +scene.time.toPrecision(4);
+}
+
 // The scene's exposure is another one.
 function expose(now) {
   if (now.auto !== scene.exposure.auto) $("auto-exposure").checked = now.auto;
@@ -179,6 +188,8 @@ function edited(message) {
     notes.unit = scene.unit ?? "";
   }
   scene.samples = message.samples;
+  scene.time = message.time;
+  show_time();
   scene.backdrop = message.backdrop;
   expose(message.exposure);
   if (message.home) scene.home = message.home;
@@ -220,6 +231,7 @@ function begin(message) {
   $("back").disabled = !scene.can_undo;
   $("again").disabled = !scene.can_redo;
   keep.begin(scene);
+  show_time();
   fill_tree();
   redraw.told(scene.options);
   look();
@@ -408,13 +420,14 @@ function choose(id, more, primitive = 0) {
 function click(event) {
   const pixel = pixel_at(event), more = event.shiftKey, { clientX, clientY } = event;
   if (tools.now === "inspect") inspect_at(pixel, clientX, clientY);
-  const known = event.altKey || tools.now === "measure" ? null : known_at(pixel);
+  const known = event.altKey || tools.now === "measure" || tools.now === "label" ? null : known_at(pixel);
   if (known) choose(known[0], more, known[1]);
   const { selection } = edits;
   ask(pixel, false, false, (told_of) => {
     const hit = told_of.crossings?.[0];
     if (event.altKey) return hit && change(() => { camera.focal_distance = Math.max(1e-6, dot(sub(hit.point, camera.eye), unit(camera.forward))); });
     if (tools.now === "measure") return hit && notes.measure(hit.point, more);
+    if (tools.now === "label") return hit && notes.label(hit.point);
     const id = hit?.object_id ?? null, primitive = hit?.primitive ?? 0;
     if (!known) return choose(id, more, primitive);
     if ((known[0] !== id || known[1] !== primitive) && selection === edits.selection && !more) choose(id, false, primitive);
@@ -509,7 +522,7 @@ stage.addEventListener("wheel", (event) => {
 const arrows = { ArrowLeft: [1, 0], ArrowRight: [-1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
 const press = (id) => () => { if (!$(id).hidden && !$(id).disabled) $(id).click(); };
 const actions = {
-  select: () => tools.take("select"), move: () => tools.take("move"), turn: () => tools.take("turn"), scale: () => tools.take("scale"), measure: () => tools.take("measure"), inspect: () => tools.take("inspect"),
+  select: () => tools.take("select"), move: () => tools.take("move"), turn: () => tools.take("turn"), scale: () => tools.take("scale"), measure: () => tools.take("measure"), label: () => tools.take("label"), inspect: () => tools.take("inspect"),
   frame, all: fit, scene_camera: home, parallel: press("parallel"), ...Object.fromEntries(["front", "right", "top", "rear", "left", "below"].map((name) => [name, () => side(name)])),
   nearer: () => change(() => camera.dolly(0.9)), farther: () => change(() => camera.dolly(1 / 0.9)), last_view: () => undo(past, future), next_view: () => undo(future, past),
   undo: () => undo_edit(false), redo: () => undo_edit(true), add: () => forms.add_shape(forms.last_shape ?? forms.lists.shape[0], under_hit), duplicate: () => edits.duplicate(), delete: () => edits.remove(),
@@ -559,6 +572,13 @@ for (const [id, text, keys, work] of [
 menu($("menu-button"), $("menu"));
 menu($("add-button"), $("add-menu"));
 menu($("export-button"), $("export-menu"));
+$("time").oninput = () => {
+  const goes_on = $("time").dataset.moving === "1", time = +$("time").value;
+  $("time").dataset.moving = "1";
+  $("time-told").value = +time.toPrecision(4);
+  edit({ what: "set", of: "film", field: "shutter opens", to: time }, goes_on);
+};
+$("time").onchange = () => { delete $("time").dataset.moving; };
 const redraw = new Redraw({ edit: (what, done) => edit(what, false, done) });
 const clip = new Clip({ camera: () => camera, bounds: () => scene.bounds, begin: remember, look });
 const path = new Path({ views: () => kept, begin: remember, show: (next) => { camera = next; look(); }, save, name: () => keep.now.name || scene.name });
