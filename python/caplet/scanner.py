@@ -62,6 +62,59 @@ class Scanner:
         ways = np.stack([np.cos(up) * np.cos(around), np.cos(up) * np.sin(around), np.sin(up)], axis=1)
         return cls(ways, times, laser, near, far)
 
+    @classmethod
+    def from_table(cls, path, near=0.0, far=np.inf):
+        """A scanner of any pattern, by a table of its firings: text with a row each, columns between commas or blanks, and a first row
+        that names them: `time` (seconds), `azimuth` and `elevation` (degrees) or `zenith` (degrees from straight up), or `x`, `y` and
+        `z`, and `ring`. Names may have a unit ("Time/s", "Azimuth/deg", "zenith_rad"): s, ms, us or ns; deg or rad. Without times all
+        fire at 0. Livox's tables, which simulators share, are such.
+        """
+        file = os.fspath(path)
+        try:
+            with open(file, encoding="utf-8-sig") as text:
+                names = text.readline().replace(",", " ").split()
+                lines = [line.replace(",", " ") for line in text if line.strip()]
+        except (OSError, UnicodeDecodeError) as error:
+            raise InputError(f"{file}: {getattr(error, 'strerror', None) or 'is no text'}") from None
+        columns = {}
+        for place, name in enumerate(names):
+            what, unit = _column_of(name)
+            if what in columns:
+                raise InputError(f"{file}:1: two columns are {what}")
+            columns[what] = (place, unit)
+        rows = np.empty((len(lines), len(names)))
+        for number, line in enumerate(lines):
+            try:
+                rows[number] = [float(value) for value in line.split()]
+            except ValueError:
+                raise InputError(f"{file}:{number + 2}: {len(names)} numbers are needed") from None
+        column = lambda what: rows[:, columns[what][0]] * columns[what][1]
+        if {"x", "y", "z"} <= columns.keys():
+            ways = np.stack([column(axis) for axis in "xyz"], axis=1)
+        elif "azimuth" in columns and columns.keys() & {"elevation", "zenith"}:
+            around = column("azimuth")
+            above = column("elevation") if "elevation" in columns else np.pi / 2 - column("zenith")
+            ways = np.stack([np.cos(above) * np.cos(around), np.cos(above) * np.sin(around), np.sin(above)], axis=1)
+        else:
+            raise InputError(f"{file}:1: columns azimuth and elevation or zenith, or x, y and z, are needed, not {', '.join(names) or 'none'}")
+        rings = column("ring") if "ring" in columns else 0
+        if not len(rows):
+            raise InputError(f"{file}: has no firings")
+        return cls(ways, column("time") if "time" in columns else 0.0, rings, near, far)
+
+
+_UNITS = {"time": {"s": 1, "ms": 1e-3, "us": 1e-6, "ns": 1e-9}, "azimuth": {"deg": np.pi / 180, "rad": 1.0}, "ring": {}, "x": {}, "y": {}, "z": {}}
+_UNITS["elevation"] = _UNITS["zenith"] = _UNITS["azimuth"]
+
+
+def _column_of(name):
+    """What a column of a table is, and the factor to seconds or radians; other columns keep their names."""
+    what, _, unit = name.strip().lower().replace("/", "_").partition("_")
+    units = _UNITS.get(what)
+    if units is None or not (unit in units or not unit):
+        return name, 1.0
+    return what, float(units[unit] if unit else next(iter(units.values()), 1.0))
+
 
 def _of_each(name, value, count):
     value = np.asarray(value, dtype=np.float64)

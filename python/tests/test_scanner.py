@@ -228,3 +228,39 @@ FORWARDS = Scanner([(1, 0, 0)])
 def test_wrong_input_is_named(wrong, why):
     with pytest.raises(caplet.InputError, match=why):
         wrong()
+
+
+def test_tables_of_firings(tmp_path):
+    table = tmp_path / "pattern.csv"
+
+    def of(text):
+        table.write_text(text)
+        return Scanner.from_table(table, far=50)
+
+    livox = of("Time/s,Azimuth/deg,Zenith/deg\n0.0,0,90\n1e-5,90,60\n2e-5,180,180\n")
+    assert np.abs(livox.directions - [[1, 0, 0], [0, np.sqrt(3) / 2, 0.5], [0, 0, -1]]).max() < 1e-12
+    assert livox.times.tolist() == [0.0, 1e-5, 2e-5] and livox.rings.tolist() == [0, 0, 0] and livox.far == 50
+    same = of("ring azimuth_rad elevation_deg time_us power\n7 0 0 0 1\n2 1.5707963267948966 30 10 1\n65535 3.141592653589793 -90 20 1\n")
+    assert np.abs(same.directions - livox.directions).max() < 1e-12 and np.abs(same.times - livox.times).max() < 1e-18
+    assert same.rings.tolist() == [7, 2, 65535]
+    assert of("x y z\n2 0 0\n0 3 4\n").directions.tolist() == [[1, 0, 0], [0, 0.6, 0.8]]
+    assert len(scan(wall_at(5.0), of("azimuth elevation\n0 0\n180 0\n"), np.eye(4))) == 1
+
+
+@pytest.mark.parametrize("text, says", [
+    ("", "1: columns azimuth"), ("azimuth\n1\n", "1: columns azimuth"), ("x y\n1 2\n", "x, y and z"), ("x y z\n", "no firings"), ("x y z\n1 2\n", ":2: 3 numbers"),
+    ("x y z\n1 2 3\n1 a 3\n", ":3: 3 numbers"), ("x,y,z\n1,2,3,4\n", ":2: 3 numbers"), ("x y z x\n1 2 3 4\n", "two columns are x"), ("x y z\n0 0 0\n", "no row of zeros"),
+    ("x y z\n1 2 nan\n", "finite"), ("azimuth zenith time_h\n1 2 nan\n0 0 0\n", None),
+])
+def test_tables_that_are_none(tmp_path, text, says):
+    (tmp_path / "t.csv").write_text(text)
+    if says is None:  # a column of no known unit is another one
+        assert Scanner.from_table(tmp_path / "t.csv").times.tolist() == [0.0, 0.0]
+        return
+    with pytest.raises(caplet.InputError, match=says):
+        Scanner.from_table(tmp_path / "t.csv")
+    with pytest.raises(caplet.InputError, match="No such file"):
+        Scanner.from_table(tmp_path / "none.csv")
+    (tmp_path / "b.csv").write_bytes(b"\xff\xfe\x00")
+    with pytest.raises(caplet.InputError, match="is no text"):
+        Scanner.from_table(tmp_path / "b.csv")
