@@ -450,6 +450,7 @@ void Scene::set_camera(const std::string& type, const Parameters& parameters,
   Data& data = changed();
   one.view.camera.medium = data.model.view.camera.medium;
   data.model.view.camera = one.view.camera;
+  data.model.view.clip = one.view.clip;
   data.model.view.film.exposure_time = one.view.film.exposure_time;
   data.model.view.film.shutter_open = one.view.film.shutter_open;
   data.model.view.film.readout = one.view.film.readout;

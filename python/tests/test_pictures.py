@@ -248,3 +248,23 @@ def test_images_are_textures():
                                                            textures.imagemap(pixels=np.zeros((2, 2)), filename="a.png")))
     with pytest.raises(caplet.InputError, match="pixels"):
         scene.add("sphere", pixels=np.zeros((2, 2)))
+
+
+def test_a_clipping_plane_cuts(tmp_path):
+    scene = caplet.Scene()
+    scene.add_spheres((0, 0, 0), 1)
+    scene.size, scene.spp = (40, 40), 4
+
+    def depth():
+        scene.look_at((0, 0, 10), (0, 0, 0), (0, 1, 0))
+        return caplet.render(scene).depth[20, 20]
+
+    window = dict(screenwindow=[-2, 2, -2, 2])
+    scene.camera = caplet.cameras.orthographic(**window, clipplane=[0, 0, 1, 0.25])
+    assert abs(depth() - 9.75) < 1e-5
+    scene.save(tmp_path / "cut.pbrt")
+    assert abs(caplet.render(caplet.load(tmp_path / "cut.pbrt")).depth[20, 20] - 9.75) < 1e-5
+    assert caplet.render(caplet.load(tmp_path / "cut.pbrt", clip="none")).depth[20, 20] < 9.1
+    assert abs(caplet.render(caplet.load(tmp_path / "cut.pbrt", clip="z=-0.5")).depth[20, 20] - 10.5) < 1e-5
+    scene.camera = caplet.cameras.orthographic(**window)
+    assert depth() < 9.1
