@@ -6,6 +6,7 @@
 #define CAPLET_SHAPES_SPANS_CL
 
 #include "shapes/lanes.cl"
+#include "shapes/traits.cl"
 #include "shapes/{shapes}.cl"
 
 #define SHAPE(name, traits)                                          \
@@ -40,17 +41,5 @@ static inline Span solid_span(uint shape, const ShapeRay* ray, __global const fl
   return span_of(int_of(0), real_of(0.0f), real_of(0.0f));
 }
 #undef SHAPE
-
-// Returns whether shapes of this kind cross a line in one span only.
-static inline int shape_is_solid(uint shape) {
-  switch (shape) {
-#define SHAPE(name, traits) \
-  case shape_##name:        \
-    return ((traits)&trait_solid) != 0;
-#include "rows/shapes.def"
-#undef SHAPE
-    default: return 0;
-  }
-}
 
 #endif

@@ -6,8 +6,8 @@
 #ifndef CAPLET_STAGES_CLIP_FACE_CL
 #define CAPLET_STAGES_CLIP_FACE_CL
 
-#include "shapes/spans.cl"
 #include "shapes/surface.cl"
+#include "shapes/traits.cl"
 #include "stages/clip_plane.cl"
 
 // Returns whether a hit is on the face that the plane makes.

@@ -32,7 +32,7 @@ constexpr std::pair<Stage, const char*> stages[] = {
 bool is_of_media(Stage stage) {
   return stage == Stage::camera_media || stage == Stage::recount_media ||
          stage == Stage::sample_distance || stage == Stage::shade_media ||
-         stage == Stage::connect_media;
+         stage == Stage::connect_media || stage == Stage::clip_media;
 }
 
 TEST(Kernels, TakeWhatTheyUse) {
@@ -43,7 +43,7 @@ TEST(Kernels, TakeWhatTheyUse) {
     sum += static_cast<double>(buffer_count(stage));
     ++count;
   }
-  EXPECT_LE(sum / count, 15);
+  EXPECT_LE(sum / count, 16);
   EXPECT_LE(buffer_count(Stage::sample_distance), 68u);
   EXPECT_EQ(buffer_count(Stage::sort_prefix), 3u);  // the batch, keys and bins
 }
