@@ -149,7 +149,7 @@ TEST(ScaleBar, WrongOnesAreRefused) {
 TEST(OverlayOptions, EachRowIsAskedForByItsName) {
   for (const OverlayRow& row : overlay_rows()) {
     Overlays overlays;
-    set_overlay(overlays, row.name, "", "--" + row.name);
+    set_overlay(overlays, row.name, row.is_list ? "0,0,0 here" : "", "--" + row.name);
     EXPECT_TRUE(overlays.any()) << row.name;
     EXPECT_FALSE(row.help.empty());
     EXPECT_THAT(complaint([&] { set_overlay(overlays, row.name, "much", "--" + row.name); }),

@@ -367,28 +367,29 @@ def labels(program, scenes, out):
     with work(program, out) as at:
         shown = at.shown
         width, height, _ = shown.pixels()
+        told = lambda: shown.script("return [...document.querySelectorAll('#notes text.label')].map((t) => t.textContent)")
         shown.press("t")
         shown.mouse(width // 2, height // 2).click().perform()
         field = shown.until("the field for words", lambda: shown.driver.find_elements(By.ID, "label-words"))[0]
         field.send_keys("the ball; red", Keys.ENTER)
-        assert shown.until("the label", lambda: shown.words("#notes text.label")) == ["the ball; red"]
+        assert shown.until("the label", lambda: told()) == ["the ball; red"]
         spot = shown.script("const c = document.querySelector('#notes circle'); return [+c.getAttribute('cx'), +c.getAttribute('cy')]")
         assert math.dist([v * RATIO for v in spot], (width / 2, height / 2)) < 3, (spot, width, height)
         shown.mouse(width // 3, height * 3 // 4).click().perform()
         shown.until("another field", lambda: shown.driver.find_elements(By.ID, "label-words"))[0].send_keys("none", Keys.ESCAPE)
         shown.until("no field", lambda: not shown.driver.find_elements(By.ID, "label-words"))
-        assert shown.words("#notes text.label") == ["the ball; red"]
+        assert told() == ["the ball; red"]
         assert not shown.words("#tree [aria-selected=true]"), "a label selects nothing"
         shown.press(Keys.ARROW_LEFT)
         shown.until("it moves with the scene", lambda: shown.script("return +document.querySelector('#notes circle').getAttribute('cx')") != spot[0] or None)
-        shown.script("document.getElementById('figure-open')?.click() ?? document.getElementById('make-figure').click()")
+        shown.script("document.getElementById('figure-open').click()")
         value = shown.until("the figure's labels", lambda: shown.find("figure-label-value").get_attribute("value"))
         point, words = value.split(" ", 1)
         assert words == "the ball, red" and len(point.split(",")) == 3 and shown.find("figure-label").is_selected(), value
         assert "--label=" in shown.script("return document.querySelector('dialog[open]').textContent")
         shown.find("figure-close").click()
         shown.find("forget-measures").click()
-        assert not shown.words("#notes text.label")
+        assert not told()
 
 
 def times(program, scenes, out):
