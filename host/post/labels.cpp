@@ -5,13 +5,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
-#include <cmath>
 #include <optional>
-#include <system_error>
 #include <utility>
 
 #include "base/error.h"
+#include "present/picture_options.h"
 
 namespace caplet::post {
 
@@ -25,16 +23,11 @@ std::string_view trimmed(std::string_view text) {
 
 /// Parses "X,Y,Z WORDS"; no value for anything else.
 std::optional<Label> label_of(std::string_view text) {
-  Label out;
-  for (int i = 0; i < 3; ++i) {
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), out.at[i]);
-    if (error != std::errc() || !std::isfinite(out.at[i])) return std::nullopt;
-    text.remove_prefix(static_cast<std::size_t>(end - text.data()));
-    if (text.empty() || text.front() != (i < 2 ? ',' : ' ')) return std::nullopt;
-    text.remove_prefix(1);
-  }
-  out.words = trimmed(text);
-  return out.words.empty() ? std::nullopt : std::optional(std::move(out));
+  const std::size_t space = std::min(text.find(' '), text.size());
+  const auto at = three_numbers(text.substr(0, space));
+  const std::string_view words = trimmed(text.substr(space));
+  if (!at || words.empty()) return std::nullopt;
+  return Label{*at, std::string(words)};
 }
 
 }  // namespace

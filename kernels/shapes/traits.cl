@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// What shapes of a kind are.
+// This file says which kinds of shapes are solids.
 #ifndef CAPLET_SHAPES_TRAITS_CL
 #define CAPLET_SHAPES_TRAITS_CL
 
