@@ -4,11 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/vec3.hpp>
 #include <span>
 #include <utility>
 
 #include "lower/camera.h"
 #include "report/pick_report.h"
+#include "scene/shape.h"
 #include "view/detail/scene_text.h"
 #include "view/detail/shown_view.h"
 #include "view/forms.h"
@@ -18,6 +20,28 @@ namespace caplet::view {
 namespace {
 
 constexpr std::size_t most_crossings = 4096;
+
+bool is_closed_thing(const Scene& scene, std::uint32_t id) {
+  if (id < scene.shapes.size()) return is_watertight(scene.shapes[id]);
+  const std::size_t instance = id - scene.shapes.size();
+  return instance < scene.instances.size() &&
+         std::ranges::all_of(scene.objects[scene.instances[instance].object].shapes, is_watertight);
+}
+
+/// Puts the pick of a solid that the clipping plane cuts on its face there: the ray, which begins
+/// at the plane, leaves it before it enters it.
+void put_on_face(PickRecord& pick, const RayRecord& ray, const ClipPlane& clip,
+                 const Scene& scene) {
+  if (!(ray.t_min > 0) || pick.leaving == 0 || !is_closed_thing(scene, pick.object)) return;
+  const glm::vec3 at =
+      glm::vec3(ray.ox, ray.oy, ray.oz) + ray.t_min * glm::vec3(ray.dx, ray.dy, ray.dz);
+  pick.t = ray.t_min;
+  pick.leaving = 0;
+  for (int k = 0; k < 3; ++k) {
+    pick.point[k] = at[k];
+    pick.normal[k] = static_cast<float>(clip.normal[k]);
+  }
+}
 
 }  // namespace
 
@@ -50,7 +74,9 @@ Text Picker::answer_to(const Ask& ask, const ShowView& shown) {
   } else {
     Query drawn(films_.drawn_scene());
     const std::span one(&ray, 1);
-    const PickRecord pick = (ask.reference ? query_ : drawn).closest(one)[0];
+    PickRecord pick = (ask.reference ? query_ : drawn).closest(one)[0];
+    if (shown.clip && !ask.reference && pick.object != CAPLET_NONE)
+      put_on_face(pick, ray, *shown.clip, scene);
     if (pick.object != CAPLET_NONE) told.crossings = {pick};
   }
   if (ask.reference) told.reference = report::reference_crossings(scene, ray, ask.all);

@@ -337,8 +337,19 @@ def clips(program, scenes, out):
         half = at.before
         assert shown.find("clip-box").is_displayed() and shown.find("clip-share").get_attribute("value") == "50"
         place = shown.text("clip-told").split(" = ")
+        width, height, _ = shown.pixels()
         assert place[0] == "z", place
         shown.picture(out / "cut.png")
+        # A click on a face finds the face: the middle of what is red and flat.
+        shown.press("t")
+        shown.mouse(width // 2, int(height * 0.55)).click().perform()
+        shown.until("the field for words", lambda: shown.driver.find_elements(By.ID, "label-words"))[0].send_keys("face", Keys.ENTER)
+        shown.script("document.getElementById('figure-open').click()")
+        point = shown.until("the label", lambda: shown.find("figure-label-value").get_attribute("value")).split(" ")[0]
+        assert abs(float(point.split(",")[2]) - float(place[1])) < 1e-3, (point, place)
+        shown.find("figure-close").click()
+        shown.find("forget-measures").click()
+        shown.press("v")
         width, height, _ = shown.pixels()
         subprocess.run([program, "render", out / "forms.pbrt", f"--clip=z={place[1]}", "--size", f"{width}x{height}", "--spp", "2", "-q", "-o", out / "cut.exr", "-o", out / "cut-there.png"], check=True)
         shown.script("window.loaded = null; const image = new Image(); image.onload = () => { const canvas = document.createElement('canvas'); canvas.width = image.naturalWidth; canvas.height = image.naturalHeight; const brush = canvas.getContext('2d'); brush.drawImage(image, 0, 0); window.loaded = [...brush.getImageData(0, 0, canvas.width, canvas.height).data]; }; image.src = arguments[0]",
