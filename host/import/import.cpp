@@ -303,8 +303,8 @@ std::vector<ImportOptionRow> format_options_of(std::span<const fs::path> paths) 
   std::vector<ImportOptionRow> out;
   for (const ImportOptionRow& row : import_option_rows()) {
     const auto knows = [&](const fs::path& path) {
-      return std::ranges::find(format_of(placed_file(path).path).options, row.name) !=
-             format_of(placed_file(path).path).options.end();
+      const std::vector<std::string>& known = format_of(placed_file(path).path).options;
+      return std::ranges::find(known, row.name) != known.end();
     };
     if (row.of == ImportOptionRow::Of::format && std::ranges::any_of(paths, knows))
       out.push_back(row);

@@ -246,6 +246,15 @@ def links(program, scenes, out):
         shown.until("the view that was saved", lambda: shown.apart(turned, 2) == 0)
 
 
+PNG = """const done = arguments[1]; const image = new Image(); image.onload = () => { const canvas = document.createElement('canvas'); canvas.width = image.naturalWidth; canvas.height = image.naturalHeight; const brush = canvas.getContext('2d'); brush.drawImage(image, 0, 0); done([canvas.width, canvas.height, [...brush.getImageData(0, 0, canvas.width, canvas.height).data]]); }; image.src = arguments[0]"""
+
+
+def png_pixels(shown, file):
+    """Width, height and RGBA of a PNG, as the browser decodes it."""
+    width, height, values = shown.driver.execute_async_script(PNG, "data:image/png;base64," + base64.b64encode(file.read_bytes()).decode())
+    return width, height, bytes(values)
+
+
 PATH = """const done = arguments[0];
 Promise.all(['./path.js', './camera.js'].map((name) => import(name))).then(([{ camera_at, point_at }, { Camera }]) => {
   const line = { towards: (a, b) => b.map((v, i) => v - a[i]), moved: (a, by, f) => a.map((v, i) => v + f * by[i]) };
@@ -309,9 +318,7 @@ def paths(program, scenes, out):
         assert sorted(p.name for p in out.glob("path.*.png")) == [f"path.{i}.png" for i in (1, 2, 3, 4)]
         views = {}
         for number in (1, 4):
-            shown.script("window.loaded = null; const image = new Image(); image.onload = () => { const canvas = document.createElement('canvas'); canvas.width = image.naturalWidth; canvas.height = image.naturalHeight; const brush = canvas.getContext('2d'); brush.drawImage(image, 0, 0); window.loaded = [...brush.getImageData(0, 0, canvas.width, canvas.height).data]; }; image.src = arguments[0]",
-                         "data:image/png;base64," + base64.b64encode((out / f"path.{number}.png").read_bytes()).decode())
-            views[number] = (width, height, bytes(shown.until("the picture", lambda: shown.script("return window.loaded"))))
+            views[number] = png_pixels(shown, out / f"path.{number}.png")
         # The same views, at two samples a pixel each: nearer to the page's than to one another's.
         for number, page_picture in ((1, at.first), (4, above)):
             same, other = (page_test.mean_difference(page_picture, views[n]) for n in (number, 5 - number))
@@ -352,9 +359,7 @@ def clips(program, scenes, out):
         shown.press("v")
         width, height, _ = shown.pixels()
         subprocess.run([program, "render", out / "forms.pbrt", f"--clip=z={place[1]}", "--size", f"{width}x{height}", "--spp", "2", "-q", "-o", out / "cut.exr", "-o", out / "cut-there.png"], check=True)
-        shown.script("window.loaded = null; const image = new Image(); image.onload = () => { const canvas = document.createElement('canvas'); canvas.width = image.naturalWidth; canvas.height = image.naturalHeight; const brush = canvas.getContext('2d'); brush.drawImage(image, 0, 0); window.loaded = [...brush.getImageData(0, 0, canvas.width, canvas.height).data]; }; image.src = arguments[0]",
-                     "data:image/png;base64," + base64.b64encode((out / "cut-there.png").read_bytes()).decode())
-        there = (width, height, bytes(shown.until("the picture", lambda: shown.script("return window.loaded"))))
+        there = png_pixels(shown, out / "cut-there.png")
         same, other = page_test.mean_difference(half, there), page_test.mean_difference(at.first, there)
         assert same < 0.65 * other, (same, other)  # both have the noise of two samples
         shown.script("const s = document.getElementById('clip-share'); for (const v of [40, 30, 20]) { s.value = v; s.dispatchEvent(new Event('input')); } s.dispatchEvent(new Event('change'))")

@@ -1,15 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 // Figures: the program renders the view at a size of its own, with what is drawn on it; the page shows it before it is saved.
+import { make } from "./elements.js";
 import { complain, trouble_with, value_of } from "./numbers.js";
 import { texts } from "./texts.js";
 
 const words = texts.figure;
-const make = (name, properties, ...children) => {
-  const out = Object.assign(document.createElement(name), properties);
-  out.append(...children);
-  return out;
-};
 const quoted = (text) => /^[\w.,:/#%+-]+$/.test(text) ? text : `'${text.replaceAll("'", "'\\''")}'`;
 
 /// Returns the command that makes the figure of a file, as a shell takes it.

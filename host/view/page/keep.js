@@ -2,14 +2,10 @@
 // Copyright Caplet authors
 // Saving and unsaved changes: the program keeps them; the page shows them, and asks before anything is lost.
 import { question, tell } from "./dialog.js";
+import { make } from "./elements.js";
 import { texts } from "./texts.js";
 
 const words = texts.keeping;
-const make = (name, properties, ...children) => {
-  const out = Object.assign(document.createElement(name), properties);
-  out.append(...children);
-  return out;
-};
 
 export class Keep {
   // `say` sends a message; `button` saves; `title` shows the mark of unsaved changes.

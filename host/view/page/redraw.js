@@ -1,18 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 // Options of the scene's files, such as the style of a molecule: the program draws the files anew.
+import { make } from "./elements.js";
 import { complain } from "./numbers.js";
 import { texts } from "./texts.js";
 
 // Returns what may be typed as it is: alternatives without capitals, which stand for something.
 export const choices_of = (values) => values.split("|").map((one) => one.replace(/^'|'$/g, "")).filter((one) => one && !/[A-Z]/.test(one));
 const are_all = (values) => values.includes("|") && choices_of(values).length === values.split("|").length;
-
-const make = (tag, attributes, ...children) => {
-  const out = Object.assign(document.createElement(tag), attributes);
-  out.append(...children);
-  return out;
-};
 
 export class Redraw {
   // `edit(what, done)` sends a change, and `done` gets the error of one that is refused.
