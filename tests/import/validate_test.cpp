@@ -336,6 +336,22 @@ std::vector<Mistake> of_settings() {
       {"the camera's lens radius must be at most 1e18, and 1e18 times its focal distance, where "
        "32-bit floats end",
        [](Scene& s) { s.view.camera.lens_radius = 2e18; }},
+      {"the normal of the clipping plane must be a unit vector",
+       [](Scene& scene) {
+         scene.view.clip = ClipPlane{{0, 0, 2}, 0};
+       }},
+      {"the normal of the clipping plane must be a unit vector",
+       [](Scene& scene) {
+         scene.view.clip = ClipPlane{glm::dvec3(NAN), 0};
+       }},
+      {"the clipping plane must be within 1e18 of the origin",
+       [](Scene& scene) {
+         scene.view.clip = ClipPlane{{0, 1, 0}, -2e18};
+       }},
+      {"the clipping plane must be within 1e18 of the origin",
+       [](Scene& scene) {
+         scene.view.clip = ClipPlane{{0, 1, 0}, NAN};
+       }},
       {"the camera's focal distance must be positive",
        [](Scene& s) { s.view.camera.focal_distance = 0; }},
       {"the image size must be positive", [](Scene& s) { s.view.film.width = 0; }},

@@ -4,6 +4,7 @@
 // Transforms over time against closed forms, and what kernels read of them.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 #include <numbers>
@@ -76,6 +77,18 @@ TEST(MotionSpan, IsFromTheFirstKeyToTheLast) {
   ASSERT_TRUE(span);
   EXPECT_EQ((*span)[0], -1);
   EXPECT_EQ((*span)[1], 2);
+  // The camera's keys count, and capsules of objects.
+  const auto of_camera =
+      motion_span(scene_of_text("TransformTimes 3 4\nActiveTransform EndTime\nTranslate 1 0 0\n"
+                                "Camera \"perspective\"\nWorldBegin\nShape \"sphere\"\n"));
+  ASSERT_TRUE(of_camera);
+  EXPECT_EQ(*of_camera, (std::array<double, 2>{3, 4}));
+  const auto of_object = motion_span(scene_of_text(
+      "WorldBegin\nObjectBegin \"o\"\nShape \"capsules\" \"float times\" [5 7]"
+      " \"point3 p0\" [0 0 0 0 0 0] \"point3 p1\" [1 0 0 0 1 0] \"float radius\" [0.1 0.1]\n"
+      "ObjectEnd\nObjectInstance \"o\"\n"));
+  ASSERT_TRUE(of_object);
+  EXPECT_EQ(*of_object, (std::array<double, 2>{5, 7}));
 }
 
 TEST(AnimatedTransform, GoesFromKeyToKey) {

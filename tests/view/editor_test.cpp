@@ -93,6 +93,33 @@ TEST(Editor, DrawsFilesAnew) {
   EXPECT_EQ(std::get<SphereShape>(live.scene().shapes[0].geometry).radius, 0.5);
 }
 
+// What belongs to the file is the new one's: its media, legend and unit. How it is seen stays.
+TEST(Redrawn, KeepsHowTheSceneIsSeen) {
+  SceneFiles files;
+  files.read = [](const FileOptions&) {
+    Scene out = test::scene_of_text(
+        "MakeNamedMedium \"fog\" \"string type\" \"homogeneous\"\nMediumInterface \"\" \"fog\"\n"
+        "Camera \"perspective\" \"string unit\" \"mm\"\nWorldBegin\nShape \"sphere\"\n");
+    out.source = "new";
+    return out;
+  };
+  Scene before = some_scene();
+  before.framing.up = glm::dvec3(0, 0, 1);
+  before.automatic_camera = before.has_no_up = true;
+  before.source = "old";
+  before.view.clip = ClipPlane{{0, 0, 1}, 1};
+  const Scene now = redrawn(files, {}, before);
+  EXPECT_EQ(now.view.camera.medium, 0u);
+  EXPECT_EQ(now.unit, "mm");
+  EXPECT_EQ(now.shapes.size(), 1u);
+  EXPECT_EQ(now.framing.up, before.framing.up);
+  EXPECT_TRUE(now.automatic_camera);
+  EXPECT_TRUE(now.has_no_up);
+  EXPECT_EQ(now.source, "old");
+  EXPECT_EQ(now.view.clip.value().offset, 1);
+  EXPECT_EQ(now.lights.size(), before.lights.size());
+}
+
 TEST(Editor, RefusesOptionsThatFilesDoNotHave) {
   LiveScene live(some_scene());
   Editor editor(live, balls()), none(live);

@@ -22,6 +22,7 @@
 #include <nlohmann/json.hpp>
 #include <random>
 #include <thread>
+#include <tuple>
 
 #include "film/image.h"
 #include "guests.h"
@@ -98,6 +99,39 @@ TEST(Viewer, PagesKnowTheExposure) {
     EXPECT_EQ(json::parse(guest.until("scene")).at("exposure"), told);
     guest.say({{"type", "edit"}, {"what", "delete"}, {"goes_on", false}, {"ids", {1}}});
     EXPECT_EQ(json::parse(guest.until("edited")).at("exposure"), told);
+  }
+}
+
+// A click on the face of a solid that is cut finds the face; open surfaces have none.
+TEST(Viewer, ClicksFindTheFacesOfCuts) {
+  const std::string head =
+      "Scale -1 1 1\nLookAt 0 0 10  0 0 0  0 1 0\nCamera \"orthographic\""
+      " \"float screenwindow\" [-2 2 -2 2] \"float clipplane\" [0 0 1 0.25]\n"
+      "Film \"rgb\" \"integer xresolution\" 96 \"integer yresolution\" 64\nWorldBegin\n"
+      "LightSource \"infinite\"\n";
+  const std::string sphere = "Shape \"sphere\" \"float radius\" 1\n",
+                    disk = "ReverseOrientation\nShape \"disk\" \"float radius\" 1\n";
+  const auto object = [](const std::string& shape) {
+    return "ObjectBegin \"o\"\n" + shape + "ObjectEnd\nObjectInstance \"o\"\n";
+  };
+  for (const auto& [text, z, t] : {std::tuple{sphere, 0.25, 9.75},
+                                   {object(sphere), 0.25, 9.75},
+                                   {disk, 0.0, 10.0},
+                                   {object(disk), 0.0, 10.0}}) {
+    SCOPED_TRACE(text);
+    const Viewer viewer(LiveScene(test::scene_of_text(head + text)), test::test_device(),
+                        options_of(1));
+    Guest guest(Place(viewer.address()));
+    guest.say({{"type", "ask"},
+               {"number", 1},
+               {"x", width / 2},
+               {"y", height / 2},
+               {"all", false},
+               {"reference", false}});
+    const json crossing = json::parse(guest.until("answer")).at("pick").at("crossings").at(0);
+    EXPECT_NEAR(crossing.at("point").at(2).get<double>(), z, 1e-5);
+    EXPECT_NEAR(crossing.at("t").get<double>(), t, 1e-5);
+    EXPECT_NEAR(crossing.at("normal").at(2).get<double>(), 1, 1e-5);
   }
 }
 
