@@ -31,6 +31,7 @@ void add_verify(CLI::App& app);
 void add_view(CLI::App& app);  // only if it is built (CAPLET_WITH_VIEW)
 void add_help(CLI::App& app);
 void add_try_device(CLI::App& app);  // hidden: see trial.h
+void add_compile(CLI::App& app);     // hidden: see device/compilers.h
 void add_describe(CLI::App& app);    // hidden: the man page and the completions
 
 }  // namespace caplet::cli

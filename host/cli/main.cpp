@@ -27,6 +27,7 @@
 #include "cli/description.h"
 #include "cli/usage_errors.h"
 #include "device/cl_error.h"
+#include "device/compilers.h"
 #include "device/second_try.h"
 #include "render/session.h"
 
@@ -113,6 +114,7 @@ int whole_program(int argc, char** argv) {
   // and files must be removed.
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);
+  caplet::set_compiler_program("/proc/self/exe");
   const caplet::SecondTry second_try(argv);
   const caplet::NotedInputs inputs;
   const caplet::cli::Invocation invocation{{argv, argv + argc}};
@@ -146,6 +148,7 @@ int whole_program(int argc, char** argv) {
   caplet::cli::add_bench(app, invocation);
   caplet::cli::add_help(app);
   caplet::cli::add_try_device(app);
+  caplet::cli::add_compile(app);
   caplet::cli::add_describe(app);
   return end(run(app, argc, argv));
 }

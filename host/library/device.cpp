@@ -2,6 +2,7 @@
 // Copyright Caplet authors
 #include "caplet/device.h"
 
+#include "device/compilers.h"
 #include "device/forked.h"
 #include "library/detail/inside.h"
 
@@ -15,6 +16,8 @@ DeviceInfo to_public(const caplet::DeviceInfo& info) {
 void check_process() {
   if (forked_after_opencl()) begin_opencl();
 }
+
+void set_program(const std::string& path) { set_compiler_program(path); }
 
 std::vector<DeviceInfo> devices() {
   std::vector<DeviceInfo> out;

@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "device/compilers.h"
 #include "device/device.h"
 #include "render/buffers.h"
 
@@ -72,7 +73,8 @@ class Kernels {
   /// Takes `options` as stage_options returns them.
   Kernels(const Device& device, StageOptions options);
 
-  /// Compiles the stages that are not compiled yet. Throws RunError.
+  /// Compiles the stages that are not compiled yet. When one takes noticeable time, other processes
+  /// take part in compiling those that follow (compilers.h). Throws RunError.
   void compile(std::span<const Stage> stages);
   /// Enqueues a stage, which is compiled, over items `first` to `first` + `count`; if `counter` is
   /// the number of a counter (limits.h), only over as many of these as it says. With timing on,
@@ -85,18 +87,23 @@ class Kernels {
   void time_stages(bool on) { timed_ = on; }
   /// Returns the seconds that each stage took so far, when timing is on.
   std::vector<std::pair<std::string, double>> seconds_by_stage() const;
+  /// Returns the seconds that this process waited for compiled stages.
   double compile_seconds() const { return compile_seconds_; }
+  /// Returns the seconds that some process took to compile each stage.
   const std::vector<std::pair<std::string, double>>& compile_seconds_by_stage() const {
     return compile_seconds_by_stage_;
   }
 
  private:
   bool takes_shares(Stage stage) const;  // its work-items do several items each
+  CompileJob job_of(Stage stage) const;
+  /// Compiles one stage, which took `elsewhere` seconds in another process if it is not empty.
+  /// Returns the seconds it took here.
+  double compile(Stage stage, std::optional<double> elsewhere = {});
+  /// Compiles the stages in several processes at a time.
+  void compile_together(std::span<const Stage> stages);
 
-  struct Compiled {
-    Program program;
-    cl::Kernel kernel;
-    std::size_t local_size = 1;
+  struct Compiled : CompiledKernel {
     double seconds = 0;  // of its launches
   };
   Device device_;

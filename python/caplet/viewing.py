@@ -18,11 +18,15 @@ from .rendering import _count, _scene
 _PATIENCE = 60  # seconds that the program has to end
 
 
-def _program():
-    """The program: CAPLET_PROGRAM, else the one beside this Python, else that of PATH."""
+def _find_program():
+    """The program: CAPLET_PROGRAM, else the one beside this Python, else that of PATH; None where there is none."""
     told = os.environ.get("CAPLET_PROGRAM")
     beside = pathlib.Path(sys.executable).parent / "caplet"
-    found = told or (str(beside) if beside.is_file() else shutil.which("caplet"))
+    return told or (str(beside) if beside.is_file() else shutil.which("caplet"))
+
+
+def _program():
+    found = _find_program()
     if not found:
         raise RunError("there is no program `caplet` beside this Python or in PATH: install the wheel or the package that has it, or name it in CAPLET_PROGRAM")
     return found

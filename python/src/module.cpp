@@ -46,6 +46,7 @@ void bind_errors(nb::module_& m) {
         }
       },
       nullptr);
+  m.def("set_program", &caplet::set_program);
   m.def("set_log_level", [](const std::string& least) {
     using caplet::LogLevel;
     caplet::set_log_level(least == "info"    ? LogLevel::info
