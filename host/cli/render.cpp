@@ -46,6 +46,7 @@
 #include "present/present.h"
 #include "present/stereo.h"
 #include "present/turntable.h"
+#include "render/device_scene.h"
 #include "render/render.h"
 #include "report/bands.h"
 #include "report/denoised.h"
@@ -626,7 +627,8 @@ void run_render(const RenderFlags& given, const Invocation& invocation) {
   seconds.build = phase.lap();
   if (interrupt_requested()) throw InterruptedEarly();
 
-  devices = tried_apart(devices, {.shapes = flat.shapes, .render = true});
+  devices = tried_apart(devices, {.shapes = flat.shapes, .render = true},
+                        [&](const Device& device) { return render_jobs(device, flat, view); });
   guard(devices);
   if (!options.quiet)
     log::info("{}: {} primitives, {} x {} pixels, {} on {}", scene_names(options.scenes),

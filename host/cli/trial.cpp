@@ -30,10 +30,13 @@ std::string error_text(const std::string& line) {
   return line.starts_with(before) ? line.substr(before.size()) : line;
 }
 
-}  // namespace
+/// Returns whether the trial compiles this kernel itself.
+bool is_of_trial(const CompileJob& job, const Trial& trial) {
+  return trial.render &&
+         (job.kernel == "extend" || job.kernel == "extend_camera" || job.kernel == "connect");
+}
 
-void try_device_apart(const Device& device, const Trial& trial) {
-  if (!needs_trial(device, trial)) return;
+void test_apart(const Device& device, const Trial& trial) {
   log::info("testing {} once, and compiling for it", device.info().name);
   std::vector<std::string> words{"caplet",     "try-device",
                                  "--device",   std::to_string(device.info().index),
@@ -79,10 +82,25 @@ void try_device_apart(const Device& device, const Trial& trial) {
                   end.said.empty() ? "" : fmt::format(" (it printed: {})", end.said)));
 }
 
-std::vector<Device> tried_apart(const std::vector<Device>& devices, const Trial& trial) {
+}  // namespace
+
+void try_device_apart(const Device& device, const Trial& trial, const NextJobs& next) {
+  if (!needs_trial(device, trial)) return;
+  std::vector<CompileJob> jobs;
+  if (next && compiler_count() > 1) jobs = next(device);
+  std::erase_if(jobs, [&](const CompileJob& job) {
+    return is_of_trial(job, trial) || is_cached(device, job);
+  });
+  Compilers compilers(device, std::move(jobs), compiler_count() - 1);
+  test_apart(device, trial);
+  compilers.finish();
+}
+
+std::vector<Device> tried_apart(const std::vector<Device>& devices, const Trial& trial,
+                                const NextJobs& next) {
   std::vector<Device> out;
   for (const Device& device : devices) try {
-      try_device_apart(device, trial);
+      try_device_apart(device, trial, next);
       out.push_back(device);
     } catch (const RunError& error) {
       if (interrupt_requested() || (out.empty() && &device == &devices.back())) throw;

@@ -5,8 +5,10 @@
 // driver is reported.
 #pragma once
 
+#include <functional>
 #include <vector>
 
+#include "device/compilers.h"
 #include "render/known_answers.h"
 
 namespace caplet::cli {
@@ -14,9 +16,12 @@ namespace caplet::cli {
 /// Runs try_device (render/known_answers.h), when it is due, by starting this program again. Throws
 /// WrongDevice with the test's message, or RunError that says how the driver ended it; also when
 /// interrupted.
-void try_device_apart(const Device& device, const Trial& trial);
+/// The jobs that `next` returns, which the command will need, are compiled meanwhile.
+using NextJobs = std::function<std::vector<CompileJob>(const Device&)>;
+void try_device_apart(const Device& device, const Trial& trial, const NextJobs& next = {});
 /// Returns those of several devices that pass, and warns of the others. If none passes, throws the
 /// error of the last one.
-std::vector<Device> tried_apart(const std::vector<Device>& devices, const Trial& trial);
+std::vector<Device> tried_apart(const std::vector<Device>& devices, const Trial& trial,
+                                const NextJobs& next);
 
 }  // namespace caplet::cli

@@ -28,6 +28,7 @@
 #include "film/denoise.h"
 #include "film/sample_plan.h"
 #include "lower/live_scene.h"
+#include "render/device_scene.h"
 #include "view/addresses.h"
 
 namespace caplet::cli {
@@ -128,7 +129,8 @@ void run_view(const ViewFlags& options) {
   }
   apply(overrides, scene);
   LiveScene live(std::move(scene));
-  try_device_apart(device, {.shapes = live.flat().shapes, .render = true, .nearest = true});
+  try_device_apart(device, {.shapes = live.flat().shapes, .render = true, .nearest = true},
+                   [&](const Device& on) { return render_jobs(on, live.flat(), live.view()); });
   SecondTry::guard(device);
   view::ViewerOptions viewer_options;
   viewer_options.server.host = options.host;

@@ -118,6 +118,11 @@ fs::path bundled_cache_folder(const std::function<std::string(const std::string&
   return folder.empty() ? folder : folder / "pocl";
 }
 
+fs::path used_cache_folder(bool is_bundled) {
+  return is_bundled ? bundled_cache_folder(environment_variable)
+                    : pocl_cache_folder(environment_variable);
+}
+
 std::string bundled_level(bool has_avx2, bool has_avx) {
   if (has_avx2) return {};  // PoCL chooses avx2 or avx512
   return has_avx ? "avx" : "sse2";

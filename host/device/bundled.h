@@ -51,6 +51,8 @@ std::vector<cl::Device> bundled_devices(const cl::Platform& platform);
 /// empty where there is none.
 std::filesystem::path bundled_cache_folder(
     const std::function<std::string(const std::string&)>& variable);
+/// Returns where this process's PoCL, the bundled one or the machine's, keeps compiled kernels.
+std::filesystem::path used_cache_folder(bool is_bundled);
 
 /// PoCL's compiled functions are bundled for some kinds of processors only. Where PoCL would choose
 /// functions that are not bundled, this returns the value of POCL_KERNELLIB_NAME; it is empty if

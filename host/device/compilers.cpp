@@ -8,6 +8,7 @@
 #include <spawn.h>
 #include <sys/mman.h>
 #include <sys/prctl.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -17,26 +18,35 @@
 #include <charconv>
 #include <cstdint>
 #include <cstring>
+#include <functional>
 #include <new>
-#include <string_view>
+#include <optional>
+#include <span>
 #include <thread>
+#include <utility>
 
 #include "base/check.h"
 #include "base/environment.h"
 #include "base/interrupt.h"
+#include "base/log.h"
+#include "device/bundled.h"
+#include "device/cache.h"
+#include "device/detail/programs.h"
 
 extern char** environ;
 
 namespace caplet {
 
+namespace fs = std::filesystem;
+
 namespace {
 
 constexpr const char* variable = "CAPLET_COMPILERS";
 constexpr std::size_t most_by_default = 8, most_by_variable = 64;
-constexpr char magic[16] = "caplet compile1";
+constexpr char list_magic[16] = "caplet compile1";
 
-std::filesystem::path& compiler_program() {
-  static std::filesystem::path program;
+fs::path& compiler_program() {
+  static fs::path program;
   return program;
 }
 
@@ -78,15 +88,39 @@ std::optional<std::size_t> take_from(void* shared) {
 
 }  // namespace
 
+namespace {
+
+constexpr const char* marks = "compiled";  // the extension of the marks' files
+
+/// Returns the key of the file that says that PoCL's cache has the job.
+std::string mark_of(const Device& device, const CompileJob& job) {
+  const DeviceInfo& info = device.info();
+  return fmt::format("compiled {:?} {:?} {:?} {:?} {:?} {:x} {}", info.name, info.driver,
+                     info.version, used_cache_folder(info.bundled).string(), job.options,
+                     std::hash<std::string>()(job.source), job.local_size);
+}
+
+}  // namespace
+
+bool is_cached(const Device& device, const CompileJob& job) {
+  std::error_code error;
+  if (!device.is_pocl())
+    return fs::is_regular_file(
+        cache_file(cache_key(device.info(), job.options, job.source), "program"), error);
+  return fs::is_directory(used_cache_folder(device.info().bundled), error) &&
+         fs::is_regular_file(cache_file(mark_of(device, job), marks), error);
+}
+
 CompiledKernel compile(const Device& device, const CompileJob& job) {
   Program program = Program::from_source(device, job.kernel, job.source, job.options);
   cl::Kernel kernel = program.kernel(job.kernel);
   const std::size_t local = local_size_for(device, kernel, job.local_size);
   program.prepare(job.kernel, local);
+  if (device.is_pocl() && !is_cached(device, job)) cache_store(mark_of(device, job), marks, {});
   return {std::move(program), std::move(kernel), local};
 }
 
-void set_compiler_program(const std::filesystem::path& program) { compiler_program() = program; }
+void set_compiler_program(const fs::path& program) { compiler_program() = program; }
 
 std::size_t compiler_count() {
   const std::string text = environment_variable(variable);
@@ -103,17 +137,23 @@ std::size_t compiler_count() {
   return compiler_program().empty() ? 1 : count;
 }
 
-Compilers::Compilers(const Device& device, std::span<const CompileJob> jobs,
-                     std::size_t processes) {
-  const std::string& name = device.info().name;
-  const std::size_t texts = sizeof(Header) + jobs.size() * sizeof(Row);
+Compilers::Compilers(const Device& device, std::vector<CompileJob> jobs, std::size_t processes)
+    : device_(device), jobs_(std::move(jobs)) {
+  std::ranges::stable_sort(jobs_, std::greater(),
+                           [](const CompileJob& job) { return job.source.size(); });
+  if (share()) start(std::min(processes, jobs_.size()));
+}
+
+bool Compilers::share() {
+  const std::string& name = device_.info().name;
+  const std::size_t texts = sizeof(Header) + jobs_.size() * sizeof(Row);
   bytes_ = texts + name.size();
-  for (const CompileJob& job : jobs)
+  for (const CompileJob& job : jobs_)
     bytes_ += job.kernel.size() + job.source.size() + job.options.size();
   file_ = ::memfd_create("caplet-compile", MFD_CLOEXEC);
-  if (file_ < 0 || ::ftruncate(file_, narrow<off_t>(bytes_)) != 0) return end();
+  if (file_ < 0 || ::ftruncate(file_, narrow<off_t>(bytes_)) != 0) return false;
   void* const shared = ::mmap(nullptr, bytes_, PROT_READ | PROT_WRITE, MAP_SHARED, file_, 0);
-  if (shared == MAP_FAILED) return end();
+  if (shared == MAP_FAILED) return false;
   shared_ = shared;
 
   std::size_t at = texts;
@@ -123,19 +163,22 @@ Compilers::Compilers(const Device& device, std::span<const CompileJob> jobs,
     return Text{at - text.size(), text.size()};
   };
   auto* const header = new (shared_) Header;
-  std::memcpy(header->magic, magic, sizeof magic);
+  std::memcpy(header->magic, list_magic, sizeof list_magic);
   header->parent = ::getpid();
-  header->device = device.info().index;
+  header->device = device_.info().index;
   header->device_name = put(name);
-  header->count = jobs.size();
-  for (std::size_t i = 0; i < jobs.size(); ++i) {
+  header->count = jobs_.size();
+  for (std::size_t i = 0; i < jobs_.size(); ++i) {
     auto* const row = new (static_cast<char*>(shared_) + sizeof(Header) + i * sizeof(Row)) Row;
-    row->kernel = put(jobs[i].kernel);
-    row->source = put(jobs[i].source);
-    row->options = put(jobs[i].options);
-    row->local_size = jobs[i].local_size;
+    row->kernel = put(jobs_[i].kernel);
+    row->source = put(jobs_[i].source);
+    row->options = put(jobs_[i].options);
+    row->local_size = jobs_[i].local_size;
   }
+  return true;
+}
 
+void Compilers::start(std::size_t processes) {
   std::string program = compiler_program().string(), command = "compile";
   char* arguments[] = {program.data(), command.data(), nullptr};
   posix_spawn_file_actions_t streams;
@@ -151,35 +194,51 @@ Compilers::Compilers(const Device& device, std::span<const CompileJob> jobs,
   posix_spawn_file_actions_destroy(&streams);
 }
 
-Compilers::~Compilers() { end(); }
-
-void Compilers::end() {
+Compilers::~Compilers() {
   for (const pid_t child : children_) {
     ::kill(child, SIGKILL);
     ::waitpid(child, nullptr, 0);
   }
-  children_.clear();
   if (shared_) ::munmap(shared_, bytes_);
-  shared_ = nullptr;
   if (file_ >= 0) ::close(file_);
-  file_ = -1;
 }
 
-std::optional<std::size_t> Compilers::take() { return shared_ ? take_from(shared_) : std::nullopt; }
+void Compilers::finish() {
+  if (!shared_) return;
+  std::size_t done_here = 0;
+  for (; const auto job = take_from(shared_); ++done_here) {
+    if (interrupt_requested()) throw RunError("interrupted");
+    seconds_[jobs_[*job].kernel] = compile(device_, jobs_[*job]).program.build_seconds();
+  }
+  wait(done_here);
+  for (std::size_t i = 0; i < jobs_.size(); ++i)
+    if (const double seconds = rows_of(shared_)[i].seconds; seconds >= 0)
+      seconds_[jobs_[i].kernel] = seconds;
+}
 
-void Compilers::wait() {
+/// Waits until the processes have compiled all but what was `done_here`, or have ended.
+void Compilers::wait(std::size_t done_here) {
   constexpr std::chrono::milliseconds a_while(5);
-  while (!children_.empty()) {
+  const std::span<const Row> rows(rows_of(shared_), jobs_.size());
+  while (std::cmp_less(std::ranges::count_if(rows, [](const Row& row) { return row.seconds >= 0; }),
+                       rows.size() - done_here)) {
     std::erase_if(children_, [](pid_t child) { return ::waitpid(child, nullptr, WNOHANG) != 0; });
     if (interrupt_requested()) throw RunError("interrupted");
-    if (!children_.empty()) std::this_thread::sleep_for(a_while);
+    if (children_.empty()) return;
+    std::this_thread::sleep_for(a_while);
   }
 }
 
-std::optional<double> Compilers::seconds(std::size_t job) const {
-  if (!shared_) return std::nullopt;
-  const double seconds = rows_of(shared_)[job].seconds;
-  return seconds < 0 ? std::nullopt : std::optional(seconds);
+std::map<std::string, double> compile_ahead(const Device& device, std::vector<CompileJob> jobs) {
+  const std::size_t processes = compiler_count();
+  if (processes == 1) return {};
+  std::erase_if(jobs, [&](const CompileJob& job) { return is_cached(device, job); });
+  if (jobs.size() < 2) return {};
+  const std::size_t count = jobs.size();
+  Compilers compilers(device, std::move(jobs), std::min(processes, count) - 1);
+  log::info("compiling {} kernels in {} processes", count, compilers.process_count() + 1);
+  compilers.finish();
+  return compilers.seconds();
 }
 
 void compile_jobs_of(int file) {
@@ -193,10 +252,12 @@ void compile_jobs_of(int file) {
   if (shared == MAP_FAILED) throw no_list;
   const Header& header = *header_of(shared);
   const std::uint64_t count = header.count;
-  if (std::memcmp(header.magic, magic, sizeof magic) != 0 ||
+  if (std::memcmp(header.magic, list_magic, sizeof list_magic) != 0 ||
       count > (bytes - sizeof(Header)) / sizeof(Row))
     throw no_list;
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+  const rlimit no_core{};  // for drivers that crash
+  ::setrlimit(RLIMIT_CORE, &no_core);
   if (::getppid() != header.parent) return;  // that process ended before prctl
   const auto text_of = [&](Text text) {
     if (text.begin > bytes || text.size > bytes - text.begin) throw no_list;

@@ -9,8 +9,7 @@
 
 #include <cstddef>
 #include <filesystem>
-#include <optional>
-#include <span>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -34,6 +33,9 @@ struct CompiledKernel {
 /// Compiles a job in this process, or loads it from a cache. Throws RunError.
 CompiledKernel compile(const Device& device, const CompileJob& job);
 
+/// Returns whether a cache should have the job, so that to compile it takes some 10 ms.
+bool is_cached(const Device& device, const CompileJob& job);
+
 /// Names the program whose command `compile` calls compile_jobs_of(0): the program itself names its
 /// own file. Without a name, as in libraries, kernels are compiled in one process.
 void set_compiler_program(const std::filesystem::path& program);
@@ -46,31 +48,38 @@ std::size_t compiler_count();
 /// Compilers is a list of jobs that processes share, of which this is one.
 class Compilers {
  public:
-  /// Starts at most `processes` processes; fewer, or none, where the system refuses them.
-  Compilers(const Device& device, std::span<const CompileJob> jobs, std::size_t processes);
+  /// Starts `processes` processes, at most as many as there are jobs; fewer, or none, where the
+  /// system refuses them. They begin with the jobs of the longest texts, which take longest.
+  Compilers(const Device& device, std::vector<CompileJob> jobs, std::size_t processes);
   /// Ends the processes.
   ~Compilers();
   Compilers(const Compilers&) = delete;
   Compilers& operator=(const Compilers&) = delete;
 
   std::size_t process_count() const { return children_.size(); }
-  /// Returns the first job that no process has taken, which this process is to compile; nothing
-  /// when all are taken.
-  std::optional<std::size_t> take();
-  /// Waits until the processes have compiled what they took. Throws RunError when interrupted.
-  void wait();
-  /// Returns the seconds that another process took for a job; nothing if none has compiled it. A
-  /// process that fails or crashes leaves its job to this one, which then reports the error.
-  std::optional<double> seconds(std::size_t job) const;
+  /// Compiles jobs here that no process has taken, until none is left, and waits for the others. A
+  /// process that fails or crashes leaves its job: to compile that again reports the error. Throws
+  /// RunError, also when interrupted.
+  void finish();
+  /// Returns the seconds that a process, or this one, took for each compiled kernel.
+  const std::map<std::string, double>& seconds() const { return seconds_; }
 
  private:
-  class List;
-  void end();
+  bool share();
+  void start(std::size_t processes);
+  void wait(std::size_t done_here);
+  Device device_;
+  std::vector<CompileJob> jobs_;
   int file_ = -1;
   std::size_t bytes_ = 0;
   void* shared_ = nullptr;
   std::vector<pid_t> children_;
+  std::map<std::string, double> seconds_;
 };
+
+/// Compiles those of the jobs that no cache has, in several processes if there are several. Returns
+/// the seconds that each of these kernels took.
+std::map<std::string, double> compile_ahead(const Device& device, std::vector<CompileJob> jobs);
 
 /// Takes jobs of the list that a Compilers of another process shares by this open file, and
 /// compiles them, until none is left. Ends with that process. Throws InputError if the file holds

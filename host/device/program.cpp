@@ -22,17 +22,7 @@ namespace {
 using Binary = std::vector<unsigned char>;
 
 constexpr double noticeable_seconds = 0.5;
-
-std::string cache_key(const DeviceInfo& info, const std::string& options,
-                      const std::string& source) {
-  std::string key = "program";
-  for (const std::string* part :
-       {&info.name, &info.driver, &info.version, &info.platform, &options, &source}) {
-    key += '\0';
-    key += *part;
-  }
-  return key;
-}
+const std::string standard = "-cl-std=CL1.2";
 
 /// Makes a program from a cached binary; returns nothing when the driver refuses it.
 std::optional<cl::Program> from_binary(const Device& device, const Binary& binary,
@@ -120,6 +110,17 @@ void set_null_arguments(const Device& device, cl::Kernel& kernel) {
 
 }  // namespace
 
+std::string cache_key(const DeviceInfo& info, const std::string& options,
+                      const std::string& source) {
+  std::string key = "program";
+  for (const std::string* part :
+       {&info.name, &info.driver, &info.version, &info.platform, &options, &source}) {
+    key += '\0';
+    key += *part;
+  }
+  return key;
+}
+
 std::optional<Device::Programs::Compiled> Device::Programs::find(const Key& key) {
   const std::lock_guard lock(mutex_);
   const auto found = entries_.find(key);
@@ -144,9 +145,10 @@ Program Program::from_source(const Device& device, const std::string& name,
                              BinaryCache cache) {
   begin_opencl();
   const auto start = Clock::now();
-  const std::string all_options = options.empty() ? "-cl-std=CL1.2" : "-cl-std=CL1.2 " + options;
+  const std::string all_options =
+      options.empty() ? standard : fmt::format("{} {}", standard, options);
   const bool keeps_binary = cache == BinaryCache::always || !device.is_pocl();
-  const std::string key = keeps_binary ? cache_key(device.info(), all_options, source) : "";
+  const std::string key = keeps_binary ? cache_key(device.info(), options, source) : "";
   Program out;
   out.device_ = device;
   out.name_ = name;

@@ -96,8 +96,7 @@ void handle_signals(bool on) {
 void prepare(const Device& device) {
   variables.clear();
   for (char** one = environ; *one; ++one) variables.emplace_back(*one);
-  const fs::path cache = device.info().bundled ? bundled_cache_folder(environment_variable)
-                                               : pocl_cache_folder(environment_variable);
+  const fs::path cache = used_cache_folder(device.info().bundled);
   variables.push_back(fmt::format("{}={}", cache_marker, cache.string()));
   variables.push_back(fmt::format("{}=00", marker));
   environment.clear();

@@ -4,13 +4,42 @@
 
 #include <utility>
 
+#include "render/detail/launch_policy.h"
+
 namespace caplet {
 
 namespace {
 
 bool camera_stage_pays(const Device& device) { return device.encoding() == Encoding::wide; }
 
+bool has_texture(const StageOptions& options, int kind) {
+  return (options.rows.at("textures") >> kind & 1) != 0;
+}
+
+/// Returns `options` for the view's sampler, camera and clipping plane as well.
+StageOptions with_view(StageOptions options, const FlatView& view) {
+  options.rows["samplers"] |= std::uint64_t{1} << view.view.sampler;
+  // Viewers switch between these two cameras, which cost next to nothing.
+  options.rows["cameras"] |=
+      std::uint64_t{1} << view.camera.kind | 1U << camera_perspective | 1U << camera_orthographic;
+  options.clip |= has_clip(view);
+  return options;
+}
+
+StageNeeds stage_needs(const Device& device, const StageOptions& options, bool has_media,
+                       bool has_clip) {
+  return {camera_stage_pays(device), has_texture(options, texture_alpha), has_media, has_clip,
+          launch_policy_of(device).counts_on_device};
+}
+
 }  // namespace
+
+std::vector<CompileJob> render_jobs(const Device& device, const FlatScene& scene,
+                                    const FlatView& view) {
+  const StageOptions options = with_view(stage_options(scene, device), view);
+  return Kernels(device, options)
+      .jobs(render_stages(stage_needs(device, options, scene.has_media(), has_clip(view))));
+}
 
 DeviceScene::DeviceScene(const Device& device, const FlatScene& scene)
     : device_(device),
@@ -22,8 +51,11 @@ DeviceScene::DeviceScene(const Device& device, const FlatScene& scene)
       has_light_tree_(!scene.light_nodes.empty()),
       has_media_(scene.has_media()),
       moves_(scene.moves()),
-      has_camera_stage_(camera_stage_pays(device)),
       bvh_nodes_(scene.bvh_nodes) {}
+
+StageNeeds DeviceScene::needs(bool has_clip) const {
+  return stage_needs(device_, options_, has_media_, has_clip);
+}
 
 void DeviceScene::update(const FlatScene& scene, const SceneChanges& changes) {
   bytes_updated_ += buffers_.update(device_, scene, changes);
@@ -43,12 +75,7 @@ void DeviceScene::update(const FlatScene& scene, const SceneChanges& changes) {
 }
 
 void DeviceScene::prepare_for(const FlatView& view) {
-  StageOptions options = options_;
-  options.rows["samplers"] |= std::uint64_t{1} << view.view.sampler;
-  // Viewers switch between these two cameras, which cost next to nothing.
-  options.rows["cameras"] |=
-      std::uint64_t{1} << view.camera.kind | 1U << camera_perspective | 1U << camera_orthographic;
-  options.clip |= has_clip(view);
+  StageOptions options = with_view(options_, view);
   if (options == options_) return;
   kernels_ = Kernels(device_, options);
   options_ = std::move(options);

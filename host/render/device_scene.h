@@ -14,6 +14,10 @@
 
 namespace caplet {
 
+/// Returns what has to be compiled for a render of a view of the scene.
+std::vector<CompileJob> render_jobs(const Device& device, const FlatScene& scene,
+                                    const FlatView& view);
+
 class DeviceScene {
  public:
   /// Sends the scene to the device; nothing of `scene` is referred to afterwards. Throws RunError
@@ -39,10 +43,10 @@ class DeviceScene {
   /// Returns LightingRecord.radiance.
   float light_radiance() const { return light_radiance_; }
   /// Returns whether camera rays have a stage of their own: where eight lanes are tested at a time.
-  bool has_camera_stage() const { return has_camera_stage_; }
-  /// These say whether there are shapes that let rays through, and whether anything is textured.
-  /// They describe the kernels, which may have more than the scene.
-  bool has_alpha() const { return has_texture(texture_alpha); }
+  bool has_camera_stage() const { return needs(false).camera_stage; }
+  /// Returns what decides which stages a render needs.
+  StageNeeds needs(bool has_clip) const;
+  /// Returns whether kernels know textures. They may have more than the scene.
   bool has_textures() const { return options_.rows.at("textures") != 0; }
   /// Returns whether lights are chosen by a light tree.
   bool has_light_tree() const { return has_light_tree_; }
@@ -54,7 +58,6 @@ class DeviceScene {
   std::uint64_t bvh_nodes() const { return bvh_nodes_; }
 
  private:
-  bool has_texture(int kind) const { return (options_.rows.at("textures") >> kind & 1) != 0; }
   Device device_;
   StageOptions options_;
   SceneBuffers buffers_;
@@ -64,7 +67,6 @@ class DeviceScene {
   bool has_light_tree_ = false;
   bool has_media_ = false;
   bool moves_ = false;
-  bool has_camera_stage_ = false;
   std::uint64_t bvh_nodes_ = 0;
   std::uint64_t bytes_updated_ = 0;
 };

@@ -7,14 +7,13 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdlib>
-#include <functional>
 #include <iterator>
+#include <map>
 #include <string_view>
 
 #include "base/check.h"
 #include "base/clock.h"
 #include "base/error.h"
-#include "base/log.h"
 #include "device/cl_error.h"
 #include "render/detail/known_rays.h"
 #include "render/detail/launch_policy.h"
@@ -208,49 +207,27 @@ CompileJob Kernels::job_of(Stage stage) const {
           is_one || takes_shares(stage) ? 1 : local_size_};
 }
 
-double Kernels::compile(Stage stage, std::optional<double> elsewhere) {
-  CompiledKernel compiled = caplet::compile(device_, job_of(stage));
-  const double seconds = compiled.program.build_seconds();
-  compile_seconds_by_stage_.emplace_back(row_of(stage).name, elsewhere.value_or(seconds));
-  compiled_[static_cast<std::size_t>(stage)] = Compiled{std::move(compiled)};
-  return seconds;
+std::vector<CompileJob> Kernels::jobs(std::span<const Stage> stages) const {
+  std::vector<CompileJob> out;
+  for (const Stage stage : stages) out.push_back(job_of(stage));
+  return out;
 }
 
 void Kernels::compile(std::span<const Stage> stages) {
-  constexpr double noticeable_seconds = 0.2;  // one that is cached takes a tenth of it
   std::vector<Stage> missing;
   for (const Stage stage : stages)
     if (!compiled_[static_cast<std::size_t>(stage)]) missing.push_back(stage);
-  const std::size_t processes = compiler_count();
   const auto start = Clock::now();
-  for (std::size_t i = 0; i < missing.size(); ++i)
-    if (compile(missing[i]) >= noticeable_seconds && processes > 1 && missing.size() - i > 2) {
-      compile_together(std::span(missing).subspan(i + 1));
-      break;
-    }
+  const std::vector<CompileJob> all = jobs(missing);
+  const std::map<std::string, double> ahead = compile_ahead(device_, all);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    CompiledKernel compiled = caplet::compile(device_, all[i]);
+    const auto before = ahead.find(all[i].kernel);
+    compile_seconds_by_stage_.emplace_back(
+        all[i].kernel, before != ahead.end() ? before->second : compiled.program.build_seconds());
+    compiled_[static_cast<std::size_t>(missing[i])] = Compiled{std::move(compiled)};
+  }
   compile_seconds_ += seconds_since(start);
-}
-
-void Kernels::compile_together(std::span<const Stage> stages) {
-  // Long texts take longest to compile, and those that take longest come first.
-  std::vector<std::pair<Stage, CompileJob>> sorted;
-  for (const Stage stage : stages) sorted.emplace_back(stage, job_of(stage));
-  std::ranges::sort(sorted, std::greater(),
-                    [](const auto& one) { return one.second.source.size(); });
-  std::vector<CompileJob> jobs;
-  for (auto& [stage, job] : sorted) jobs.push_back(std::move(job));
-  Compilers compilers(device_, jobs, std::min(compiler_count(), jobs.size()) - 1);
-  const std::size_t processes = compilers.process_count();
-  while (const auto job = compilers.take()) compile(sorted[*job].first);
-  compilers.wait();
-  std::size_t elsewhere = 0;
-  for (std::size_t i = 0; i < sorted.size(); ++i)
-    if (!compiled_[static_cast<std::size_t>(sorted[i].first)]) {
-      compile(sorted[i].first, compilers.seconds(i));
-      elsewhere += compilers.seconds(i).has_value() ? 1 : 0;
-    }
-  log::info("{} of {} kernels were compiled by {} other processes", elsewhere, jobs.size(),
-            processes);
 }
 
 void Kernels::run(Stage stage, const Bindings& bindings, std::size_t count, std::size_t first,

@@ -73,8 +73,10 @@ class Kernels {
   /// Takes `options` as stage_options returns them.
   Kernels(const Device& device, StageOptions options);
 
-  /// Compiles the stages that are not compiled yet. When one takes noticeable time, other processes
-  /// take part in compiling those that follow (compilers.h). Throws RunError.
+  /// Returns what has to be compiled for these stages.
+  std::vector<CompileJob> jobs(std::span<const Stage> stages) const;
+  /// Compiles the stages that are not compiled yet, in several processes at a time (compilers.h).
+  /// Throws RunError.
   void compile(std::span<const Stage> stages);
   /// Enqueues a stage, which is compiled, over items `first` to `first` + `count`; if `counter` is
   /// the number of a counter (limits.h), only over as many of these as it says. With timing on,
@@ -97,11 +99,6 @@ class Kernels {
  private:
   bool takes_shares(Stage stage) const;  // its work-items do several items each
   CompileJob job_of(Stage stage) const;
-  /// Compiles one stage, which took `elsewhere` seconds in another process if it is not empty.
-  /// Returns the seconds it took here.
-  double compile(Stage stage, std::optional<double> elsewhere = {});
-  /// Compiles the stages in several processes at a time.
-  void compile_together(std::span<const Stage> stages);
 
   struct Compiled : CompiledKernel {
     double seconds = 0;  // of its launches

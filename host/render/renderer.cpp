@@ -70,11 +70,6 @@ PathNeeds needs_of(const DeviceScene& scene, Layers layers) {
   return {layers, scene.has_textures(), scene.has_light_tree(), scene.has_media(), scene.moves()};
 }
 
-StageNeeds stage_needs(const DeviceScene& scene, bool has_clip) {
-  return {scene.has_camera_stage(), scene.has_alpha(), scene.has_media(), has_clip,
-          launch_policy_of(scene.device()).counts_on_device};
-}
-
 std::size_t chosen_batch_paths(const DeviceScene& scene, const FlatView& view,
                                const RendererOptions& options) {
   const Device& device = scene.device();
@@ -168,7 +163,7 @@ void Renderer::reset(const FlatView& view) {
   film_.parts.clear();
   is_old_ = true;
   has_clip_ = has_clip(view);
-  const StageNeeds needs = stage_needs(scene_, has_clip_);
+  const StageNeeds needs = scene_.needs(has_clip_);
   stages_ = {first_needed({Stage::extend_alpha, Stage::extend_camera, Stage::extend}, needs),
              first_needed({Stage::extend_alpha, Stage::extend}, needs),
              first_needed({Stage::shade, Stage::shade_media}, needs),

@@ -12,6 +12,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <fstream>
 
@@ -53,63 +54,50 @@ class CompilersTest : public testing::Test {
       buffer.write(std::vector<cl_uint>(6, 100));
       set_arguments(device_, compiled.kernel, buffer, cl_uint{6});
       launch_items(device_, compiled.kernel, 6, compiled.local_size);
-      EXPECT_EQ(buffer.read(), std::vector<cl_uint>(6, narrow<cl_uint>(100 + 10 * i + 1)));
+      EXPECT_EQ(buffer.read(), std::vector<cl_uint>(6, static_cast<cl_uint>(101 + 10 * i)));
     }
   }
   Device device_ = test::test_device();
 };
 
-TEST_F(CompilersTest, AnotherProcessCompilesAll) {
-  const std::vector<CompileJob> jobs = adding_jobs(3);
-  Compilers compilers(device_, jobs, 1);
-  ASSERT_EQ(compilers.process_count(), 1u);
-  compilers.wait();
-  for (std::size_t i = 0; i < jobs.size(); ++i) {
-    ASSERT_TRUE(compilers.seconds(i).has_value()) << i;
-    EXPECT_LT(0, *compilers.seconds(i)) << i;
+TEST_F(CompilersTest, ShareAllJobs) {
+  for (const std::size_t processes : {0U, 1U, 3U, 9U}) {
+    const std::vector<CompileJob> jobs = adding_jobs(8);
+    Compilers compilers(device_, jobs, processes);
+    EXPECT_EQ(compilers.process_count(), std::min<std::size_t>(processes, 8));
+    compilers.finish();
+    EXPECT_EQ(compilers.seconds().size(), jobs.size());
+    for (const CompileJob& job : jobs) {
+      ASSERT_TRUE(compilers.seconds().contains(job.kernel)) << job.kernel;
+      EXPECT_LT(0, compilers.seconds().at(job.kernel)) << job.kernel;
+      EXPECT_TRUE(is_cached(device_, job)) << job.kernel;
+    }
+    expect_results(jobs);
   }
-  EXPECT_EQ(compilers.take(), std::nullopt);
-  expect_results(jobs);
 }
 
-TEST_F(CompilersTest, EachJobIsTakenOnce) {
-  const std::vector<CompileJob> jobs = adding_jobs(8);
-  std::vector<bool> here(jobs.size());
-  Compilers compilers(device_, jobs, 2);
-  while (const auto job = compilers.take()) {
-    ASSERT_LT(*job, jobs.size());
-    EXPECT_FALSE(here[*job]);
-    here[*job] = true;
-    compile(device_, jobs[*job]);
-  }
-  compilers.wait();
-  EXPECT_TRUE(here.front());  // processes take a while to begin
-  for (std::size_t i = 0; i < jobs.size(); ++i)
-    EXPECT_NE(compilers.seconds(i).has_value(), here[i]) << i;
-  expect_results(jobs);
-}
-
-TEST_F(CompilersTest, JobsOfAProcessThatFailsAreLeft) {
+TEST_F(CompilersTest, AnotherProcessTakesThoseOfTheLongestTexts) {
   std::vector<CompileJob> jobs = adding_jobs(3);
-  jobs[1].source = "this is no kernel";
+  for (CompileJob& job : jobs) job.source = "this is no kernel";
+  jobs[1].source += " and it is the longest";
   Compilers compilers(device_, jobs, 1);
-  compilers.wait();
-  EXPECT_TRUE(compilers.seconds(0).has_value());
-  EXPECT_FALSE(compilers.seconds(1).has_value());
-  EXPECT_EQ(compilers.take(), 2u);
-  EXPECT_THROW(compile(device_, jobs[1]), RunError);
+  siginfo_t ended;  // at its first job
+  ASSERT_EQ(::waitid(P_ALL, 0, &ended, WEXITED | WNOWAIT), 0);
+  try {
+    compilers.finish();
+    FAIL() << "no error";
+  } catch (const RunError& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("program 'add_0'"));
+  }
 }
 
-TEST_F(CompilersTest, WithoutProcessesAllIsLeft) {
+TEST_F(CompilersTest, WithoutProcessesThisOneCompilesAll) {
   for (const char* program : {"/bin/false", "/does/not/exist", ""}) {
     set_compiler_program(program);
     const std::vector<CompileJob> jobs = adding_jobs(2);
     Compilers compilers(device_, jobs, 2);
-    compilers.wait();
-    EXPECT_EQ(compilers.take(), 0u) << program;
-    EXPECT_EQ(compilers.take(), 1u) << program;
-    EXPECT_EQ(compilers.take(), std::nullopt) << program;
-    EXPECT_EQ(compilers.seconds(0), std::nullopt) << program;
+    compilers.finish();
+    EXPECT_EQ(compilers.seconds().size(), 2u) << program;
   }
 }
 
@@ -117,7 +105,29 @@ TEST_F(CompilersTest, AnInterruptEndsThem) {
   const std::vector<CompileJob> jobs = adding_jobs(4);
   Compilers compilers(device_, jobs, 2);
   set_interrupt_requested(true);
-  EXPECT_THROW(compilers.wait(), RunError);
+  EXPECT_THROW(compilers.finish(), RunError);
+}
+
+TEST_F(CompilersTest, WhatIsCachedIsNotCompiledAhead) {
+  std::vector<CompileJob> jobs = adding_jobs(2);
+  compile_ahead(device_, jobs);
+  EXPECT_TRUE(compile_ahead(device_, jobs).empty());
+  const test::ScopedVariable elsewhere("CAPLET_CACHE", test::temporary_folder().string());
+  for (const CompileJob& job : jobs) EXPECT_FALSE(is_cached(device_, job));
+  const test::ScopedVariable alone("CAPLET_COMPILERS", "1");
+  EXPECT_TRUE(compile_ahead(device_, jobs).empty());
+  for (const CompileJob& job : jobs) EXPECT_FALSE(is_cached(device_, job));
+  compile(device_, jobs[0]);
+  EXPECT_TRUE(is_cached(device_, jobs[0]));
+  CompileJob other = jobs[0];
+  other.options = "-DSTEP=5";
+  EXPECT_FALSE(is_cached(device_, other));
+  other = jobs[0];
+  other.local_size = 2;
+  EXPECT_NE(is_cached(device_, other), device_.is_pocl());
+  other = jobs[0];
+  other.source += " ";
+  EXPECT_FALSE(is_cached(device_, other));
 }
 
 TEST_F(CompilersTest, TheirNumberIsToldByTheVariable) {

@@ -40,6 +40,10 @@ class Device::Programs {
   std::uint64_t uses_ = 0;
 };
 
+/// Returns the key of a program's binary in Caplet's cache.
+std::string cache_key(const DeviceInfo& info, const std::string& options,
+                      const std::string& source);
+
 /// The context of a device and what was compiled in it.
 struct Device::Shared {
   cl::Context context;
