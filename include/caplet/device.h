@@ -28,8 +28,8 @@ struct DeviceInfo {
 /// OpenCL. A program with locks around such calls should check before it waits for them.
 CAPLET_API void check_process();
 
-/// Names the program `caplet`. Kernels are then compiled by several of its processes at a time, else
-/// by this process, one after the other. Call it before the first render or query.
+/// Names the program `caplet`. Kernels are then compiled by several of its processes at a time,
+/// else by this process, one after the other. Call it before the first render or query.
 CAPLET_API void set_program(const std::string& path);
 
 /// Lists all devices; empty when there are none.

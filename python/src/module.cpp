@@ -3,6 +3,7 @@
 //
 // caplet._caplet: the library's public classes for the package's Python, which is what programs
 // use.
+#include <caplet/device.h>
 #include <caplet/log.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>

@@ -2,8 +2,10 @@
 # Copyright Caplet authors
 """Pictures as arrays; sessions that are read, interrupted, cancelled and changed."""
 import os
+import re
 import signal
 import struct
+import subprocess
 import sys
 import threading
 import time
@@ -361,3 +363,19 @@ def test_a_session_is_cancelled_from_another_thread(ball):
     timer.start()
     assert session.render(1 << 20) < 1 << 20
     timer.join()
+
+
+def test_kernels_are_compiled_by_processes_of_the_program(tmp_path):
+    program = os.environ.get("CAPLET_PROGRAM")
+    if not program:
+        pytest.skip("CAPLET_PROGRAM names no program")
+    code = "import caplet; caplet.set_log_level('info'); s = caplet.Scene(); s.add_spheres((0, 0, 0), 1); caplet.render(s, spp=1, size=(8, 8))"
+
+    def said(**variables):
+        environment = dict(os.environ, POCL_CACHE_DIR=str(tmp_path), CAPLET_CACHE=str(tmp_path), CAPLET_SELF_TEST="0", CAPLET_COMPILERS="3", **variables)
+        done = subprocess.run([sys.executable, "-c", code], env=environment, capture_output=True, text=True)
+        assert done.returncode == 0, done.stderr
+        return done.stderr
+
+    assert re.search("compiling [0-9]+ kernels in 3 processes", said())
+    assert "compiling" not in said()
