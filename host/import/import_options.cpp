@@ -72,7 +72,8 @@ const std::vector<ImportOptionRow>& import_option_rows() {
        Of::picture},
       {"up", "x|y|z|-x|-y|-z", "The axis of the file that is up", Of::picture},
       {"projection", "perspective|orthographic",
-       "Of the automatic camera; orthographic: lengths are the same at all depths", Of::picture},
+       "Of perspective and orthographic cameras; orthographic: lengths are the same at all depths",
+       Of::picture},
       {"light", "studio|flat|dramatic",
        "A set-up of lights around the camera in place of the scene's lights (shapes that shine "
        "stay)",

@@ -9,6 +9,7 @@
 #include "present/clip.h"
 #include "present/picture_options.h"
 #include "present/present.h"
+#include "present/projection.h"
 
 namespace caplet {
 
@@ -28,15 +29,21 @@ void look_from(Scene& scene, const ImportOptions& options, bool is_turned) {
   const auto view = options.text("view"), up = is_turned ? std::nullopt : options.text("up");
   const bool projects = options.text("projection").has_value();
   if (!view && !up && !projects) return;
-  if (!view && !scene.automatic_camera)
-    throw InputError({up ? "--up" : "--projection"},
-                     "the scene has a camera of its own: with --view it is framed anew");
+  const bool is_orthographic =
+      projects && options.choice("projection", {"perspective", "orthographic"}, 0) == 1;
+  if (!view && !scene.automatic_camera) {
+    if (up)
+      throw InputError({"--up"},
+                       "the scene has a camera of its own: with --view it is framed anew");
+    const Bounds bounds = bounds_or_unit_of(scene);
+    return change_projection(scene.view.camera, is_orthographic, 0.5 * (bounds.min + bounds.max),
+                             "--projection");
+  }
   Framing& framing = scene.framing;
   if (up) framing.up = parse_axis(*up, "--up");
   if (view)
     framing.toward_viewer = parse_view(*view, framing.up.value_or(glm::dvec3(0, 1, 0)), "--view");
-  if (projects)
-    framing.is_orthographic = options.choice("projection", {"perspective", "orthographic"}, 0) == 1;
+  if (projects) framing.is_orthographic = is_orthographic;
   if (!can_be_framed(scene)) return;
   const auto medium = scene.view.camera.medium;
   frame_camera(scene);

@@ -25,7 +25,6 @@ namespace caplet {
 
 namespace {
 
-constexpr double kFieldOfView = glm::radians(35.0);  // of the shorter side
 /// A scene is flat if its least extent is below this part of its middle one (standard deviations
 /// along the principal axes).
 constexpr double kFlat = 0.35;
@@ -259,7 +258,7 @@ void frame_camera(Scene& scene) {
   // With the plane's angle a to the axis, the apex (x, z) must satisfy cos(a) x - sin(a) z >= R and
   // -cos(a) x - sin(a) z >= L, R and L being the largest of
   // +-cos(a) cx - sin(a) cz + r; both are equal when x is centred, which gives the nearest apex.
-  const double half = std::tan(kFieldOfView / 2) * (1 - frame_margin);
+  const double half = std::tan(automatic_field_of_view / 2) * (1 - frame_margin);
   struct Side {
     double sine, cosine, right, left;
   };
@@ -281,7 +280,7 @@ void frame_camera(Scene& scene) {
   const double x = (horizontal.right - horizontal.left) / (2 * horizontal.cosine);
   const double y = (vertical.right - vertical.left) / (2 * vertical.cosine);
   const glm::dvec3 eye = x * view.right + y * view.up + z * view.forward;
-  set_camera(scene, view, eye, PerspectiveProjection{kFieldOfView});
+  set_camera(scene, view, eye, PerspectiveProjection{automatic_field_of_view});
 }
 
 Bounds bounds_or_unit_of(const Scene& scene) {

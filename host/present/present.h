@@ -23,6 +23,8 @@ bool is_lit(const Scene& scene);
 
 /// The margin of an automatic camera on each side, relative to half the image.
 inline constexpr double frame_margin = 0.05;
+/// The field of view of an automatic camera, of the shorter side: 35 degrees in radians.
+inline constexpr double automatic_field_of_view = 0.6108652381980153;
 
 /// Points the camera at the shapes and moves it so that they just fit the film's size, with a
 /// margin; sets automatic_camera. It must be called again when the film's size changes.

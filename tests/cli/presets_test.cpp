@@ -21,9 +21,9 @@ class Presets : public testing::Test {
  protected:
   Presets() : folder_(test::temporary_folder()) { test::write_file(folder_ / "cell.swc", neuron); }
 
-  std::string picture(const Names& options) const {
-    Names all{"render", "cell.swc", "-q",    "-o",    "none", "--preview",
-              "p.png",  "--size",   "60x40", "--spp", "2"};
+  std::string picture(const Names& options, const char* file = "cell.swc") const {
+    Names all{"render", file,     "-q",    "-o",    "none", "--preview",
+              "p.png",  "--size", "60x40", "--spp", "2"};
     all.insert(all.end(), options.begin(), options.end());
     const test::Result result = test::run_program(all, folder_);
     EXPECT_EQ(result.code, 0) << result.err;
@@ -51,6 +51,20 @@ TEST_F(Presets, YieldToWhatIsGiven) {
   EXPECT_EQ(picture({"--preset", "paper", "--projection", "perspective"}),
             picture({"--background", "white", "--outline", "1", "--scale-bar", "auto"}));
   EXPECT_EQ(picture({"--preset", "paper", "--orthographic"}), picture({"--preset", "paper"}));
+}
+
+TEST_F(Presets, TakeAFilesOwnCamera) {
+  test::write_file(folder_ / "own.pbrt", test::small_scene);
+  // The capsule's middle is 5 units from the eye, where 40 degrees see 1.82 to each side.
+  test::write_file(
+      folder_ / "parallel.pbrt",
+      "LookAt 0 0 5  0 0 0  0 1 0\nCamera \"orthographic\" \"float screenwindow\" "
+      "[-2.7297767 2.7297767 -1.8198511 1.8198511]\n" +
+          std::string(test::small_scene).substr(std::string(test::small_scene).find("Film")));
+  EXPECT_EQ(picture({"--preset", "paper"}, "own.pbrt"),
+            picture({"--preset", "paper"}, "parallel.pbrt"));
+  EXPECT_NE(picture({"--preset", "paper", "--projection", "perspective"}, "own.pbrt"),
+            picture({"--preset", "paper"}, "own.pbrt"));
 }
 
 TEST_F(Presets, NamesThatAreWrongAreTold) {

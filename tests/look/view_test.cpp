@@ -7,8 +7,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <glm/ext/matrix_transform.hpp>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
+#include <utility>
+#include <vector>
 
 #include "import/picture_options.h"
 #include "lower/camera.h"
@@ -16,6 +19,7 @@
 #include "present/lights.h"
 #include "present/picture_options.h"
 #include "present/present.h"
+#include "scene/camera.h"
 #include "support/import_files.h"
 
 namespace caplet {
@@ -187,14 +191,95 @@ TEST(Look, AFilesOwnCameraIsReplacedByAViewAlone) {
   scene.automatic_camera = false;
   const Camera before = scene.view.camera;
   EXPECT_THAT(complaint([&] {
-                look(scene, {{"projection", "orthographic"}});
+                look(scene, {{"up", "z"}});
               }),
-              AllOf(HasSubstr("--projection"), HasSubstr("--view")));
-  EXPECT_THAT(complaint([&] { look(scene, {{"up", "z"}}); }), HasSubstr("--up"));
+              AllOf(HasSubstr("--up"), HasSubstr("--view")));
   look(scene, {{"light", "flat"}, {"background", "white"}});
   EXPECT_EQ(scene.view.camera.world_from_camera, before.world_from_camera);
   look(scene, {{"view", "top"}});
   expect_near(axis_of(scene, 2), {0, -1, 0});
+}
+
+/// A file's camera, turned, moved and scaled, that sees the three balls' middle 5 units away.
+Camera own_camera() {
+  Camera camera;
+  camera.world_from_camera = glm::dmat4(0, 0, -2, 0, 0, 2, 0, 0, 2, 0, 0, 0, -10, 0.5, 0.25, 1);
+  camera.projection = PerspectiveProjection{1.2};
+  camera.lens_radius = 0.125;
+  camera.focal_distance = 4;
+  return camera;
+}
+
+/// Where a point of the world lies in the picture.
+glm::dvec2 place_of(const glm::dvec3& p, const Camera& camera, int width, int height) {
+  FilmSettings film;
+  film.width = width;
+  film.height = height;
+  const auto place =
+      project(camera, film, glm::inverse(camera.world_from_camera) * glm::dvec4(p, 1));
+  return place.value_or(glm::dvec2(-1e9));
+}
+
+TEST(Projection, OfAFilesCameraKeepsTheDepthOfTheMiddle) {
+  Scene scene = three_balls();
+  scene.automatic_camera = false;
+  scene.view.camera = own_camera();
+  // The middle of the scene's bounds is (0, 0, 1).
+  const std::vector<glm::dvec3> points{{0, 0, 1}, {0, 3, -2}, {0, -4.5, 2.75}};
+  const Camera before = scene.view.camera;
+  look(scene, {{"projection", "perspective"}});
+  EXPECT_EQ(scene.view.camera.world_from_camera, before.world_from_camera);
+  look(scene, {{"projection", "orthographic"}});
+  const Camera parallel = scene.view.camera;
+  ASSERT_TRUE(is_orthographic(parallel));
+  look(scene, {{"projection", "perspective"}});
+  const Camera after = scene.view.camera;
+  EXPECT_NEAR(fov_of(after), glm::radians(35.0), 1e-15);
+  for (const auto& [width, height] : {std::pair(200, 100), std::pair(90, 150)})
+    for (const glm::dvec3& p : points)
+      for (const Camera& camera : {parallel, after}) {
+        const glm::dvec2 is = place_of(p, camera, width, height),
+                         was = place_of(p, before, width, height);
+        EXPECT_LT(glm::distance(is, was), 1e-10) << is.x << " " << is.y << ", " << was.x;
+      }
+  // What is behind the middle is no smaller.
+  EXPECT_NEAR(place_of({7, 3, 1}, parallel, 200, 100).y, place_of({0, 3, 1}, before, 200, 100).y,
+              1e-10);
+  // What is sharp is at the same depth, and the lens is as large.
+  for (const Camera& camera : {parallel, after}) {
+    const glm::dvec4 sharp = camera.world_from_camera * glm::dvec4(0, 0, camera.focal_distance, 1);
+    EXPECT_NEAR(sharp.x, -2, 1e-12);
+    EXPECT_NEAR(camera.lens_radius * glm::length(glm::dvec3(camera.world_from_camera[0])), 0.25,
+                1e-15);
+  }
+}
+
+TEST(Projection, OfACameraThatMovesIsThatOfItsKeys) {
+  Scene scene = three_balls();
+  scene.automatic_camera = false;
+  scene.view.camera = own_camera();
+  const glm::dmat4 first = scene.view.camera.world_from_camera;
+  const glm::dmat4 second = glm::translate(glm::dmat4(1), glm::dvec3(0, 2, 0)) * first;
+  scene.view.camera.motion = {{0, first}, {1, second}};
+  look(scene, {{"projection", "orthographic"}});
+  const Camera& camera = scene.view.camera;
+  ASSERT_EQ(camera.motion.size(), 2U);
+  EXPECT_EQ(camera.motion[0].matrix, camera.world_from_camera);
+  EXPECT_EQ(camera.motion[1].matrix[3], second[3]);
+  EXPECT_EQ(glm::dmat3(camera.motion[1].matrix), glm::dmat3(camera.world_from_camera));
+}
+
+TEST(Projection, OthersAreRefused) {
+  Scene scene = three_balls();
+  scene.automatic_camera = false;
+  scene.view.camera = own_camera();
+  scene.view.camera.world_from_camera[3].x = 3;
+  const auto refused = [&] {
+    return complaint([&] { look(scene, {{"projection", "orthographic"}}); });
+  };
+  EXPECT_THAT(refused(), AllOf(HasSubstr("--projection"), HasSubstr("lies behind its camera")));
+  scene.view.camera.projection = SphericalProjection{};
+  EXPECT_THAT(refused(), HasSubstr("a camera \"spherical\" has neither projection"));
 }
 
 TEST(Look, SetsTheExposureOfPreviews) {

@@ -13,6 +13,7 @@
 #include "base/error.h"
 #include "base/quotes.h"
 #include "import/detail/selection.h"
+#include "import/detail/text_file.h"
 
 namespace caplet {
 
