@@ -94,7 +94,7 @@ static void stage_item(const Stage* g, uint item) {
   const uint flags = g->carried.path_flags[path];
   RayRecord ray = g->rays.path_ray[path];
   const int comes_in = (flags & PATH_FROM_PLANE) != 0u && ray.t_min < INFINITY;
-  const int goes_out = (flags & PATH_INSIDE) != 0u && ray.t_max < INFINITY &&
+  const int goes_out = (flags & (PATH_INSIDE | PATH_CROSSED)) != 0u && ray.t_max < INFINITY &&
                        g->rays.path_hit[path].slot == CAPLET_NONE;
   if (!comes_in && !goes_out) return;
   const float t = comes_in ? ray.t_min : ray.t_max;
@@ -104,6 +104,7 @@ static void stage_item(const Stage* g, uint item) {
   if (!clip_holder(&g->tree, &g->surfaces, &g->materials, ray, &hit)) return;
   hit = clip_hit(&g->tree, &g->surfaces, hit, t, !comes_in);
   g->rays.path_hit[path] = hit;
+  if (goes_out) g->carried.path_flags[path] = flags | PATH_INSIDE;
 #ifdef CLIP_IN_MEDIA
   // The solid's medium begins behind the face.
   if (comes_in) {

@@ -19,6 +19,7 @@
   1u  // the last scattering was a delta: light sampling could not have found what is hit next
 #define PATH_FROM_PLANE 2u  // a camera ray that begins at the clipping plane
 #define PATH_INSIDE 4u      // with a clipping plane: the ray began within a closed solid
+#define PATH_CROSSED 8u     // with a clipping plane: the path has crossed a surface
 #define PATH_DEPTH_SHIFT 8
 
 // These are addresses of random numbers (dimensions.def).

@@ -22,6 +22,7 @@ typedef struct {
   uint depth;          // scatterings so far
   int specular;        // the last one was a delta, so that no light sample could have found its hit
   int inside;          // the last direction leads into a closed solid; told where has_clip
+  int crossed;         // so may it, as solids may lie within each other: a surface was crossed
 } PathState;
 
 static inline PathState load_path_state(const Stage* g, uint path) {
@@ -36,6 +37,7 @@ static inline PathState load_path_state(const Stage* g, uint path) {
   out.depth = flags >> PATH_DEPTH_SHIFT;
   out.specular = (flags & PATH_SPECULAR) != 0u;
   out.inside = has_clip && (flags & PATH_INSIDE) != 0u;
+  out.crossed = has_clip && (flags & PATH_CROSSED) != 0u;
   return out;
 }
 
@@ -47,7 +49,8 @@ static inline void store_path_state(const Stage* g, uint path, const PathState* 
       (float4)(state->last_pdf, state->eta_scale, as_float(state->crossed_light), 0.0f);
   g->carried.path_flags[path] = (state->depth << PATH_DEPTH_SHIFT) |
                                 path_flag(g->view.view, state->specular) |
-                                (has_clip && state->inside ? PATH_INSIDE : 0u);
+                                (has_clip && state->inside ? PATH_INSIDE : 0u) |
+                                (has_clip && state->crossed ? PATH_CROSSED : 0u);
 }
 
 // Return and set the side of the last scattering that light samples saw: normal_bits, or

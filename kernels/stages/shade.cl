@@ -176,7 +176,7 @@ static inline void send_occlusion_ray(const Stage* g, Outbox* out, const Shading
   const float3 wi = to_world(&frame, wi_local);
   state->depth = 1u;
   state->specular = 1;
-  state->inside = 0;
+  state->inside = state->crossed = 0;
   media_scattered(g, point->path, &point->hit, 0);
   continue_path(g, out, point->path, state, CAPLET_NONE, offset_origin(s->p, s->ng, s->error, wi),
                 wi);
@@ -326,8 +326,10 @@ static inline void scatter(const Stage* g, Outbox* out, const ShadingPoint* poin
     return;
   state->depth = depth + 1u;
   state->specular = sample.specular;
-  if (has_clip)
+  if (has_clip) {
     state->inside = clip_leads_inside(&g->surfaces, s, &point->hit, state->inside, crosses);
+    if (crosses) state->crossed = !on_clip_face(&point->hit) || state->inside;
+  }
   if (has_cones) {
     float2 cone = point->cone;
     if (sample.specular) {

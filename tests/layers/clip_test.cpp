@@ -285,6 +285,42 @@ TEST(Clip, LightsCutSolidsAsCsgDoes) {
   }
 }
 
+// A ray that leaves glass within glass meets the face of the outer one.
+TEST(Clip, ClosesWhatIsAroundGlass) {
+  const auto text = [](bool by_plane) {
+    const auto cut = [&](const std::string& name, const std::string& shape) {
+      if (by_plane) return "Shape " + shape;
+      return "ObjectBegin \"" + name + "\"\nShape " + shape + "ObjectEnd\nObjectBegin \"c" + name +
+             "\"\nShape \"box\" \"point3 p0\" [-4 -4 0.3] \"point3 p1\" [4 4 8]\nObjectEnd\n" +
+             "Shape \"csg\" \"string operation\" \"difference\" \"string operands\" [ \"" + name +
+             "\" \"c" + name + "\" ]\n";
+    };
+    return "LookAt 3 4 6  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" 18" +
+           std::string(by_plane ? " \"float clipplane\" [0 0 1 0.3]" : "") +
+           "\nFilm \"rgb\" \"integer xresolution\" 40 \"integer yresolution\" 30\n"
+           "Integrator \"path\" \"integer maxdepth\" 12\nWorldBegin\n"
+           "LightSource \"infinite\" \"rgb L\" [0.6 0.7 0.9]\n"
+           "LightSource \"distant\" \"point3 from\" [2 5 4] \"rgb L\" [2 2 2]\n"
+           "AttributeBegin\nMaterial \"diffuse\" \"rgb reflectance\" [.8 .2 .15]\n"
+           "Translate 0 -1 0\nShape \"trianglemesh\" \"integer indices\" [0 2 1 0 3 2]"
+           " \"point3 P\" [-5 0 -5  5 0 -5  5 0 0.3  -5 0 0.3]\nAttributeEnd\n"
+           "Material \"dielectric\"\n" +
+           cut("outer", "\"sphere\" \"float radius\" 0.9\n") +
+           "Material \"dielectric\" \"float eta\" 1.3\nTranslate 0.1 0.1 -0.3\n" +
+           "Shape \"sphere\" \"float radius\" 0.4\n";
+  };
+  const LayeredImage by_plane = render_text(text(true), 64, {}, every_layer()).image,
+                     by_csg = render_text(text(false), 64, {}, every_layer()).image;
+  for (const char* name : {"R", "G", "B"}) {
+    const double theirs = mean_of(by_csg, name).value;
+    EXPECT_NEAR(mean_of(by_plane, name).value, theirs, 3e-4 * theirs) << name;
+    int apart = 0;
+    for (std::size_t pixel = 0; pixel < 1200; ++pixel)
+      apart += std::abs(at(by_plane, name, pixel) - at(by_csg, name, pixel)) > 0.02;
+    EXPECT_LT(apart, 5) << name;
+  }
+}
+
 // Programs that know of planes draw what has none as others do.
 TEST(Clip, LeavesOtherViewsAlone) {
   const std::string text = clipped_scene(true);
