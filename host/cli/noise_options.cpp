@@ -12,11 +12,12 @@
 
 namespace caplet::cli {
 
-std::optional<NoiseTarget> noise_target(const RenderFlags& options) {
+std::optional<NoiseTarget> noise_target(const RenderFlags& options,
+                                        const PreviewExposure& exposure) {
   if (!options.noise) return {};
   NoiseTarget out;
   out.noise = *options.noise;
-  out.space = options.noise_space.value_or(NoiseSpace::relative);
+  out.measure = {options.noise_space.value_or(NoiseSpace::relative), exposure};
   if (options.samples_per_pixel) out.most = narrow<std::uint32_t>(*options.samples_per_pixel);
   if (options.least_samples) out.least = narrow<std::uint32_t>(*options.least_samples);
   if (out.least > out.most && options.least_samples)

@@ -13,8 +13,10 @@
 
 namespace caplet::cli {
 
-/// Returns what pixels are rendered to, if it is a noise. Throws InputError.
-std::optional<NoiseTarget> noise_target(const RenderFlags& options);
+/// Returns what pixels are rendered to, if it is a noise, for previews of this exposure. Throws
+/// InputError.
+std::optional<NoiseTarget> noise_target(const RenderFlags& options,
+                                        const PreviewExposure& exposure = {});
 
 /// Returns the options with the noise that the scene's file asks for, where they have neither one
 /// nor a number of samples. Throws InputError where options do not go together.

@@ -391,7 +391,8 @@ RenderResult written(const Work& work, RenderResult result, report::RunSeconds& 
     report::write_pictures(exr, preview, picture, channels_of(work), result.render_seconds, finish);
   });
   flaws.warn();
-  result.noise = flaws.noise.in(work.options.noise_space.value_or(work.scene.view.sampler.space()));
+  result.noise = flaws.noise.in({work.options.noise_space.value_or(work.scene.view.sampler.space()),
+                                 work.scene.view.film.exposure});
   seconds.write += phase.lap();
   return result;
 }
@@ -643,7 +644,7 @@ void run_render(const RenderFlags& given, const Invocation& invocation) {
   RenderOptions render_options;
   render_options.sample_begin = samples.begin;
   render_options.samples_per_pixel = narrow<int>(samples.end - samples.begin);
-  render_options.noise = noise_target(options);
+  render_options.noise = noise_target(options, scene.view.film.exposure);
   render_options.time_limit = options.time_limit;
   render_options.least_samples = narrow<std::uint32_t>(options.least_samples.value_or(0));
   render_options.batch_paths = options.batch_paths;

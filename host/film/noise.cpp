@@ -32,12 +32,18 @@ NoisePixel pixel_of(const Film& film, std::size_t pixel) {
 
 }  // namespace
 
-double noise_unit(NoiseSpace space, double luminance, double floor) {
+NoiseMeasure::NoiseMeasure(NoiseSpace of, const PreviewExposure& exposure)
+    : NoiseMeasure(of, exposure.is_automatic ? 1 : std::exp2(exposure.stops)) {}
+
+double noise_unit(const NoiseMeasure& measure, double luminance, double floor) {
   const double seen = std::max(0.0, luminance);
-  return space == NoiseSpace::display ? 1 / display_slope(seen) : seen + floor;
+  return measure.space == NoiseSpace::display
+             ? 1 / (measure.gain * display_slope(measure.gain * seen))
+             : seen + floor;
 }
 
-std::optional<double> noise_of(const std::vector<NoisePixel>& pixels, int width, NoiseSpace space) {
+std::optional<double> noise_of(const std::vector<NoisePixel>& pixels, int width,
+                               const NoiseMeasure& measure) {
   const auto columns = static_cast<std::size_t>(std::max(1, width));
   std::vector<Luminance> own(pixels.size());
   Luminance all;
@@ -53,7 +59,7 @@ std::optional<double> noise_of(const std::vector<NoisePixel>& pixels, int width,
   for (std::size_t i = 0; i < own.size(); ++i) {
     if (!pixels[i].seen) continue;
     around[i].add(own[i]);
-    const double unit = noise_unit(space, around[i].sum / around[i].pixels, floor);
+    const double unit = noise_unit(measure, around[i].sum / around[i].pixels, floor);
     sum += double{pixels[i].variance} / (unit * unit);
   }
   return std::sqrt(sum / all.pixels);

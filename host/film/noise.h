@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "film/film.h"
+#include "scene/backdrop.h"
 #include "scene/sampler.h"
 
 namespace caplet {
@@ -19,11 +20,21 @@ namespace caplet {
 /// to 21.
 inline constexpr double noise_floor = 0.25;
 
+/// NoiseMeasure is what noise is a share of. For displays the picture is `gain` times as bright.
+struct NoiseMeasure {
+  NoiseMeasure(NoiseSpace of = NoiseSpace::relative, double times = 1) : space(of), gain(times) {}
+  /// For previews of this exposure. One that the picture decides is not known while it is rendered,
+  /// and counts as none.
+  NoiseMeasure(NoiseSpace of, const PreviewExposure& exposure);
+  NoiseSpace space;
+  double gain;
+};
+
 /// Returns what the standard deviation of a pixel's luminance is divided by: luminance and floor,
 /// or one over the slope of previews' tone curve (tone_map and sRGB's curve) for a grey of this
 /// luminance, so that noise is a share of the display's range. `luminance`: mean around the pixel;
 /// `floor`: noise_floor of the picture's mean.
-double noise_unit(NoiseSpace space, double luminance, double floor);
+double noise_unit(const NoiseMeasure& measure, double luminance, double floor);
 
 /// NoisePixel is what the noise of a picture depends on.
 struct NoisePixel {
@@ -35,7 +46,7 @@ struct NoisePixel {
 /// noise_unit, for the mean luminance of such pixels at most variance_radius away. Empty if they
 /// have no light. `pixels`: row by row.
 std::optional<double> noise_of(const std::vector<NoisePixel>& pixels, int width,
-                               NoiseSpace space = NoiseSpace::relative);
+                               const NoiseMeasure& measure = {});
 
 /// PictureNoise is the noise of a film, by what the replicates of each pixel say themselves: their
 /// mean over a picture is true, while the layer `variance` shares them with neighbours that may be
@@ -46,7 +57,9 @@ class PictureNoise {
   /// do not follow those that it has are not added: a picture may be developed twice.
   void add(const Film& film, int first, int count);
   /// Returns the noise of the pixels that have an estimate; empty if there are none.
-  std::optional<double> in(NoiseSpace space) const { return noise_of(pixels_, width_, space); }
+  std::optional<double> in(const NoiseMeasure& measure) const {
+    return noise_of(pixels_, width_, measure);
+  }
 
  private:
   int width_ = 0, next_row_ = 0;  // of the whole picture

@@ -44,7 +44,8 @@ struct RelativeVariance {
   bool seen = false;
 };
 
-std::vector<RelativeVariance> relative_variances(const SampledPixels& pixels, NoiseSpace space) {
+std::vector<RelativeVariance> relative_variances(const SampledPixels& pixels,
+                                                 const NoiseMeasure& measure) {
   const std::vector<OwnSum>& own = pixels.own();
   OwnSum all;
   for (const OwnSum& pixel : own) all.add(pixel);
@@ -56,7 +57,7 @@ std::vector<RelativeVariance> relative_variances(const SampledPixels& pixels, No
     const OwnSum& near = others[pixel];
     const double mean = near.pixels > 0 ? near.luminance / near.pixels : 0;
     if (!(std::max(0.0, mean) + floor > 0)) return;
-    const double unit = noise_unit(space, mean, floor);
+    const double unit = noise_unit(measure, mean, floor);
     out[pixel].seen = own[pixel].pixels > 0;
     out[pixel].own = own[pixel].variance / (unit * unit);
     if (near.pixels > 0) out[pixel].others = near.variance / near.pixels / (unit * unit);
@@ -69,7 +70,7 @@ std::vector<RelativeVariance> relative_variances(const SampledPixels& pixels, No
 class Wanted {
  public:
   Wanted(const SampledPixels& pixels, const NoiseTarget& target)
-      : pixels_(pixels), target_(target), variances_(relative_variances(pixels, target.space)) {
+      : pixels_(pixels), target_(target), variances_(relative_variances(pixels, target.measure)) {
     double own = 0, squares = 0, seen = 0;
     for (std::size_t pixel = 0; pixel < variances_.size(); ++pixel) {
       if (!variances_[pixel].seen) continue;

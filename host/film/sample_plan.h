@@ -9,16 +9,17 @@
 #include <vector>
 
 #include "film/film.h"
+#include "film/noise.h"
 #include "shared/records.h"
 
 namespace caplet {
 
-/// NoiseTarget says when a picture has enough samples: when its noise in `space` (film/noise.h) is
+/// NoiseTarget says when a picture has enough samples: when its noise by `measure` is
 /// at most `noise`. With noise 0 each pixel gets `most` samples.
 struct NoiseTarget {
   double noise = 0;
   std::uint32_t least = 16, most = most_noise_samples;  // samples of a pixel, least <= most
-  NoiseSpace space = NoiseSpace::relative;
+  NoiseMeasure measure = {};
 };
 
 /// PixelSamples is the next `count` samples of some pixels.

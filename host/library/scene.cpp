@@ -133,8 +133,10 @@ std::optional<NoiseTarget> Scene::noise_target() const {
   const SamplerSettings& sampler = data_->model.view.sampler;
   const int most = sampler.samples_per_pixel;
   if (!(sampler.noise > 0) || most < 2) return {};
+  const PreviewExposure& exposure = data_->model.view.film.exposure;
   return NoiseTarget{sampler.noise, std::min(NoiseTarget{}.least_samples, most), most,
-                     sampler.space() == NoiseSpace::display};
+                     sampler.space() == NoiseSpace::display,
+                     exposure.is_automatic ? 0 : exposure.stops};
 }
 
 int Scene::max_depth() const { return data_->model.view.integrator.max_depth; }

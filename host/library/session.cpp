@@ -74,9 +74,11 @@ Layers layers_with(const ExtraLayers& extra) {
 double SessionRuns::render_to(caplet::Session& session, const NoiseTarget& target,
                               const RenderOptions& options) {
   caplet::RenderOptions inner;
-  inner.noise = {target.noise, static_cast<std::uint32_t>(target.least_samples),
-                 static_cast<std::uint32_t>(target.most_samples),
-                 target.in_display ? NoiseSpace::display : NoiseSpace::relative};
+  inner.noise = {
+      target.noise,
+      static_cast<std::uint32_t>(target.least_samples),
+      static_cast<std::uint32_t>(target.most_samples),
+      {target.in_display ? NoiseSpace::display : NoiseSpace::relative, std::exp2(target.exposure)}};
   inner.time_limit = options.time_limit;
   const auto told = [&](const Progress& progress) {
     options.progress({progress.fraction, progress.samples_per_second});

@@ -218,7 +218,8 @@ Picture EyeFilms::picture(std::size_t eye) {
   if (has_alpha) settings.backdrop.reset();
   const LayeredImage image = develop(film(eye), settings, session_options_.layers, flaws);
   Picture out = shown_of(image, is_full(), has_alpha);
-  const std::optional<double> noise = flaws.noise.in(live_.scene().view.sampler.space());
+  const std::optional<double> noise =
+      flaws.noise.in({live_.scene().view.sampler.space(), settings.exposure});
   out.noise = static_cast<float>(noise.value_or(0));
   noise_[eye] = noise.value_or(std::numeric_limits<double>::infinity());
   out.version = ++version_;

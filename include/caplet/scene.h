@@ -36,6 +36,7 @@ struct NoiseTarget {
   double noise = 0.05;                           // 1e-5 to 1
   int least_samples = 16, most_samples = 16384;  // of a pixel
   bool in_display = false;
+  double exposure = 0;  // for in_display: of the preview, stops
 };
 
 /// Copies are cheap until one of them is changed.

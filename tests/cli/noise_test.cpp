@@ -56,6 +56,23 @@ double mean_of(const std::vector<std::uint32_t>& samples) {
   return sum / static_cast<double>(samples.size());
 }
 
+// On a display, two stops are a lamp four times as bright.
+TEST(Noise, OnADisplayIsThatOfItsExposure) {
+  const auto samples = [](const std::string& text, const Names& more) {
+    const fs::path folder = folder_with_scene(text);
+    Names all{"--noise", "0.4%", "--noise-space", "display", "-o", "a.exr"};
+    all.insert(all.end(), more.begin(), more.end());
+    expect_done(render(folder, all));
+    return samples_of(read_exr(folder / "a.exr"));
+  };
+  std::string bright = lit;
+  bright.replace(bright.find("30 30 30"), 8, "120 120 120");
+  const auto exposed = samples(lit, {"--exposure", "2"});
+  EXPECT_EQ(exposed, samples(bright, {}));
+  EXPECT_NE(exposed, samples(lit, {}));
+  EXPECT_EQ(samples(lit, {"--exposure", "auto"}), samples(lit, {}));
+}
+
 // A file may ask for a noise; a number of samples, or another noise, is taken in its place.
 TEST(Noise, MayStandInTheFile) {
   const fs::path folder = folder_with_scene(

@@ -59,6 +59,13 @@ TEST(PictureNoise, OfADisplayIsAShareOfItsRange) {
     EXPECT_NEAR(1 / noise_unit(NoiseSpace::display, grey, 0.1), slope, 1e-6 * slope) << grey;
     EXPECT_EQ(noise_unit(NoiseSpace::relative, grey, 0.1), grey + 0.1);
   }
+  // A picture at two stops up has the noise of one that is four times as bright.
+  const NoiseMeasure brighter(NoiseSpace::display, PreviewExposure{2, false});
+  for (const double grey : {0.001, 0.05, 0.18, 0.7})
+    EXPECT_NEAR(noise_unit(brighter, grey, 0.1), noise_unit(NoiseSpace::display, 4 * grey, 0.1) / 4,
+                1e-12);
+  EXPECT_EQ(NoiseMeasure(NoiseSpace::display, PreviewExposure{2, true}).gain, 1);
+  EXPECT_EQ(noise_unit({NoiseSpace::relative, 4.0}, 0.5, 0.1), 0.6);
   EXPECT_NEAR(noise_unit(NoiseSpace::display, -0.5, 0.1), 1 / 12.92, 1e-12);
   EXPECT_EQ(noise_unit(NoiseSpace::relative, -0.5, 0.1), 0.1);
   const double slope = 1.055 / 2.4 * std::pow(0.25, 1 / 2.4 - 1);

@@ -100,7 +100,7 @@ TEST(SamplePlan, OfADisplayGivesDarkPixelsMore) {
     if (i % 20 < 10) pixels[i] = noisy(0.02, 0.2);
   const Film film = film_of(20, 10, pixels);
   NoiseTarget target{0.01, 16, 4096};
-  target.space = NoiseSpace::display;
+  target.measure = NoiseSpace::display;
   const SamplePlan plan = plan_samples(film, 0, target);
   const auto more = more_of(plan);
   EXPECT_EQ(more.count({0, 5}), 1u);
