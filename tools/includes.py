@@ -25,6 +25,7 @@ LIBRARIES = {  # how their headers begin
     "TBB": ("tbb/", "oneapi/"), "zlib": ("zlib.h",)}
 POSIX = ("sys/", "arpa/", "net/", "netinet/", "dlfcn.h", "fcntl.h", "grp.h", "poll.h", "pwd.h", "signal.h", "unistd.h")
 SOURCES = {".h", ".cpp", ".c", ".cl", ".def"}
+NAMESPACE = re.compile(r"^(?:namespace\b|}  // namespace\b)", re.M)
 INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]*(?:"([^"]+)"|<([^>]+)>)', re.M)
 
 
@@ -120,6 +121,9 @@ class Check:
         text = re.sub(r'R"\((.*?)\)"', lambda raw: "\n" * raw[0].count("\n"), path.read_text(errors="replace"), flags=re.S)
         for match in INCLUDE.finditer(text):
             place = f"{name}:{text.count(chr(10), 0, match.start()) + 1}"
+            before = [end[0] for end in NAMESPACE.finditer(text, 0, match.start())]
+            if not (match[1] or match[2]).endswith((".def", ".cl")) and path.suffix in (".cpp", ".h") and before[-1:] == ["namespace"]:
+                self.complaints.append(f"{place}: {match[1] or match[2]} is included within a namespace")
             if match[2]:
                 self.library(place, match[2], room)
             else:
@@ -232,6 +236,8 @@ def self_test():
         ({"host/lower/a.cpp": '#include "bvh/detail/binary.h"\n'}, "is host/bvh's own"),
         ({"host/bvh/bvh.h": '#include "bvh/detail/binary.h"\n'}, "host/bvh/bvh.h:1: \"bvh/detail/binary.h\" is not seen"),
         ({"tests/lower/a_test.cpp": '#include "bvh/detail/binary.h"\n'}, "is host/bvh's own"),
+        ({"host/bvh/a.cpp": 'namespace caplet {\n#include "base/error.h"\n}\n'}, "host/bvh/a.cpp:2: base/error.h is included within a namespace"),
+        ({"host/bvh/a.cpp": 'namespace caplet {\n#include "rows.def"\n}\n'}, None),
         ({"host/lower/lower.cpp": ""}, "host/lower may include bvh: includes nothing of it"),
         ({"host/attic/a.h": ""}, "host/attic: no row"),
         ({"host/base/a.h": '#include "base/b.h"\n', "host/base/b.h": '#include "base/a.h"\n'}, "a circle of headers: host/base/a.h, host/base/b.h"),

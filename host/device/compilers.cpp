@@ -86,10 +86,6 @@ std::optional<std::size_t> take_from(void* shared) {
   return job;
 }
 
-}  // namespace
-
-namespace {
-
 constexpr const char* marks = "compiled";  // the extension of the marks' files
 
 /// Returns the key of the file that says that PoCL's cache has the job.

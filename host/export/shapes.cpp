@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "export/detail/families.h"
+#include "scene/part_materials.h"
 
 namespace caplet::pbrt_text {
 
@@ -229,7 +230,6 @@ Statement shape_statement(const Shape& shape, const ShapeReferences& references,
   static constexpr const char* types[] = {
 #define GEOMETRY(Type, row) #row,
 #include "scene/geometries.def"
-#include "scene/part_materials.h"
   };
   const char* const type =
       types[geometry.index()];  // clang 14 cannot capture a structured binding in a lambda

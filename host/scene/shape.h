@@ -27,7 +27,6 @@ using VariantBehind = std::variant<Types...>;
 using Geometry = VariantBehind<void
 #define GEOMETRY(Type, name) , Type
 #include "scene/geometries.def"
-#include "scene/light_image.h"
                                >;
 
 struct AreaEmission {
