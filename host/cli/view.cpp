@@ -18,6 +18,7 @@
 #include <thread>
 
 #include "base/atomic_file.h"
+#include "base/check.h"
 #include "base/interrupt.h"
 #include "base/log.h"
 #include "cli/commands.h"
@@ -27,6 +28,7 @@
 #include "device/second_try.h"
 #include "film/denoise.h"
 #include "film/sample_plan.h"
+#include "import/import.h"
 #include "lower/live_scene.h"
 #include "render/device_scene.h"
 #include "view/addresses.h"
@@ -144,7 +146,7 @@ void run_view(const ViewFlags& options) {
   viewer_options.samples = options.samples;
   if (options.noise) {
     viewer_options.noise = *options.noise;
-    if (options.samples == 0) viewer_options.samples = NoiseTarget{}.most;
+    if (options.samples == 0) viewer_options.samples = narrow<int>(NoiseTarget{}.most);
   }
   const bool saves = keeper != nullptr;
   view::Viewer viewer(std::move(live), device, viewer_options, std::move(keeper));

@@ -29,6 +29,7 @@
 #include "base/environment.h"
 #include "base/interrupt.h"
 #include "base/log.h"
+#include "base/memory.h"
 #include "device/bundled.h"
 #include "device/cache.h"
 #include "device/detail/programs.h"
@@ -43,6 +44,7 @@ namespace {
 
 constexpr const char* variable = "CAPLET_COMPILERS";
 constexpr std::size_t most_by_default = 8, most_by_variable = 64;
+constexpr std::uint64_t process_bytes = std::uint64_t{512} << 20;  // PoCL 3.1 takes half of it
 constexpr char list_magic[16] = "caplet compile1";
 
 fs::path& compiler_program() {
@@ -116,12 +118,22 @@ CompiledKernel compile(const Device& device, const CompileJob& job) {
   return {std::move(program), std::move(kernel), local};
 }
 
+namespace {
+
+std::size_t default_count() {
+  std::size_t out =
+      std::clamp<std::size_t>(std::thread::hardware_concurrency(), 1, most_by_default);
+  if (const auto free = free_memory()) out = std::min<std::size_t>(out, 1 + *free / process_bytes);
+  return out;
+}
+
+}  // namespace
+
 void set_compiler_program(const fs::path& program) { compiler_program() = program; }
 
 std::size_t compiler_count() {
   const std::string text = environment_variable(variable);
-  std::size_t count =
-      std::clamp<std::size_t>(std::thread::hardware_concurrency(), 1, most_by_default);
+  std::size_t count = default_count();
   if (!text.empty()) {
     const char* const end = text.data() + text.size();
     const auto [rest, error] = std::from_chars(text.data(), end, count);
@@ -175,8 +187,9 @@ bool Compilers::share() {
 }
 
 void Compilers::start(std::size_t processes) {
-  std::string program = compiler_program().string(), command = "compile";
-  char* arguments[] = {program.data(), command.data(), nullptr};
+  const std::string program = compiler_program().string();
+  std::string name = "caplet", command = "compile";
+  char* arguments[] = {name.data(), command.data(), nullptr};
   posix_spawn_file_actions_t streams;
   posix_spawn_file_actions_init(&streams);
   posix_spawn_file_actions_adddup2(&streams, file_, STDIN_FILENO);

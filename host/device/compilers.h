@@ -41,8 +41,9 @@ bool is_cached(const Device& device, const CompileJob& job);
 void set_compiler_program(const std::filesystem::path& program);
 
 /// Returns how many processes, with this one, may compile at a time: the environment variable
-/// CAPLET_COMPILERS, 1 to 64, else the machine's processors, at most 8; 1 without a compiler
-/// program. Throws InputError for another text of the variable.
+/// CAPLET_COMPILERS, 1 to 64, else the machine's processors, at most 8 and one more for each 512 MB
+/// of free memory; 1 without a compiler program. Throws InputError for another text of the
+/// variable.
 std::size_t compiler_count();
 
 /// Compilers is a list of jobs that processes share, of which this is one.

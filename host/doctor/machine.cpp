@@ -9,6 +9,7 @@
 #include <cstdlib>
 #include <fstream>
 
+#include "base/memory.h"
 #include "device/bundled.h"
 #include "device/pocl_needs.h"
 
@@ -47,29 +48,6 @@ std::vector<fs::path> nodes(const Surroundings& machine) {
        [](const std::string& name) { return name.starts_with("renderD"); });
   std::sort(out.begin(), out.end());
   return out;
-}
-
-std::optional<std::uint64_t> number_in(const fs::path& file, const std::string& after) {
-  std::ifstream in(file);
-  for (std::string line; std::getline(in, line);) {
-    if (!line.starts_with(after)) continue;
-    const char* text = line.c_str() + after.size();
-    char* end = nullptr;
-    const unsigned long long value = std::strtoull(text, &end, 10);
-    if (end != text) return value;
-  }
-  return std::nullopt;
-}
-
-std::optional<std::uint64_t> free_memory(const Surroundings& machine) {
-  std::optional<std::uint64_t> out = number_in(machine.root / "proc/meminfo", "MemAvailable:");
-  if (out) *out *= 1024;
-  const fs::path group = machine.root / "sys/fs/cgroup";
-  const auto most = number_in(group / "memory.max", ""),
-             used = number_in(group / "memory.current", "");
-  if (!most || !used) return out;
-  const std::uint64_t left = *most > *used ? *most - *used : 0;
-  return out ? std::min(*out, left) : left;
 }
 
 /// Returns why no file can be written in the folder (which may not exist yet); empty: files can be
@@ -194,7 +172,7 @@ Findings check_unused_gpus(const Surroundings& machine,
 
 Findings check_memory(const Surroundings& machine) {
   Findings out;
-  if (const auto free = free_memory(machine)) {
+  if (const auto free = free_memory(machine.root)) {
     if (*free < least_memory)
       out.push_back({State::wrong, "memory",
                      fmt::format("{} are free, and the smallest render takes {}", megabytes(*free),

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright Caplet authors
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+
+namespace caplet {
+
+/// Returns the bytes that processes may still take: of the machine, and of this process's control
+/// group (cgroup v2) where it has a limit. Empty if Linux does not say. `root` holds proc and sys.
+std::optional<std::uint64_t> free_memory(const std::filesystem::path& root = "/");
+
+}  // namespace caplet
