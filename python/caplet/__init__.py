@@ -54,9 +54,9 @@ from .rendering import CROSSING, Report, Session, devices, pick, render, trace, 
 from .scene import Scene, Shape, Shapes, load
 from . import sensors
 from .batches import Batch, render_batch
-from .viewing import Viewer, _find_program, view
+from .viewing import Viewer, _own_program, view
 
-_caplet.set_program(_find_program() or "")  # it compiles kernels
+_caplet.set_program(_own_program() or "")  # it compiles kernels
 
 
 def shape_types():

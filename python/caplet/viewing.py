@@ -18,15 +18,18 @@ from .rendering import _count, _scene
 _PATIENCE = 60  # seconds that the program has to end
 
 
-def _find_program():
-    """The program: CAPLET_PROGRAM, else the one beside this Python, else that of PATH; None where there is none."""
+def _own_program():
+    """The program that came with this package: CAPLET_PROGRAM, else the one beside this Python; None where there is none."""
     told = os.environ.get("CAPLET_PROGRAM")
+    if told or not sys.executable:  # an interpreter within another program has none
+        return told
     beside = pathlib.Path(sys.executable).parent / "caplet"
-    return told or (str(beside) if beside.is_file() else shutil.which("caplet"))
+    return str(beside) if beside.is_file() else None
 
 
 def _program():
-    found = _find_program()
+    """The package's own program, else that of PATH."""
+    found = _own_program() or shutil.which("caplet")
     if not found:
         raise RunError("there is no program `caplet` beside this Python or in PATH: install the wheel or the package that has it, or name it in CAPLET_PROGRAM")
     return found

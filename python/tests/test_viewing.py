@@ -84,7 +84,17 @@ def test_errors_are_those_of_the_program(ball, tmp_path, monkeypatch):
     with pytest.raises(caplet.RunError, match="--spp"):
         caplet.view(ball, spp="many")
     monkeypatch.delenv("CAPLET_PROGRAM")
+    own = caplet.viewing._own_program
+    (tmp_path / "bin").mkdir()
+    (tmp_path / "bin/caplet").write_text("")
+    monkeypatch.chdir(tmp_path / "bin")
+    for none in (None, ""):
+        monkeypatch.setattr(sys, "executable", none)
+        assert own() is None
+    monkeypatch.setattr(sys, "executable", str(tmp_path / "bin/python"))
+    assert own() == str(tmp_path / "bin/caplet")
     monkeypatch.setattr(sys, "executable", str(tmp_path / "python"))
+    assert own() is None
     monkeypatch.setenv("PATH", str(tmp_path))
     with pytest.raises(caplet.RunError, match="CAPLET_PROGRAM"):
         caplet.view(ball)
