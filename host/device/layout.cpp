@@ -6,7 +6,7 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <regex>
+#include <string_view>
 
 #include "base/check.h"
 #include "shared/records.h"
@@ -53,6 +53,20 @@ Expectation expectation(const std::vector<RecordLayout>& layouts) {
   return out;
 }
 
+/// Returns the name in a line of records.def that has one: of a record, or of a field of it.
+std::string_view name_in(std::string_view line) {
+  constexpr std::string_view record = "RECORD_BEGIN(";
+  for (const std::string_view begin :
+       {record, std::string_view("FIELD("), std::string_view("ARRAY(")}) {
+    if (!line.starts_with(begin)) continue;
+    line.remove_prefix(begin.size());
+    if (begin != record) line.remove_prefix(std::min(line.find(',') + 1, line.size()));
+    line.remove_prefix(std::min(line.find_first_not_of(' '), line.size()));
+    return line.substr(0, line.find_first_of(",) "));
+  }
+  return {};
+}
+
 /// Returns the first other name of a record or field in the text that devices compile, which
 /// CAPLET_KERNELS may have changed: fields of one size that changed places have the same offsets.
 /// It is empty where host and text agree.
@@ -63,16 +77,21 @@ std::string other_name(const std::vector<RecordLayout>& layouts) {
     for (const FieldLayout& field : record.fields) wanted.push_back(record.name + "." + field.name);
   }
   const std::string text = kernel_source("shared/records.def");
-  static const std::regex entry(R"(^(?:RECORD_BEGIN\((\w+)\)|(?:FIELD|ARRAY)\(\w+, *(\w+)))",
-                                std::regex::multiline);
   std::string record;
   std::size_t i = 0;
-  for (std::sregex_iterator at(text.begin(), text.end(), entry);
-       at != std::sregex_iterator() && i < wanted.size(); ++at, ++i) {
-    if ((*at)[1].matched) record = (*at)[1];
-    const std::string name = (*at)[1].matched ? record : record + "." + (*at)[2].str();
+  for (std::size_t begin = 0; begin < text.size() && i < wanted.size();) {
+    const std::size_t end = std::min(text.find('\n', begin), text.size());
+    const std::string_view line = std::string_view(text).substr(begin, end - begin);
+    begin = end + 1;
+    std::string name(name_in(line));
+    if (name.empty()) continue;
+    if (line.starts_with("RECORD_BEGIN"))
+      record = name;
+    else
+      name = record + "." + name;
     if (name != wanted[i])
       return fmt::format("the device has {} where the host has {}", name, wanted[i]);
+    ++i;
   }
   return {};
 }

@@ -40,7 +40,9 @@ constexpr Quirk quirks[] = {
      "render waits for it, later ones find it in PoCL's cache"},
     // host/device/program.cpp
     {"Portable Computing Language", "", "", "",
-     "keeps compiled kernels itself; Caplet's cache holds only what the self-test said"},
+     "keeps compiled kernels itself; Caplet's cache holds what the self-test said, and marks of "
+     "what "
+     "is compiled"},
     // https://github.com/pocl/pocl/issues/1608; kernels/trace/trace.cl. Single: `shade` of
     // scenes/neuron.swc
     {"Portable Computing Language", "", "6.0", "6.1",
