@@ -29,12 +29,6 @@ struct Kind {
   bool srgb = false;  // sRGB, which counts for more than gAMA
 };
 
-std::string name_of(const Kind& kind) {
-  return "type " + std::to_string(kind.type) + " depth " + std::to_string(kind.depth) +
-         (kind.key ? " key" : "") + (kind.interlaced ? " interlaced" : "") + " gamma " +
-         std::to_string(kind.gamma) + (kind.srgb ? " srgb" : "");
-}
-
 constexpr int width = 13, height = 9;
 
 int channels_of(int type) {
@@ -82,6 +76,15 @@ fs::path write(const Kind& kind) {
   return path;
 }
 
+const SizeCheck any_size = [](int, int, std::uint64_t) {};
+
+#ifdef CAPLET_WITH_OIIO
+std::string name_of(const Kind& kind) {
+  return "type " + std::to_string(kind.type) + " depth " + std::to_string(kind.depth) +
+         (kind.key ? " key" : "") + (kind.interlaced ? " interlaced" : "") + " gamma " +
+         std::to_string(kind.gamma) + (kind.srgb ? " srgb" : "");
+}
+
 std::vector<Kind> kinds() {
   std::vector<Kind> out;
   for (const bool interlaced : {false, true})
@@ -105,9 +108,6 @@ std::vector<Kind> kinds() {
   return out;
 }
 
-const SizeCheck any_size = [](int, int, std::uint64_t) {};
-
-#ifdef CAPLET_WITH_OIIO
 TEST(Png, IsReadAsOpenImageIoReadsIt) {
   for (const Kind& kind : kinds()) {
     SCOPED_TRACE(name_of(kind));
