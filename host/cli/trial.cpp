@@ -93,6 +93,7 @@ void try_device_apart(const Device& device, const Trial& trial, const NextJobs& 
   });
   Compilers compilers(device, std::move(jobs), compiler_count() - 1);
   test_apart(device, trial);
+  SecondTry::guard(device);  // this process may compile now
   compilers.finish();
 }
 

@@ -13,11 +13,12 @@
 
 namespace caplet::cli {
 
-/// Runs try_device (render/known_answers.h), when it is due, by starting this program again. Throws
-/// WrongDevice with the test's message, or RunError that says how the driver ended it; also when
-/// interrupted.
-/// The jobs that `next` returns, which the command will need, are compiled meanwhile.
+/// Returns the kernels that a command is going to need on a device.
 using NextJobs = std::function<std::vector<CompileJob>(const Device&)>;
+
+/// Runs try_device (render/known_answers.h), when it is due, by starting this program again. What
+/// `next` returns is compiled meanwhile. Throws WrongDevice with the test's message, or RunError
+/// that says how the driver ended it; also when interrupted.
 void try_device_apart(const Device& device, const Trial& trial, const NextJobs& next = {});
 /// Returns those of several devices that pass, and warns of the others. If none passes, throws the
 /// error of the last one.
