@@ -36,8 +36,9 @@ void print_text(const nlohmann::ordered_json& info) {
              info["lights"].get<std::uint64_t>());
   if (const auto moving = info["moving"].get<std::uint64_t>(); moving > 0)
     fmt::print("moving       {} of {} instances\n", moving, info["instances"].get<std::uint64_t>());
-  if (const auto moving = info["moving_capsules"].get<std::uint64_t>(); moving > 0)
-    fmt::print("moving       {} capsules\n", moving);
+  for (const std::string kind : {"capsules", "triangles"})
+    if (const auto moving = info["moving_" + kind].get<std::uint64_t>(); moving > 0)
+      fmt::print("moving       {} {}\n", moving, kind);
   const int samples = info["samples_per_pixel"].get<int>();
   fmt::print("image        {} x {}, {}\n", info["image"]["width"].get<int>(),
              info["image"]["height"].get<int>(),

@@ -89,6 +89,7 @@ struct GeometryWriter {
   }
   Statement write(const TriangleMeshShape& of, const char*) const {
     Statement out = begin("trianglemesh");
+    key_times(out, of.times);
     mesh(out, of, of.triangles);
     return out;
   }
@@ -109,9 +110,7 @@ struct GeometryWriter {
   Statement write(const CapsulesShape& of, const char*) const {
     if (of.p0.size() == 1) return one_capsule(of);
     Statement out = begin("capsules");
-    if (!of.times.empty())
-      out.list("float", "times", of.times.size(),
-               [&of](Text& text, std::size_t i) { text << of.times[i]; });
+    key_times(out, of.times);
     points(out, "point3", "p0", of.p0);
     points(out, "point3", "p1", of.p1);
     floats(out, "radius", of.radius0);
@@ -187,6 +186,10 @@ struct GeometryWriter {
     to.list(type, name, of.size(), [&of](Text& text, std::size_t i) {
       text << of[i].x << " " << of[i].y << " " << of[i].z;
     });
+  }
+  static void key_times(Statement& to, const std::vector<double>& times) {
+    to.list("float", "times", times.size(),
+            [&times](Text& text, std::size_t i) { text << times[i]; });
   }
   static void floats(Statement& to, const char* name, const std::vector<float>& of) {
     to.list("float", name, of.size(), [&of](Text& text, std::size_t i) { text << of[i]; });

@@ -95,6 +95,14 @@ CapsulesShape geometry_of(const CapsuleArrays& arrays) {
   return out;
 }
 
+TriangleMeshShape geometry_of(const MeshArrays& arrays) {
+  TriangleMeshShape out{
+      points_of(arrays.positions), arrays.triangles, points_of(arrays.normals), {}, arrays.times};
+  for (const auto& uv : arrays.uvs) out.uvs.emplace_back(uv[0], uv[1]);
+  if (out.triangles.empty()) throw InputError("mesh: it has no triangles");
+  return out;
+}
+
 std::vector<Shape>& shapes_for(caplet::Scene& scene, const std::string& object) {
   if (object.empty()) return scene.shapes;
   const auto found = std::ranges::find(scene.objects, valid_utf8(object), &Object::name);
@@ -158,6 +166,14 @@ void check_shapes(const caplet::Scene& scene, std::vector<Shape>& shapes) {
   validate(one, diagnostics);
   one.shapes.swap(shapes);
   diagnostics.finish();
+}
+
+/// Returns a shape of the scene with another geometry; throws where that is not valid.
+Shape with_geometry(const caplet::Scene& scene, const ShapeAt& place, Geometry geometry) {
+  std::vector<Shape> one{shape_at(scene, place)};
+  one[0].geometry = std::move(geometry);
+  check_shapes(scene, one);
+  return std::move(one[0]);
 }
 
 void set_options(const ShapeOptions& options, const std::optional<AreaEmission>& emission,
@@ -308,13 +324,7 @@ std::uint32_t Scene::add_molecular_surface(const BallArrays& balls, double probe
 }
 
 std::uint32_t Scene::add_mesh(const MeshArrays& mesh, const ShapeOptions& options) {
-  TriangleMeshShape to;
-  to.positions = points_of(mesh.positions);
-  to.triangles = mesh.triangles;
-  to.normals = points_of(mesh.normals);
-  for (const auto& uv : mesh.uvs) to.uvs.emplace_back(uv[0], uv[1]);
-  if (to.triangles.empty()) throw InputError("mesh: it has no triangles");
-  std::vector<Shape> shapes = one_of(std::move(to), options);
+  std::vector<Shape> shapes = one_of(geometry_of(mesh), options);
   Data& data = changed();
   const std::uint32_t number = add(data.model, std::move(shapes), options.object);
   data.as_a_whole();
@@ -334,13 +344,31 @@ CapsuleArrays Scene::capsule_arrays(std::uint32_t shape) const {
 
 void Scene::set_capsules(std::uint32_t shape, const CapsuleArrays& capsules) {
   const ShapeAt place = place_of(data_->model, shape);
-  std::vector<Shape> one{shape_at(data_->model, place)};
-  if (!std::holds_alternative<CapsulesShape>(one[0].geometry))
+  if (!std::holds_alternative<CapsulesShape>(shape_at(data_->model, place).geometry))
     throw InputError(fmt::format("shape {} is not one of capsules", shape));
-  one[0].geometry = geometry_of(capsules);
-  check_shapes(data_->model, one);
+  Shape other = with_geometry(data_->model, place, geometry_of(capsules));
   Data& data = changed();
-  const_cast<Shape&>(shape_at(data.model, place)) = std::move(one[0]);
+  const_cast<Shape&>(shape_at(data.model, place)) = std::move(other);
+  data.as_a_whole_in_view();
+}
+
+MeshArrays Scene::mesh_arrays(std::uint32_t shape) const {
+  const auto* found = std::get_if<TriangleMeshShape>(
+      &shape_at(data_->model, place_of(data_->model, shape)).geometry);
+  if (!found) throw InputError(fmt::format("shape {} is not a mesh of triangles", shape));
+  MeshArrays out{
+      arrays_of(found->positions), found->triangles, arrays_of(found->normals), {}, found->times};
+  for (const glm::vec2& uv : found->uvs) out.uvs.push_back({uv.x, uv.y});
+  return out;
+}
+
+void Scene::set_mesh(std::uint32_t shape, const MeshArrays& mesh) {
+  const ShapeAt place = place_of(data_->model, shape);
+  if (!std::holds_alternative<TriangleMeshShape>(shape_at(data_->model, place).geometry))
+    throw InputError(fmt::format("shape {} is not a mesh of triangles", shape));
+  Shape other = with_geometry(data_->model, place, geometry_of(mesh));
+  Data& data = changed();
+  const_cast<Shape&>(shape_at(data.model, place)) = std::move(other);
   data.as_a_whole_in_view();
 }
 

@@ -19,6 +19,7 @@
 #include "library/detail/places.h"
 #include "present/film_window.h"
 #include "present/least_width.h"
+#include "present/open_shutter.h"
 
 namespace caplet::v0 {
 
@@ -341,6 +342,16 @@ void Scene::set_camera_motion(const std::vector<double>& times,
   apply_edit(changed().model, view);
   changed().model.automatic_camera = false;
   changed().open_camera = false;
+}
+
+void Scene::set_shutter(double open, double close) {
+  if (!(std::isfinite(open) && std::isfinite(close) && close > open))
+    throw InputError(
+        fmt::format("a shutter opens before it closes, not at {} and {}", open, close));
+  View view = data_->model.view;
+  view.film.shutter_open = open;
+  expose(view.film, close - open);
+  apply_edit(changed().model, view);
 }
 
 double Scene::fov() const { return fov_of(data_->model.view.camera) * degrees_per_radian; }

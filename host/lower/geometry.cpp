@@ -44,16 +44,22 @@ void reserve_more(std::vector<T>& values, std::size_t count) {
 template <class Mesh>
 Mesh with_uvs(Mesh mesh) {
   Mesh out;
+  const std::size_t count = vertex_count(mesh);
+  for (std::size_t key = 0; key < mesh.positions.size() / count; ++key)
+    for (const auto& face : faces_of(mesh))
+      for (const std::uint32_t vertex : face) {
+        out.positions.push_back(mesh.positions[key * count + vertex]);
+        out.normals.push_back(mesh.normals[key * count + vertex]);
+      }
   for (auto& face : faces_of(mesh)) {
     // The uvs are (0 0) (1 0) (1 1), or (0 0) (1 0) (0 1) (1 1).
     for (std::size_t k = 0; k < face.size(); ++k) {
-      out.positions.push_back(mesh.positions[face[k]]);
-      out.normals.push_back(mesh.normals[face[k]]);
+      face[k] = narrow<std::uint32_t>(out.uvs.size());
       out.uvs.emplace_back(k % 2 == 1 || k + 1 == face.size(), k >= 2);
-      face[k] = narrow<std::uint32_t>(out.positions.size() - 1);
     }
   }
   faces_of(out) = std::move(faces_of(mesh));
+  if constexpr (requires { out.times; }) out.times = std::move(mesh.times);
   return out;
 }
 
@@ -393,8 +399,42 @@ class GeometryLowering {
     record.flags &= ~CAPLET_GEOMETRY_NORMALS;
   }
 
+  void append_moving(const TriangleMeshShape& mesh, const Matrix& m, GeometryRecord record,
+                     Subtree& subtree) {
+    const FilmSettings& film = scene_.view.film;
+    const MeshMotion motion(mesh, film.shutter_open, film.open_time());
+    if (motion.rests()) return append(motion.at(0), m, record, subtree);
+    const MeshMotion::Key& start = motion.keys()[0];
+    const auto at_start = [&](std::uint32_t vertex) { return dvec3(start.positions[vertex]); };
+    const bool flipped = (record.flags & CAPLET_GEOMETRY_FLIP_NORMAL) != 0;
+    const auto turned = [&](const std::array<std::uint32_t, 3>& triangle) {
+      const dvec3 a = at_start(triangle[0]);
+      dvec3 sum(0);
+      if (start.normals.empty()) return false;
+      for (const std::uint32_t vertex : triangle) sum += dvec3(start.normals[vertex]);
+      return is_against(sum, glm::cross(at_start(triangle[1]) - a, at_start(triangle[2]) - a),
+                        flipped);
+    };
+    if (mesh.uvs.empty() && std::ranges::any_of(mesh.triangles, turned))
+      return append_moving(with_uvs(mesh), m, record, subtree);
+    record.index_begin = narrow<uint>(out_.mesh_indices.size());
+    add_vertex_data({}, mesh.uvs, m, record);
+    if (!start.normals.empty()) record.flags |= CAPLET_GEOMETRY_NORMALS;
+    const uint geometry = add_geometry(record, shape_moving_triangle);
+    MovingTriangles moving(motion, out_.leaves);
+    reserve_more(subtree.primitives, mesh.triangles.size());
+    for (std::array<std::uint32_t, 3> triangle : mesh.triangles) {
+      if (turned(triangle)) std::swap(triangle[1], triangle[2]);
+      out_.mesh_indices.insert(out_.mesh_indices.end(), triangle.begin(), triangle.end());
+      const FlatPrimitive flat = moving.primitive(triangle);
+      FlatPrimitive& p = add_primitive(subtree, shape_moving_triangle, geometry);
+      std::copy(std::begin(flat.data), std::end(flat.data), std::begin(p.data));
+    }
+  }
+
   void append(const TriangleMeshShape& mesh, const Matrix& m, GeometryRecord record,
               Subtree& subtree) {
+    if (!mesh.times.empty()) return append_moving(mesh, m, record, subtree);
     record.index_begin = narrow<uint>(out_.mesh_indices.size());
     add_vertex_data(mesh.normals, mesh.uvs, m, record);
     std::vector<glm::vec3> moved;
@@ -422,7 +462,11 @@ class GeometryLowering {
   }
 
   /// By pbrt's rule a mesh with normals has its outside where they point, whatever the winding.
-  /// `normal`: by winding.
+  /// `normal`: by winding; `sum`: of the normals at the corners.
+  bool is_against(const dvec3& sum, const dvec3& normal, bool flipped) const {
+    const double side = glm::dot(normal, sum) * (reversed_ ? -1 : 1);
+    return (flipped ? -side : side) < 0;
+  }
   bool against_normals(const GeometryRecord& record, const dvec3& normal,
                        std::span<const std::uint32_t> corners, bool flipped) const {
     if (record.normal_begin == CAPLET_NONE) return false;
@@ -430,8 +474,7 @@ class GeometryLowering {
     for (const std::uint32_t v : corners)
       for (int k = 0; k < 3; ++k)
         sum[k] += out_.mesh_normals[record.normal_begin + 3 * v + static_cast<std::uint32_t>(k)];
-    const double side = glm::dot(normal, sum) * (reversed_ ? -1 : 1);
-    return (flipped ? -side : side) < 0;
+    return is_against(sum, normal, flipped);
   }
 
   void append(const BilinearMeshShape& mesh, const Matrix& m, GeometryRecord record,
@@ -528,7 +571,8 @@ SubtreeKey subtree_key(const Shape& shape, const Matrix& m) {
   // transform that cannot be baked.
   const bool stays =
       !std::visit([&](const auto& geometry) { return bakes_under(geometry, m); }, shape.geometry);
-  return {stays ? m : Matrix(1), unseen_sides(shape, m), stays ? Matrix(1) : m};
+  const Matrix baked = stays ? Matrix(1) : m;
+  return {stays ? m : Matrix(1), unseen_sides(shape, baked), baked};
 }
 
 LoweredGeometry lower_geometry(const Scene& scene, const ImageNumbers& images,

@@ -112,8 +112,8 @@ struct LiveScene::State {
     if (count > most_moved && count * least_unmoved_share > subtree.primitives.size()) return false;
     for (std::size_t i = 0; i < count; ++i)  // what they have in `leaves` tells where it is
       if (const auto kind = subtree.primitives[of.first + i].shape;
-          kind == shape_csg || kind == shape_polyhedron || kind == shape_moving_capsule ||
-          kind == shape_molecular_patch)
+          kind == shape_csg || kind == shape_polyhedron || kind == shape_molecular_patch ||
+          shape_has(kind, trait_moves))
         return false;
     FlatScene fresh;
     const Subtree own =

@@ -173,7 +173,7 @@ StageOptions stage_options(const FlatScene& scene, const Device& device) {
   if (all)
     for (auto& [list, rows] : out.rows) rows = ~std::uint64_t{0};
   // Programs without times have no shapes that move.
-  if (!scene.moves()) out.rows.at("shapes") &= ~shape_bit(shape_moving_capsule);
+  if (!scene.moves()) out.rows.at("shapes") &= ~shapes_with(trait_moves);
   return out;
 }
 

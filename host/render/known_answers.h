@@ -25,7 +25,7 @@ struct Trial {
 };
 
 /// This trial has every kernel, for all shapes that rest: kernels for what moves are others.
-inline constexpr Trial whole_trial{~shape_bit(shape_moving_capsule), true, true, true};
+inline constexpr Trial whole_trial{~shapes_with(trait_moves), true, true, true};
 
 /// Returns one line for each stage and kind of shape that is wrong, like "capsule: nearest
 /// crossing: 12 of 144 rays are wrong; ...". Builds the programs of the device's encoding. Throws

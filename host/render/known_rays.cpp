@@ -434,18 +434,30 @@ void known(moving_capsule_kind, Maker& make) {
   make.solid(shape_moving_capsule, moving, hull_of_balls(end0, end1, 0.5, 0.125));
 }
 
+constexpr glm::vec3 corners[] = {{-1, -0.75f, 0}, {1, -0.5f, 0}, {0.25f, 1, 0}};
+
+/// Returns a point of the triangle of these corners or beside it.
+SurfacePoint point_of_triangle(Random& random) {
+  // Barycentric coordinates are all positive on it, and the last one is negative beside it.
+  const bool on = random.uniform(0, 1) < 0.7;
+  const double w = on ? random.uniform(0.05, 0.9) : random.uniform(-0.5, -0.05),
+               v = random.uniform(0.05, 0.95) * (1 - w);
+  const double u = 1 - w - v;
+  return {u * dvec3(corners[0]) + v * dvec3(corners[1]) + w * dvec3(corners[2]), {0, 0, 1}, on};
+}
+
 void known(triangle_kind, Maker& make) {
-  const glm::vec3 a(-1, -0.75f, 0), b(1, -0.5f, 0), c(0.25f, 1, 0);
-  make.sheet(shape_triangle, TriangleMeshShape{{a, b, c}, {{0, 1, 2}}, {}, {}},
-             [=](Random& random) {
-               // Barycentric coordinates are all positive on it, and the last one is negative
-               // beside it.
-               const bool on = random.uniform(0, 1) < 0.7;
-               const double w = on ? random.uniform(0.05, 0.9) : random.uniform(-0.5, -0.05),
-                            v = random.uniform(0.05, 0.95) * (1 - w);
-               const double u = 1 - w - v;
-               return SurfacePoint{u * dvec3(a) + v * dvec3(b) + w * dvec3(c), {0, 0, 1}, on};
-             });
+  make.sheet(shape_triangle,
+             TriangleMeshShape{{corners[0], corners[1], corners[2]}, {{0, 1, 2}}, {}, {}},
+             point_of_triangle);
+}
+
+/// When the shutter opens, where all known rays are seen, it is the same triangle.
+void known(moving_triangle_kind, Maker& make) {
+  TriangleMeshShape moving{{corners[0], corners[1], corners[2]}, {{0, 1, 2}}, {}, {}};
+  moving.positions.insert(moving.positions.end(), {corners[2], corners[0], corners[1]});
+  moving.times = {0, 1};
+  make.sheet(shape_moving_triangle, moving, point_of_triangle);
 }
 
 void known(disk_kind, Maker& make) {

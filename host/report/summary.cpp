@@ -29,7 +29,7 @@ std::uint64_t bytes_of(const Shape& shape, Counted& counted) {
            bytes_of(capsules->radius1) + bytes_of(capsules->materials) + bytes_of(capsules->times);
   if (const auto* mesh = std::get_if<TriangleMeshShape>(&shape.geometry))
     out += bytes_of(mesh->positions) + bytes_of(mesh->triangles) + bytes_of(mesh->normals) +
-           bytes_of(mesh->uvs);
+           bytes_of(mesh->uvs) + bytes_of(mesh->times);
   if (const auto* mesh = std::get_if<BilinearMeshShape>(&shape.geometry))
     out += bytes_of(mesh->positions) + bytes_of(mesh->patches) + bytes_of(mesh->normals) +
            bytes_of(mesh->uvs);
@@ -45,12 +45,14 @@ std::uint64_t bytes_of(const Shape& shape, Counted& counted) {
   return out + bytes_of(shape.materials);
 }
 
-std::uint64_t moving_capsules(const Scene& scene) {
+/// Counts the primitives of a geometry whose points move.
+template <class Type>
+std::uint64_t moving_count(const Scene& scene) {
   std::uint64_t out = 0;
   const auto add = [&](const std::vector<Shape>& shapes) {
     for (const Shape& shape : shapes)
-      if (const auto* capsules = std::get_if<CapsulesShape>(&shape.geometry))
-        if (!capsules->times.empty()) out += count_of(*capsules);
+      if (std::holds_alternative<Type>(shape.geometry) && !key_times(shape).empty())
+        out += primitive_count(shape);
   };
   add(scene.shapes);
   for (const Object& object : scene.objects) add(object.shapes);
@@ -111,7 +113,8 @@ nlohmann::ordered_json scene_summary(const Scene& scene, const FlatScene& flat) 
   out["instances"] = scene.instances.size();
   out["moving"] = std::ranges::count_if(scene.instances,
                                         [](const Instance& one) { return !one.motion.empty(); });
-  out["moving_capsules"] = moving_capsules(scene);
+  out["moving_capsules"] = moving_count<CapsulesShape>(scene);
+  out["moving_triangles"] = moving_count<TriangleMeshShape>(scene);
   out["image"] = {{"width", scene.view.film.width}, {"height", scene.view.film.height}};
   out["samples_per_pixel"] = scene.view.sampler.samples_per_pixel;
   if (scene.view.sampler.noise > 0) out["noise"] = scene.view.sampler.noise;

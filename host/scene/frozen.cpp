@@ -7,24 +7,22 @@
 
 #include "scene/motion.h"
 #include "scene/shapes/capsule_motion.h"
+#include "scene/shapes/mesh_motion.h"
 
 namespace caplet {
 
 namespace {
 
-bool moves(const Shape& shape) {
-  const auto* capsules = std::get_if<CapsulesShape>(&shape.geometry);
-  return capsules && !capsules->times.empty();
-}
 bool any_moves(const std::vector<Shape>& shapes) {
-  return std::ranges::any_of(shapes, [](const Shape& one) { return moves(one); });
+  return std::ranges::any_of(shapes, [](const Shape& one) { return !key_times(one).empty(); });
 }
 
-/// Returns the capsules as kernels see them while the shutter is open, and else to one rounding.
-CapsulesShape frozen(const CapsulesShape& capsules, const FilmSettings& film, double time) {
+/// Returns the shape as kernels see it while the shutter is open, and else to one rounding.
+template <class Motion, class Type>
+Type frozen(const Type& moving, const FilmSettings& film, double time) {
   const double at = (time - film.shutter_open) / film.open_time();
-  if (!(at >= 0 && at <= 1)) return at_time(capsules, time);
-  return CapsuleMotion(capsules, film.shutter_open, film.open_time()).at(static_cast<float>(at));
+  if (!(at >= 0 && at <= 1)) return at_time(moving, time);
+  return Motion(moving, film.shutter_open, film.open_time()).at(static_cast<float>(at));
 }
 
 }  // namespace
@@ -43,8 +41,7 @@ std::optional<std::array<double, 2>> motion_span(const Scene& scene) {
   const auto add = [&out](double time) { out = {std::min(out[0], time), std::max(out[1], time)}; };
   const auto add_shapes = [&](const std::vector<Shape>& shapes) {
     for (const Shape& shape : shapes)
-      if (moves(shape))
-        for (const auto time : std::get<CapsulesShape>(shape.geometry).times) add(double{time});
+      for (const double time : key_times(shape)) add(time);
   };
   add_shapes(scene.shapes);
   for (const Object& object : scene.objects) add_shapes(object.shapes);
@@ -62,11 +59,13 @@ Scene frozen_at(Scene scene, double time) {
   for (Instance& instance : scene.instances)
     freeze(instance.motion, instance.pivot, instance.world_from_object);
   const auto freeze_shapes = [&](std::vector<Shape>& shapes) {
-    for (Shape& shape : shapes)
-      if (moves(shape)) {
-        auto& capsules = std::get<CapsulesShape>(shape.geometry);
-        capsules = frozen(capsules, scene.view.film, time);
-      }
+    for (Shape& shape : shapes) {
+      if (key_times(shape).empty()) continue;
+      if (auto* capsules = std::get_if<CapsulesShape>(&shape.geometry))
+        *capsules = frozen<CapsuleMotion>(*capsules, scene.view.film, time);
+      if (auto* mesh = std::get_if<TriangleMeshShape>(&shape.geometry))
+        *mesh = frozen<MeshMotion>(*mesh, scene.view.film, time);
+    }
   };
   freeze_shapes(scene.shapes);
   for (Object& object : scene.objects) freeze_shapes(object.shapes);

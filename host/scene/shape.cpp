@@ -4,6 +4,18 @@
 
 namespace caplet {
 
+const std::vector<double>& key_times(const Shape& shape) {
+  static const std::vector<double> none;
+  return std::visit(
+      [](const auto& own) -> const std::vector<double>& {
+        if constexpr (requires { own.times; })
+          return own.times;
+        else
+          return none;
+      },
+      shape.geometry);
+}
+
 std::size_t surface_count(const Shape& shape) {
   return std::visit([](const auto& own) { return surfaces_of(own); }, shape.geometry);
 }

@@ -60,6 +60,9 @@ struct Shape {
 /// primitives they contain.
 std::size_t surface_count(const Shape& shape);
 
+/// Returns the times (seconds) of a shape whose points move; none where it rests.
+const std::vector<double>& key_times(const Shape& shape);
+
 /// Returns whether the shape has an inside, so that csg can combine it.
 bool is_closed(const Shape& shape);
 

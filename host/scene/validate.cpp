@@ -561,11 +561,11 @@ class Validator {
       error(s.where,
             "a csg cannot be a light of a given \"power\", as its area is not known; give it an "
             "\"L\"");
-    const auto* capsules = std::get_if<CapsulesShape>(&s.geometry);
-    if (s.emission->power && capsules && !capsules->times.empty())
-      error(s.where,
-            "capsules that move cannot be a light of a given \"power\", as their area changes; "
-            "give them an \"L\"");
+    if (s.emission->power && !key_times(s).empty())
+      error(
+          s.where,
+          "a shape whose points move cannot be a light of a given \"power\", as its area changes; "
+          "give it an \"L\"");
   }
 
   void shape(const Shape& s) {

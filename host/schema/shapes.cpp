@@ -15,6 +15,10 @@ namespace {
 constexpr Row positions = {{"P", "points"}, "point3"};
 constexpr Row normals = {{"N", "normals at the points"}, "normal"};
 constexpr Row uvs = {{"uv", "texture coordinates at the points"}, "point2"};
+constexpr Row mesh_times = {
+    {"times", "when the points are as the list says, all at each; none: they rest", -no_limit,
+     no_limit, "seconds"},
+    "float"};
 constexpr Row st = {{"st", "the same as uv"}, "point2"};
 constexpr Row first_end = {{"p0", "an end of the axis"}, "point3"};
 constexpr Row second_end = {{"p1", "the other end"}, "point3"};
@@ -95,14 +99,15 @@ constexpr std::array molecule_rows = {
     Row{{"probe", "radius of the probe", 0, no_limit, "", true}, "float", "1.4"},
     Row{{"ballmaterials", "names of materials; \"\" is the shape's own"}, "string"},
     Row{{"materialindices", "which of ballmaterials each ball has", 0}, "integer"}};
-constexpr std::array ply_rows = {Row{{"filename", "a PLY file"}, "string"}};
+constexpr std::array ply_rows = {
+    Row{{"filename", "a PLY file; of a mesh that moves one a time"}, "string"}, mesh_times};
 constexpr std::array polyhedron_rows = {Row{{"P", "a point of each plane, at most 1024"}, "point3"},
                                         Row{{"N", "the planes' outward normals"}, "normal"}};
 constexpr std::array sphere_rows = {Row{{"radius", "radius", 0, no_limit, "", true}, "float", "1"},
                                     Row{{"zmin", "lower end"}, "float", "-radius"},
                                     Row{{"zmax", "upper end"}, "float", "radius"}, phi_max};
-constexpr std::array triangle_rows = {positions, Row{{"indices", "corners, in threes"}, "integer"},
-                                      normals, uvs, st};
+constexpr std::array triangle_rows = {
+    positions, Row{{"indices", "corners, in threes"}, "integer"}, normals, uvs, st, mesh_times};
 constexpr std::array triangle_ignored = {Row{{"S", "tangents"}, "vector3"},
                                          Row{{"faceIndices", "of Ptex"}, "integer"}};
 

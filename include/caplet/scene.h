@@ -130,6 +130,8 @@ class CAPLET_API Scene {
                const std::array<double, 3>& up);
   /// Moves the camera likewise: `transforms` map its space (x right, y up, z forward) to the world.
   void set_camera_motion(const std::vector<double>& times, std::span<const Transform> transforms);
+  /// Opens the shutter from one time to another (seconds). Pictures stay as bright as they are.
+  void set_shutter(double open, double close);
   double fov() const;  // degrees, of the picture's shorter side
   void set_fov(double degrees);
 
@@ -157,6 +159,9 @@ class CAPLET_API Scene {
   /// Get and set all capsules of a shape; set_capsules may change their number.
   CapsuleArrays capsule_arrays(std::uint32_t shape) const;
   void set_capsules(std::uint32_t shape, const CapsuleArrays& capsules);
+  /// Get and set all triangles of a shape that is a mesh.
+  MeshArrays mesh_arrays(std::uint32_t shape) const;
+  void set_mesh(std::uint32_t shape, const MeshArrays& mesh);
   /// Returns the number of shape `index` of an object definition, or of the world where `object` is
   /// empty.
   std::uint32_t shape_in(const std::string& object, std::size_t index) const;

@@ -48,12 +48,14 @@ struct BallArrays {
 };
 
 /// Triangles by corner indices, counter-clockwise from outside. Normals (any length) and uvs: empty
-/// or one per vertex.
+/// or one per vertex. A mesh that moves has `times`, two or more that rise (seconds): positions and
+/// normals are then those of all vertices at the first time, then at the second one, and so on.
 struct MeshArrays {
   std::vector<std::array<float, 3>> positions;
   std::vector<std::array<std::uint32_t, 3>> triangles;
   std::vector<std::array<float, 3>> normals;
   std::vector<std::array<float, 2>> uvs;
+  std::vector<double> times = {};
 };
 
 /// Properties of shapes beside their geometry.

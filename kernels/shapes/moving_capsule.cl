@@ -19,15 +19,6 @@ typedef struct {
   real_mask is_sphere, is_capsule, is_tapered;
 } MovingCapsules;
 
-static inline float ray_time(const ShapeRay* ray) {
-#ifdef CAPLET_MOTION
-  return ray->time;
-#else
-  (void)ray;
-  return 0.0f;
-#endif
-}
-
 static inline MovingCapsules moving_capsules(const ShapeRay* ray, __global const float* block,
                                              uint lane) {
   MovingCapsules c;

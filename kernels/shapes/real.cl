@@ -154,6 +154,16 @@ static inline ShapeRay shape_ray(float3 o, float3 d, float t_min, __global const
   return ray;
 }
 
+// Returns when the ray sees the scene, from 0 to 1 while the shutter is open.
+static inline float ray_time(const ShapeRay* ray) {
+#ifdef CAPLET_MOTION
+  return ray->time;
+#else
+  (void)ray;
+  return 0.0f;
+#endif
+}
+
 static inline TriangleRay triangle_ray_of(const ShapeRay* ray) {
 #if CAPLET_REAL_WIDTH == 8
   return ray->triangle;

@@ -31,11 +31,23 @@ static inline void derivatives_by_uv(float2 uv_a, float2 uv_b, float3 p_a, float
   if (!(norm1(s->dpdu) + norm1(s->dpdv) < INFINITY)) s->dpdu = s->dpdv = (float3)(0.0f);
 }
 
-static inline LocalSurface surface_triangle(const SurfaceQuery* q) {
+// Barycentric coordinates of a point of a triangle.
+typedef struct {
+  float b0, b1, b2;
+} Barycentric;
+
+// Returns the first of the three places in mesh_indices of the triangle that is asked for.
+static inline uint triangle_corner(const SurfaceQuery* q) {
+  return q->geometry->index_begin + 3u * (q->primitive - q->geometry->primitive_begin);
+}
+
+// Returns the point of the triangle with these vertices, with the normal of its plane as ns, and
+// where it is.
+static inline LocalSurface triangle_point(const SurfaceQuery* q, float3 v0, float3 v1, float3 v2,
+                                          Barycentric* at) {
   const Surfaces* surfaces = q->surfaces;
   const GeometryRecord* geometry = q->geometry;
-  const float3 v0 = triangle_v0(q->data);
-  const float3 e1 = triangle_v1(q->data) - v0, e2 = triangle_v2(q->data) - v0;
+  const float3 e1 = v1 - v0, e2 = v2 - v0;
   const float3 n = unit_or(robust_cross(e1, e2), q->fallback);
 
   // b1 and b2 are barycentric coordinates of x projected along the normal, kept inside the
@@ -50,22 +62,17 @@ static inline LocalSurface surface_triangle(const SurfaceQuery* q) {
     b2 /= sum;
   }
   const float b0 = fmax(0.0f, 1.0f - b1 - b2);
+  at->b0 = b0;
+  at->b1 = b1;
+  at->b2 = b2;
 
   LocalSurface s;
   s.p = v0 + (b1 * e1 + b2 * e2);
   s.ng = s.ns = n;
   s.error = CAPLET_EPS * (12.0f * (norm1(e1) + norm1(e2)) + 4.0f * norm1(s.p));
 
-  const uint corner = geometry->index_begin + 3u * (q->primitive - geometry->primitive_begin);
-  if (geometry->normal_begin != CAPLET_NONE) {
-    __global const float* normals = surfaces->mesh_normals + geometry->normal_begin;
-    const float3 ns = b0 * load3(normals + 3u * surfaces->mesh_indices[corner]) +
-                      b1 * load3(normals + 3u * surfaces->mesh_indices[corner + 1u]) +
-                      b2 * load3(normals + 3u * surfaces->mesh_indices[corner + 2u]);
-    s.ns = unit_or(ns, s.ng);
-    if (dot(s.ns, s.ng) < 0.0f) s.ns = -s.ns;
-  }
   if (geometry->uv_begin != CAPLET_NONE) {
+    const uint corner = triangle_corner(q);
     __global const float* uvs = surfaces->mesh_uvs + geometry->uv_begin;
     const float2 uv0 = vload2(surfaces->mesh_indices[corner], uvs);
     const float2 uv1 = vload2(surfaces->mesh_indices[corner + 1u], uvs),
@@ -76,6 +83,27 @@ static inline LocalSurface surface_triangle(const SurfaceQuery* q) {
     s.uv = (float2)(1.0f - b0, b2);
     s.dpdu = e1;
     s.dpdv = e2 - e1;
+  }
+  return s;
+}
+
+// Returns the shading normal, between the normals at the vertices and on the side of ng.
+static inline float3 triangle_shading_normal(Barycentric at, float3 n0, float3 n1, float3 n2,
+                                             float3 ng) {
+  const float3 ns = unit_or(at.b0 * n0 + at.b1 * n1 + at.b2 * n2, ng);
+  return dot(ns, ng) < 0.0f ? -ns : ns;
+}
+
+static inline LocalSurface surface_triangle(const SurfaceQuery* q) {
+  Barycentric at;
+  LocalSurface s =
+      triangle_point(q, triangle_v0(q->data), triangle_v1(q->data), triangle_v2(q->data), &at);
+  if (q->geometry->normal_begin != CAPLET_NONE) {
+    __global const float* normals = q->surfaces->mesh_normals + q->geometry->normal_begin;
+    __global const uint* corner = q->surfaces->mesh_indices + triangle_corner(q);
+    s.ns = triangle_shading_normal(at, load3(normals + 3u * corner[0]),
+                                   load3(normals + 3u * corner[1]), load3(normals + 3u * corner[2]),
+                                   s.ng);
   }
   return s;
 }

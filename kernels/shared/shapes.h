@@ -79,6 +79,13 @@ constexpr std::uint32_t rows_of(std::uint32_t shape) { return 1 + data_of[shape]
 
 constexpr std::uint64_t shape_bit(std::uint32_t shape) { return std::uint64_t{1} << shape; }
 constexpr bool shape_has(std::uint32_t shape, std::uint32_t trait) { return (traits_of[shape] & trait) != 0; }
+/// Returns the kinds that have a trait.
+constexpr std::uint64_t shapes_with(std::uint32_t trait) {
+  std::uint64_t out = 0;
+  for (std::uint32_t shape = 0; shape < shape_count; ++shape)
+    if (shape_has(shape, trait)) out |= shape_bit(shape);
+  return out;
+}
 
 /// capsule_r(data) takes the data of one primitive in order; vectors are a pointer to x.
 #define CAPLET_FIELD_scalar(function, at) \

@@ -77,18 +77,38 @@ class Shape:
         """Of capsules of a chain: what the texture coordinate u is at p0 and at p1, float32 (n, 2); none of others, (0, 2)."""
         return self._arrays()[5]
 
+    def _mesh(self):
+        return self._scene._native.mesh_arrays(self.number)
+
+    @property
+    def vertices(self):
+        """A mesh's vertices, float32 (v, 3), or (k, v, 3) at k times, in the shape's space; a copy."""
+        now = self._mesh()
+        return self._at_times(now[0], now[4])
+
+    @property
+    def faces(self):
+        """A mesh's triangles, uint32 (n, 3): numbers of vertices."""
+        return self._mesh()[1]
+
+    @property
+    def normals(self):
+        """Normals at a mesh's vertices, float32 (v, 3) or (k, v, 3); none of others, (0, 3)."""
+        now = self._mesh()
+        return self._at_times(now[2], now[4]) if len(now[2]) else now[2]
+
     @property
     def times(self):
-        """The times (seconds) between which the capsules move; none where they rest."""
-        return self._arrays()[6]
+        """The times (seconds) between which the capsules or a mesh's vertices move; none where they rest."""
+        return self._arrays()[6] if len(self) else self._mesh()[4]
 
-    def animate(self, times, p0=None, p1=None, radius=None):
-        """Moves the capsules' ends while the shutter is open, and changes their radii.
+    def animate(self, times, p0=None, p1=None, radius=None, *, vertices=None, normals=None):
+        """Moves the capsules' ends while the shutter is open, and changes their radii; or moves a mesh's vertices.
 
-        times: k times (seconds, rising), two or more. p0, p1: (k, n, 3). radius: one, (n,), (k, n), or (k, n, 2) of both ends. What is
-        not given stays as it is, or as it is at the first time. Between two times all goes straight and evenly; before the first and
-        after the last one it rests. With no times the capsules rest where they are at the first one. The shutter is that of the camera:
-        `shutteropen`, `shutterclose` (0 and 1 second).
+        times: k times (seconds, rising), two or more. Capsules: p0, p1: (k, n, 3); radius: one, (n,), (k, n), or (k, n, 2) of both ends.
+        A mesh: vertices: (k, v, 3); normals: (k, v, 3), which a mesh with normals needs. What else is not given stays as it is, or as it
+        is at the first time. Between two times all goes straight and evenly; before the first and after the last one it rests. With no
+        times the shape rests as it is at the first one. The shutter is that of the camera: `shutteropen`, `shutterclose` (0 and 1 second).
         """
         times = arrays.floats(times, "times").astype(np.float64)
         if times.ndim != 1:
@@ -100,13 +120,31 @@ class Shape:
             if name == "radius" and given.ndim in (1, 2) and given.shape[-1] == count:
                 given = given[..., np.newaxis]
             try:
-                return np.broadcast_to(given, (keys, *shape)).reshape(keys * count, shape[1])
+                return np.broadcast_to(given, (keys, *shape)).reshape(keys * shape[0], shape[1])
             except ValueError:
                 raise InputError(f"{name}: shape {(keys, *shape)} is needed, not {np.shape(now if value is None else value)}") from None
 
         def first(array):
             return array[0] if self.times else array
 
+        if not count:
+            if p0 is not None or p1 is not None or radius is not None:
+                raise InputError("animate: p0, p1 and radius are of capsules, and this shape has none")
+            try:
+                held = self._mesh()
+            except InputError:
+                raise InputError("animate: the shape is neither of capsules nor a mesh; other shapes move with an instance") from None
+            points = first(self.vertices)
+            if len(held[2]) and vertices is not None and normals is None:
+                raise InputError("animate: a mesh with normals needs those at the new vertices too")
+            held_normals = first(self.normals) if len(held[2]) else None
+            turned = None if normals is None and held_normals is None else at_times(normals, "normals", points.shape, held_normals)
+            self._scene._native.set_mesh(self.number, at_times(vertices, "vertices", points.shape, points), held[1].reshape(-1), turned,
+                                         held[3] if len(held[3]) else None, times.tolist())
+            self._scene._changed()
+            return
+        if vertices is not None or normals is not None:
+            raise InputError("animate: vertices and normals are of a mesh, and this shape has capsules")
         ends = at_times(radius, "radius", (count, 2), first(self.radius))
         materials, u = self._arrays()[4:6]
         self._scene._native.set_capsules(
@@ -711,6 +749,11 @@ class Scene:
     def animate_camera(self, times, transforms):
         """Moves the camera likewise; transforms take its space (x right, y up, z forward) to the world."""
         self._native.set_camera_motion(*self._keys(times, transforms))
+        self._changed()
+
+    def shutter(self, open, close):
+        """Opens the camera's shutter from one time to another (seconds). Pictures stay as bright as they are."""
+        self._native.set_shutter(float(open), float(close))
         self._changed()
 
     @staticmethod

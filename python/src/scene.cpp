@@ -365,6 +365,7 @@ void bind_statements(nb::class_<HeldScene>& held) {
                       const Array& transforms, const std::array<double, 3>& pivot) {
              scene.set_instance_motion(number, times, transforms_of(transforms), pivot);
            }))
+      .def("set_shutter", in_turn(&Scene::set_shutter))
       .def("set_camera_motion",
            in_turn([](Scene& scene, const std::vector<double>& times, const Array& transforms) {
              scene.set_camera_motion(times, transforms_of(transforms));
@@ -479,6 +480,20 @@ void bind_shapes(nb::class_<HeldScene>& held) {
            }));
 }
 
+caplet::MeshArrays mesh_of(const Array& positions, const Array& triangles,
+                           const std::optional<Array>& normals, const std::optional<Array>& uvs,
+                           const std::vector<double>& times = {}) {
+  caplet::MeshArrays mesh;
+  mesh.positions = rows_of<3>(positions, positions.shape(0));
+  if (normals) mesh.normals = rows_of<3>(*normals, normals->shape(0));
+  if (uvs) mesh.uvs = rows_of<2>(*uvs, uvs->shape(0));
+  const std::vector<std::uint32_t> corners = numbers_of(triangles);
+  for (std::size_t i = 0; i + 2 < corners.size(); i += 3)
+    mesh.triangles.push_back({corners[i], corners[i + 1], corners[i + 2]});
+  mesh.times = times;
+  return mesh;
+}
+
 /// Binds meshes by arrays.
 void bind_meshes(nb::class_<HeldScene>& held) {
   held.def("add_mesh",
@@ -486,18 +501,32 @@ void bind_meshes(nb::class_<HeldScene>& held) {
                       const std::optional<Array>& normals, const std::optional<Array>& uvs,
                       const nb::dict& options) {
              const caplet::ShapeOptions given = options_of(options);
-             caplet::MeshArrays mesh;
-             mesh.positions = rows_of<3>(positions, positions.shape(0));
-             if (normals) mesh.normals = rows_of<3>(*normals, normals->shape(0));
-             if (uvs) mesh.uvs = rows_of<2>(*uvs, uvs->shape(0));
-             const std::vector<std::uint32_t> corners = numbers_of(triangles);
-             for (std::size_t i = 0; i + 2 < corners.size(); i += 3)
-               mesh.triangles.push_back({corners[i], corners[i + 1], corners[i + 2]});
+             const caplet::MeshArrays mesh = mesh_of(positions, triangles, normals, uvs);
              const Released released;
              return scene.add_mesh(mesh, given);
            }),
            nb::arg("positions"), nb::arg("triangles"), nb::arg("normals").none(),
-           nb::arg("uvs").none(), nb::arg("options"));
+           nb::arg("uvs").none(), nb::arg("options"))
+      .def("set_mesh",
+           in_turn([](Scene& scene, std::uint32_t shape, const Array& positions,
+                      const Array& triangles, const std::optional<Array>& normals,
+                      const std::optional<Array>& uvs, const std::vector<double>& times) {
+             const caplet::MeshArrays mesh = mesh_of(positions, triangles, normals, uvs, times);
+             const Released released;
+             scene.set_mesh(shape, mesh);
+           }),
+           nb::arg("shape"), nb::arg("positions"), nb::arg("triangles"), nb::arg("normals").none(),
+           nb::arg("uvs").none(), nb::arg("times"))
+      .def("mesh_arrays", in_turn([](const Scene& scene, std::uint32_t shape) {
+             const caplet::MeshArrays mesh = scene.mesh_arrays(shape);
+             std::vector<std::uint32_t> corners;
+             for (const auto& triangle : mesh.triangles)
+               corners.insert(corners.end(), triangle.begin(), triangle.end());
+             return nb::make_tuple(
+                 rows_array(mesh.positions),
+                 array_of<std::uint32_t, 2>(std::move(corners), {mesh.triangles.size(), 3}),
+                 rows_array(mesh.normals), rows_array(mesh.uvs), mesh.times);
+           }));
 }
 
 }  // namespace

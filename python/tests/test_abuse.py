@@ -121,7 +121,7 @@ VALUES = {  # of required arguments, and of those that are tried as arrays: as t
     "seed": 1, "pose": np.eye(4), "azimuth": [0.0, 10], "elevation": [0.0, 5], "reach": 5.0, "tractogram": [THREE], "rays": 100, "most": 8, "time_limit": 5.0,
     "name": "name", "material": materials.diffuse(), "medium": None, "light": lights.point(), "scene": row, "path": None, "kelvin": 5000.0,
     "parameters": {}, "inside": media.homogeneous(), "messages": "wrong", "film": None, "image": None, "device": None, "devices": None, "agrees": True, "text": "", "json": "",
-    "index": 0, "first": 0, "times": [0.0, 1.0], "time": 0.5, "worlds": np.tile(np.eye(4), (2, 2, 1, 1)), "poses": [np.eye(4)] * 2,
+    "open": 0.25, "close": 0.75, "index": 0, "first": 0, "times": [0.0, 1.0], "time": 0.5, "worlds": np.tile(np.eye(4), (2, 2, 1, 1)), "poses": [np.eye(4)] * 2,
 }
 OF = {  # where the same name is something else
     ("add_polyhedron", "normals"): [[0, 0, 1.0], [0, 0, -1], [1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0]], ("set_light", "color"): [1.0, 2, 3],
@@ -133,6 +133,7 @@ OF = {  # where the same name is something else
     ("add", "radius"): 0.5, ("add_molecular_surface", "probe"): 1.4, ("add_many", "radius"): 0.5, ("animate_instance", "transforms"): [np.eye(4)] * 2, ("animate_camera", "transforms"): [np.eye(4)] * 2,
     ("render_batch", "camera"): sensors.Pinhole(4, 3, fx=4), ("render_batch", "moving"): [0, 1], ("render_batch", "mode"): "rays", ("render_batch", "layers"): ["depth"],
     ("animate", "p0"): [THREE[:2]] * 2, ("animate", "p1"): np.add([THREE[:2]] * 2, 1), ("animate", "radius"): [[0.1, 0.2]] * 2,
+    ("animate", "vertices"): None, ("animate", "normals"): None,
 }
 # Of entries that take more by **options: what of it holds numbers.
 MORE = {"add_spheres": ("color", "transform"), "add_cylinders": ("color", "transform"), "add_cones": ("color", "transform"), "add_boxes": ("color", "transform"),

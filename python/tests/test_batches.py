@@ -241,6 +241,74 @@ TUMBLERS = """<mujoco><worldbody><geom type="plane" size="5 5 1"/>
 <body pos="1 0 1"><freejoint/><geom type="cylinder" size="0.2 0.5"/></body><geom type="sphere" pos="0 2 1" size="0.4"/></worldbody></mujoco>"""
 
 
+def test_states_of_a_robot_are_its_motion(rng=np.random.default_rng(8)):
+    mujoco = pytest.importorskip("mujoco")
+    model = mujoco.MjModel.from_xml_string(TUMBLERS)
+    qpos = np.tile(model.qpos0, (3, 1))
+    for first in (3, 10, 17):  # quaternions
+        qpos[:, first:first + 4] = rng.normal(size=(3, 4))
+        qpos[:, first:first + 4] /= np.linalg.norm(qpos[:, first:first + 4], axis=1)[:, None]
+    qpos[:, [0, 2, 7]] += rng.uniform(-0.3, 0.3, (3, 3))
+    times = [2, 2.5, 4]
+    scene = caplet.from_mujoco(model, times=times, qpos=qpos)
+    assert scene.instances == 3 and scene.info["moving"].tolist() == [2, 3, 4] and len(scene.info["geom"]) == 5
+    assert [scene.shapes[i] for i in scene.info["moving"]] == [f"geom {i}" for i in scene.info["geom"][2:]]
+    o = rng.uniform((-4, -4, 0.5), (4, 4, 4), (500, 3))
+    d = rng.uniform((-1.5, -1, 0.2), (1.5, 2.5, 1.8), (500, 3)) - o
+    d /= np.linalg.norm(d, axis=1)[:, None]
+    for time, state in zip(times, qpos):
+        now = mujoco.MjData(model)
+        now.qpos[:] = state
+        mujoco.mj_forward(model, now)
+        hits = caplet.trace(scene, o, d, time=time)
+        geoms, ranges = np.zeros(500, np.int32), np.zeros(500)
+        for i in range(500):
+            found = np.zeros(1, np.int32)
+            ranges[i] = mujoco.mj_ray(model, now, o[i], d[i], None, 1, -1, found, None)
+            geoms[i] = found[0]
+        mine = np.where(np.isfinite(hits["t"]), scene.info["geom"][hits["shape"].clip(max=4)], -1)
+        same = mine == geoms
+        assert same.mean() > 0.98 and (geoms > 1).sum() > 50
+        met = same & (geoms >= 0)
+        assert (np.abs(hits["t"] - ranges)[met] < 1e-4 * ranges[met]).mean() > 0.99
+    # Halfway between two states a body is at the middle, turned by half.
+    half = caplet.trace(scene, o, d, time=2.25)
+    still = scene.copy()
+    for i in range(3):
+        still.animate_instance(i, [], [])
+        ends = [np.eye(4), np.eye(4)]
+        for end, state in zip(ends, qpos):
+            mujoco.mju_quat2Mat(flat := np.zeros(9), state[7 * i + 3:7 * i + 7])
+            end[:3, :3], end[:3, 3] = flat.reshape(3, 3), state[7 * i:7 * i + 3]
+        a, b = qpos[0, 7 * i + 3:7 * i + 7], qpos[1, 7 * i + 3:7 * i + 7]
+        middle = (a + np.sign(a @ b) * b) / np.linalg.norm(a + np.sign(a @ b) * b)
+        mujoco.mju_quat2Mat(flat := np.zeros(9), middle)
+        place = np.eye(4)
+        place[:3, :3], place[:3, 3] = flat.reshape(3, 3), (ends[0][:3, 3] + ends[1][:3, 3]) / 2
+        still.set_instance(i, place)
+    expected = caplet.trace(still, o, d)
+    assert (half["shape"] == expected["shape"]).mean() > 0.995
+    both = np.isfinite(half["t"]) & (half["shape"] == expected["shape"])
+    assert np.abs(half["t"][both] - expected["t"][both]).max() < 1e-4
+    # As bright as what rests, and blurred between the shutter's times alone.
+    scene.shutter(2, 2.001)
+    first = caplet.from_mujoco(model)
+    first_state = mujoco.MjData(model)
+    first_state.qpos[:] = qpos[0]
+    mujoco.mj_forward(model, first_state)
+    caplet.bridges.update_mujoco(first, first_state)
+    render = {"spp": 64, "size": (48, 36)}
+    assert np.abs(caplet.render(scene, **render).rgb - caplet.render(first, **render).rgb).mean() < 0.02
+    for wrong in ((2, 2), (3, 2), (0, np.nan)):
+        with pytest.raises(caplet.InputError):
+            scene.shutter(*wrong)
+    with pytest.raises(caplet.InputError, match="moves by its states"):
+        caplet.bridges.update_mujoco(scene, first_state)
+    for wrong in ({"times": [0, 1]}, {"qpos": qpos}, {"times": [0, 1], "qpos": qpos}, {"times": [0, 2, 1], "qpos": qpos}, {"times": [0, 1, 2], "qpos": qpos[:, 1:]}):
+        with pytest.raises(caplet.InputError):
+            caplet.from_mujoco(model, **wrong)
+
+
 def test_every_kind_of_geom_tumbles_as_mujoco_has_it():
     mujoco = pytest.importorskip("mujoco")
     model = mujoco.MjModel.from_xml_string(TUMBLERS)

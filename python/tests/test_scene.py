@@ -559,6 +559,49 @@ def test_instances_and_cameras_move(tmp_path):
         moving.animate_instance(7, [0, 1], [right, right])
 
 
+def test_vertices_of_meshes_move(tmp_path):
+    scene = caplet.Scene()
+    square = np.float32([[-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]])
+    shape = scene.add_mesh(square, [[0, 1, 2], [0, 2, 3]], uv=square[:, :2], material=materials.diffuse(reflectance=0), emission={"L": (1, 1, 1)})
+    scene.camera = cameras.orthographic(eye=(0, 0, 5), target=(0, 0, 0), screenwindow=(-2, 2, -2, 2))
+    scene.filter("box")
+    rest = caplet.render(scene, spp=2, size=(16, 16))
+    assert np.array_equal(shape.vertices, square) and shape.faces.tolist() == [[0, 1, 2], [0, 2, 3]] and shape.normals.shape == (0, 3) and shape.times == []
+
+    # Its right side goes from x = 1 to -1: the square covers a quarter of the window, and nothing at the end.
+    gone = square * np.float32([0, 1, 1]) - np.float32([1, 0, 0])
+    shape.animate([0, 1], vertices=[square, gone])
+    assert shape.times == [0, 1] and np.array_equal(shape.vertices, [square, gone])
+    image = caplet.render(scene, spp=1024, size=(16, 16)).rgb[..., 1]
+    # Column 4 + k is covered until (1 - (k + 1/2) / 8): the window is 4 wide, of 16 pixels.
+    assert abs(image.mean() - 0.125) < 0.001
+    assert np.abs(image[6, 4:12] - (1 - (np.arange(8) + 0.5) / 8)).max() < 0.02 and image[6, 12:].max() == 0
+
+    scene.save(tmp_path / "moving.pbrt")
+    assert same_pictures(scene, caplet.load(tmp_path / "moving.pbrt"))
+    held = shape.vertices
+    for wrong in (dict(times=[0]), dict(times=[1, 0]), dict(times=[0, 1], vertices=[square[:3]] * 2), dict(times=[0, 1], p0=square), dict(times=[0, 1], radius=1),
+                  dict(times=[0, 1], vertices=np.full((2, 4, 3), np.nan)), dict(times=[0, 1], normals=np.zeros((3, 4, 3)))):
+        with pytest.raises(caplet.InputError):
+            shape.animate(**wrong)
+        assert np.array_equal(shape.vertices, held) and shape.times == [0, 1]
+    shape.animate([])
+    again = caplet.render(scene, spp=2, size=(16, 16))
+    assert shape.times == [] and all(np.array_equal(again[name].view(np.uint32), rest[name].view(np.uint32)) for name in rest.channels)
+
+    # A mesh with normals needs those of its new vertices.
+    up = np.float32([[0, 0, 1]] * 4)
+    smooth = scene.add_mesh(square, [[0, 1, 2]], normals=up)
+    with pytest.raises(caplet.InputError, match="normals"):
+        smooth.animate([0, 1], vertices=[square, gone])
+    smooth.animate([0, 1], vertices=[square, gone], normals=up)
+    assert smooth.normals.shape == (2, 4, 3)
+    with pytest.raises(caplet.InputError, match="neither of capsules nor a mesh"):
+        scene.add("sphere").animate([0, 1])
+    with pytest.raises(caplet.InputError, match="of a mesh"):
+        scene.add_capsules([[0, 0, 0]], [[1, 0, 0]], 1).animate([0, 1], vertices=[square] * 2)
+
+
 def test_ends_of_capsules_move(tmp_path):
     scene = caplet.Scene()
     shape = scene.add_capsules([[0, 0, 0], [0, 1, 0]], [[0, 0, 0], [0, 1, 0]], [0.5, 0.1], material=materials.diffuse(reflectance=0), emission={"L": (1, 1, 1)})

@@ -26,7 +26,7 @@ namespace {
 // The ids, then the data: a sphere's centre and radius, a capsule's ends and radius ...
 constexpr std::uint32_t rows_by_count[] = {1 + 4,  1 + 7, 1 + 8, 1 + 9, 1 + 7, 1 + 9,
                                            1 + 10, 1 + 6, 1 + 1, 1 + 4, 1 + 4, 1 + 4,
-                                           1 + 12, 1 + 1, 1 + 3, 1,     1 + 5};
+                                           1 + 12, 1 + 1, 1 + 3, 1 + 4, 1,     1 + 5};
 static_assert(std::size(rows_by_count) == shape_count);
 
 std::vector<FlatPrimitive> mixed(unsigned count) {

@@ -473,6 +473,16 @@ class Maker {
     many.times = {0.25, 1};
     finish(many);
     if (auto& emission = scene_.shapes.back().emission) emission->power.reset();
+    TriangleMeshShape bending{{}, {{0, 1, 2}, {2, 1, 3}}, {}, {}};
+    bending.times = {0.25, 0.5, 1};
+    for (int i = 0; i < 12; ++i) {
+      bending.positions.push_back(3.f * glm::vec3(random_.direction()));
+      bending.normals.emplace_back(random_.direction());
+    }
+    for (int i = 0; i < 4; ++i)
+      bending.uvs.emplace_back(random_.uniform(0, 1), random_.uniform(0, 1));
+    finish(bending);
+    if (auto& emission = scene_.shapes.back().emission) emission->power.reset();
     // A box of no light's business around a medium.
     const auto interface = std::ranges::find_if(scene_.materials, [](const Material& one) {
       return std::holds_alternative<InterfaceMaterial>(one.model);

@@ -482,6 +482,30 @@ TEST(WriteScene, AFileIsReplacedAsAWholeOrNotAtAll) {
 
 // --- What importers read for the writer's sake ---
 
+TEST(OurStatements, MeshesThatMove) {
+  const Scene scene = scene_of(
+      world +
+      "Shape \"trianglemesh\" \"float times\" [0.25 2] \"point3 P\" [0 0 0 1 0 0 0 1 0  0 0 1 1 0 "
+      "1 "
+      "0 1 4] \"normal N\" [0 0 1 0 0 2 0 1 0] \"point2 uv\" [0 0 1 0 0 1]\n"
+      "Shape \"trianglemesh\" \"float times\" [0 1 2] \"point3 P\" [0 0 0 1 0 0 0 1 0  0 0 1 1 0 1 "
+      "0 1 4  0 0 0 1 0 0 0 1 0] \"normal N\" [0 0 1 0 0 1 0 0 1 0 1 0 0 1 0 0 1 0 1 0 0 1 0 0 1 0 "
+      "0]"
+      "\n");
+  const auto& once = std::get<TriangleMeshShape>(scene.shapes.at(0).geometry);
+  EXPECT_EQ(once.times, (std::vector<double>{0.25, 2}));
+  EXPECT_EQ(vertex_count(once), 3u);
+  EXPECT_EQ(once.positions.size(), 6u);
+  EXPECT_EQ(once.positions[5], glm::vec3(0, 1, 4));
+  EXPECT_EQ(once.triangles, (std::vector<std::array<std::uint32_t, 3>>{{0, 1, 2}}));
+  // Normals that are given once are those of all times.
+  EXPECT_EQ(once.normals, (std::vector<glm::vec3>{
+                              {0, 0, 1}, {0, 0, 2}, {0, 1, 0}, {0, 0, 1}, {0, 0, 2}, {0, 1, 0}}));
+  const auto& each = std::get<TriangleMeshShape>(scene.shapes.at(1).geometry);
+  EXPECT_EQ(each.normals.size(), 9u);
+  EXPECT_EQ(each.normals[8], glm::vec3(1, 0, 0));
+}
+
 TEST(OurStatements, CapsulesThatMove) {
   const std::string statement =
       "Shape \"capsules\" \"float times\" [0.25 2] \"point3 p0\" [0 0 0 1 0 0  2 0 0 3 0 0] "
@@ -505,7 +529,7 @@ TEST(OurStatements, CapsulesThatMove) {
     return std::string();
   };
   EXPECT_THAT(said("AreaLightSource \"diffuse\" \"rgb L\" [1 1 1] \"float power\" 5\n" + statement),
-              HasSubstr("capsules that move cannot be a light of a given \"power\""));
+              HasSubstr("a shape whose points move cannot be a light of a given \"power\""));
   EXPECT_THAT(said("ObjectBegin \"a\"\n" + statement +
                    "\nObjectEnd\nObjectBegin \"b\" Shape \"sphere\" ObjectEnd\nShape \"csg\" "
                    "\"string operation\" \"union\" \"string operands\" [\"a\" \"b\"]\n"),

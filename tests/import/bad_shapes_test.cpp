@@ -111,6 +111,33 @@ std::vector<Bad> bad_shapes() {
        "scene.pbrt:2:31: Shape 'disk': 'innerradius' must be from 0 up and below the radius"},
       {"NegativeHole", "Shape 'disk' 'float innerradius' -1",
        "scene.pbrt:2:14: Shape 'disk': 'innerradius' must be from 0 up and below the radius"},
+      // Meshes that move.
+      {"PointsNotAsManyAtEachTime",
+       "Shape 'trianglemesh' 'float times' [0 1] 'point3 P' [0 0 0 1 0 0 0 1 0] 'integer indices' "
+       "[0 1 2]",
+       "scene.pbrt:2:42: Shape 'trianglemesh': 'P' has 3 points, which are not as many at each of "
+       "2 times"},
+      {"TimesThatDoNotRise",
+       "Shape 'trianglemesh' 'float times' [1 1] 'point3 P' [0 0 0 1 0 0 0 1 0]",
+       "scene.pbrt:2:22: Shape 'trianglemesh': 'times' must rise"},
+      {"OneTime", "Shape 'trianglemesh' 'float times' [1] 'point3 P' [0 0 0 1 0 0 0 1 0]",
+       "scene.pbrt:2:22: Shape 'trianglemesh': 'times' takes two times or more"},
+      {"NormalsOfSomeTimes",
+       "Shape 'trianglemesh' 'float times' [1 2] 'point3 P' [0 0 0 1 0 0 0 1 0 0 0 0 1 0 0 0 1 1] "
+       "'normal N' [0 0 1 0 0 1]",
+       "scene.pbrt:2:91: Shape 'trianglemesh': 'N' has 2 entries for 3 vertices"},
+      {"IndexOfALaterTime",
+       "Shape 'trianglemesh' 'float times' [1 2] 'point3 P' [0 0 0 1 0 0 0 1 0 0 0 0 1 0 0 0 1 1] "
+       "'integer indices' [0 1 3]",
+       "scene.pbrt:2:91: Shape 'trianglemesh': 'indices' has the index 3 (entry 2), but there are "
+       "3 vertices"},
+      {"FilesWithoutTimes", "Shape 'plymesh' 'string filename' ['a.ply' 'b.ply']",
+       "scene.pbrt:2:17: Shape 'plymesh': 'filename' takes one file a time of 'times', not 2 for "
+       "0"},
+      {"FilesOfOtherTimes",
+       "Shape 'plymesh' 'string filename' ['a.ply' 'b.ply'] 'float times' [0 1 2]",
+       "scene.pbrt:2:17: Shape 'plymesh': 'filename' takes one file a time of 'times', not 2 for "
+       "3"},
       // Bilinear meshes.
       {"PatchIndexOutOfRange",
        "Shape 'bilinearmesh' 'point3 P' [0 0 0 1 0 0 0 1 0 1 1 0] 'integer indices' [0 1 2 4]",

@@ -280,6 +280,39 @@ TEST(Ply, BrokenHeaders) {
             "m.ply:10: a vertex position is not finite (\"x\")");
 }
 
+TEST(Ply, FilesOfSeveralTimesAreAMeshThatMoves) {
+  const std::filesystem::path folder = temporary_folder();
+  const auto write = [&](const std::string& name, const std::string& vertices,
+                         const std::string& face = "3 0 1 2\n", bool has_normals = true) {
+    write_file(
+        folder / name,
+        "ply\nformat ascii 1.0\nelement vertex 3\n" + std::string(xyz) +
+            (has_normals ? "property float nx\nproperty float ny\nproperty float nz\n" : "") +
+            "element face 1\nproperty list uchar int vertex_indices\nend_header\n" + vertices +
+            face);
+    return "\"" + (folder / name).string() + "\"";
+  };
+  const std::string first = write("1.ply", "0 0 0 0 0 1\n1 0 0 0 0 1\n0 1 0 0 0 1\n"),
+                    second = write("2.ply", "0 0 2 0 1 0\n1 0 2 0 0 1\n0 1 2 0 0 1\n");
+  const auto shape = [](const std::string& files) {
+    return "Shape \"plymesh\" \"string filename\" [" + files + "] \"float times\" [1 1.5]";
+  };
+  const Scene scene = world_of(shape(first + " " + second));
+  const auto& mesh = std::get<TriangleMeshShape>(scene.shapes.at(0).geometry);
+  EXPECT_EQ(mesh.times, (std::vector<double>{1, 1.5}));
+  EXPECT_EQ(mesh.positions, (std::vector<glm::vec3>{
+                                {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 2}, {1, 0, 2}, {0, 1, 2}}));
+  EXPECT_EQ(mesh.normals.size(), 6u);
+  EXPECT_EQ(mesh.normals[3], glm::vec3(0, 1, 0));
+  const std::string turned = write("3.ply", "0 0 2 0 1 0\n1 0 2 0 0 1\n0 1 2 0 0 1\n", "3 0 2 1\n"),
+                    flat = write("4.ply", "0 0 2\n1 0 2\n0 1 2\n", "3 0 1 2\n", false);
+  for (const std::string& other : {turned, flat})
+    EXPECT_THAT(complaint_of([&] { world_of(shape(first + " " + other)); }),
+                testing::HasSubstr("has other vertices, faces or normals than"));
+  EXPECT_THAT(complaint_of([&] { world_of(shape(first + " \"none.ply\"")); }),
+              testing::HasSubstr("none.ply"));
+}
+
 TEST(Ply, NormalsThatAreNoneAreLeftOut) {
   const std::string head = "ply\nformat ascii 1.0\nelement vertex 3\n" + std::string(xyz) +
                            "property float nx\nproperty float ny\nproperty float nz\nproperty "

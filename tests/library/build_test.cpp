@@ -226,12 +226,14 @@ TEST_F(LibraryBuild, WhatIsWrongIsToldAndChangesNothing) {
     });
   };
   const auto as_is = [](auto&) {};
-  EXPECT_THAT(moving({0, 1}, 3, as_is), HasSubstr("as many ends at each of their times"));
-  EXPECT_THAT(moving({0, 1}, 1, [](auto& one) { one.radius0 = {-1}; }), HasSubstr("as many ends"));
+  EXPECT_THAT(moving({0, 1}, 3, as_is), HasSubstr("as many points at each of its times"));
+  EXPECT_THAT(moving({0, 1}, 1, [](auto& one) { one.radius0 = {-1}; }),
+              HasSubstr("as many points"));
   EXPECT_THAT(moving({0}, 1, as_is), HasSubstr("two times or more"));
   const std::vector<std::vector<double>> falling{{1, 0}, {0, 0}, {0, INFINITY}, {nan, 1}};
   for (const auto& times : falling)
-    EXPECT_THAT(moving(times, 2, as_is), HasSubstr("times must be finite and rise"));
+    EXPECT_THAT(moving(times, 2, as_is),
+                HasSubstr("the times of a shape that moves must be finite and rise"));
   EXPECT_THAT(moving({0, 1}, 4, [](auto& one) { one.radius0[3] = -1; }),
               HasSubstr("capsule 1 has a negative radius"));
   EXPECT_THAT(moving({0, 1}, 4, [](auto& one) { one.u.resize(4); }),
@@ -439,6 +441,66 @@ TEST_F(LibraryBuild, CapsulesAreTakenAndGivenInBulk) {
   box.add_shape("box",
                 {{"p0", std::array<double, 3>{0, 0, 0}}, {"p1", std::array<double, 3>{1, 1, 1}}});
   EXPECT_THROW(box.capsule_arrays(0), caplet::InputError);
+}
+
+// A picture is as bright for any time that the shutter is open, and shows what is there then.
+TEST_F(LibraryBuild, AShutterKeepsTheBrightness) {
+  caplet::Scene scene = three_balls();
+  scene.present();
+  scene.set_size(32, 24);
+  scene.set_samples_per_pixel(4);
+  const auto mean = [&] {
+    double sum = 0;
+    for (const float value : caplet::render(scene, test_device()).values("G"))
+      sum += static_cast<double>(value);
+    return sum;
+  };
+  const double before = mean();
+  scene.set_shutter(2, 2.125);
+  EXPECT_NEAR(mean() / before, 1, 1e-6);
+  for (const auto& [open, close] : {std::pair(1.0, 1.0), std::pair(2.0, 1.0),
+                                    std::pair(0.0, std::numeric_limits<double>::quiet_NaN())})
+    EXPECT_THROW(scene.set_shutter(open, close), caplet::InputError);
+}
+
+TEST_F(LibraryBuild, MeshesAreTakenGivenAndMoved) {
+  caplet::Scene scene;
+  const caplet::MeshArrays sheet{{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}},
+                                 {{0, 1, 2}},
+                                 {{0, 0, 1}, {0, 0, 1}, {0, 0, 1}},
+                                 {{0, 0}, {1, 0}, {0, 1}}};
+  const std::uint32_t shape = scene.add_mesh(sheet);
+  caplet::MeshArrays moving = scene.mesh_arrays(shape);
+  EXPECT_EQ(moving.positions, sheet.positions);
+  EXPECT_EQ(moving.triangles, sheet.triangles);
+  EXPECT_EQ(moving.normals, sheet.normals);
+  EXPECT_EQ(moving.uvs, sheet.uvs);
+  // It rises by 2 in 4 seconds.
+  moving.times = {-1, 3};
+  EXPECT_THROW(scene.set_mesh(shape, moving), caplet::InputError);
+  EXPECT_TRUE(scene.mesh_arrays(shape).times.empty());
+  for (std::size_t i = 0; i < 3; ++i) {
+    moving.positions.push_back(sheet.positions[i]);
+    moving.positions.back()[2] = 2;
+    moving.normals.push_back(sheet.normals[i]);
+  }
+  scene.set_mesh(shape, moving);
+  EXPECT_EQ(scene.mesh_arrays(shape).times, moving.times);
+  scene.present();
+  caplet::Session session(scene, test_device());
+  // Rays see it as the shutter opens, after a quarter of its way.
+  const caplet::Ray ray{{1, 1, 9}, {0, 0, -1}, 0, 100};
+  const auto hit = session.nearest(ray);
+  ASSERT_TRUE(hit);
+  EXPECT_FLOAT_EQ(hit->t, 8.5F);
+  EXPECT_EQ(hit->uv, (std::array<float, 2>{0.25F, 0.25F}));
+  scene.set_mesh(shape, sheet);
+  session.update(scene);
+  const auto still = session.nearest(ray);
+  ASSERT_TRUE(still);
+  EXPECT_FLOAT_EQ(still->t, 9);
+  EXPECT_THROW(three_balls().mesh_arrays(0), caplet::InputError);
+  EXPECT_THROW(three_balls().set_mesh(0, sheet), caplet::InputError);
 }
 
 // A shape that is checked again still has its textures and media.

@@ -6,23 +6,19 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <random>
 
+#include "frozen_hits.h"
 #include "lower/lower.h"
-#include "render/query.h"
 #include "render_scene.h"
 #include "scene/frozen.h"
 #include "scene/shapes/capsule_motion.h"
 #include "shared/shapes.h"
-#include "support/rays.h"
-#include "support/test_scale.h"
 
 namespace caplet::test::capsules_test {
 namespace {
 
-using glm::dvec3;
 using glm::vec3;
 
 /// Capsules of all kinds: each has equal or different radii, and ends that meet, at each time.
@@ -65,63 +61,9 @@ Scene moving_scene() {
   return scene;
 }
 
-std::vector<RayRecord> rays_through(std::size_t count, unsigned seed) {
-  std::mt19937_64 random(seed);
-  std::uniform_real_distribution<double> unit(-1, 1);
-  const auto in_cube = [&] { return dvec3(unit(random), unit(random), unit(random)); };
-  std::vector<RayRecord> out;
-  for (std::size_t i = 0; i < count; ++i) {
-    const dvec3 o = 9.0 * in_cube();
-    out.push_back(make_ray(o, 3.0 * in_cube() - o));
-  }
-  return out;
-}
-
-/// The bits of what a ray sees, but for bounds, which are wider for what moves, and materials.
-std::vector<std::uint32_t> seen(const PickRecord& pick) {
-  std::vector<std::uint32_t> out{pick.object, pick.shape, pick.primitive, pick.surface,
-                                 pick.leaving};
-  for (const float value : {pick.t, pick.u, pick.v, pick.point[0], pick.point[1], pick.point[2],
-                            pick.normal[0], pick.normal[1], pick.normal[2]})
-    out.push_back(std::bit_cast<std::uint32_t>(value));
-  return out;
-}
-
 TEST(MovingCapsules, AreToTheBitWhatTheyAreAtEachTime) {
-  const Scene scene = moving_scene();
-  const FlatScene flat = lower(scene);
-  ASSERT_TRUE(flat.moves());
-  ASSERT_NE(flat.shapes & shape_bit(shape_moving_capsule), 0u);
-  const auto count = static_cast<std::size_t>(4000 * test_scale());
-  const std::vector<RayRecord> rays = rays_through(count, 1);
-  for (const Encoding encoding : {Encoding::wide, Encoding::single}) {
-    Query moving(flat, test_device(encoding));
-    for (const float time : {0.0f, 0.2f, 0.217f, 0.5f, 0.9333f, 1.0f}) {
-      // The instance still moves, and is at the same place to the bit.
-      Scene frozen = frozen_at(scene, 0.5 + 1.5 * double{time});
-      for (std::size_t i = 0; i < scene.instances.size(); ++i)
-        frozen.instances[i] = scene.instances[i];
-      const FlatScene still_flat = lower(frozen);
-      ASSERT_EQ(still_flat.shapes & shape_bit(shape_moving_capsule), 0u);
-      for (const int kind : {shape_sphere, shape_capsule, shape_tapered_capsule})
-        ASSERT_NE(still_flat.shapes & shape_bit(static_cast<std::uint32_t>(kind)), 0u);
-      Query still(still_flat, test_device(encoding));
-      const std::vector<float> times(count, time);
-      const auto found = moving.closest(rays, times), expected = still.closest(rays, times);
-      std::size_t hits = 0;
-      for (std::size_t i = 0; i < count; ++i) {
-        ASSERT_EQ(seen(found[i]), seen(expected[i])) << "ray " << i << " at " << time;
-        hits += std::isfinite(found[i].t) && found[i].object != 0 ? 1 : 0;
-      }
-      EXPECT_GT(hits, count / 4);
-      const HitLists lists = moving.all(rays, 64, times), all = still.all(rays, 64, times);
-      ASSERT_EQ(lists.begin, all.begin);
-      for (std::size_t i = 0; i < lists.crossings.size(); ++i) {
-        ASSERT_EQ(lists.crossings[i].t, all.crossings[i].t);
-        ASSERT_EQ(lists.crossings[i].leaving, all.crossings[i].leaving);
-      }
-    }
-  }
+  expect_hits_of_frozen(moving_scene(), shape_moving_capsule,
+                        {shape_sphere, shape_capsule, shape_tapered_capsule});
 }
 
 // Ends move evenly from 1 to 2 seconds, and rest before and after; the shutter is open longer.
@@ -130,7 +72,7 @@ TEST(MovingCapsules, GoStraightAndEvenly) {
   capsules.times = {1, 2};
   EXPECT_EQ(count_of(capsules), 1u);
   const CapsuleMotion motion(capsules, 0, 4);
-  EXPECT_EQ(motion.segments(), 3u);
+  EXPECT_EQ(motion.times().segments(), 3u);
   EXPECT_FALSE(motion.rests());
   for (const auto& [time, share] :
        {std::pair(0.0f, 0.0f), std::pair(0.25f, 0.0f), std::pair(0.3125f, 0.25f),
@@ -159,7 +101,7 @@ TEST(MovingCapsules, HaveNoNegativeRadius) {
   for (int n = 2; n < 2000; ++n) {
     capsules.times = {0, 1 - 1.0 / n, 1};
     const CapsuleMotion motion(capsules, 0, 1);
-    is_beyond |= (1 - motion.pairs()[2]) * motion.pairs()[3] > 1;
+    is_beyond |= (1 - motion.times().pairs()[2]) * motion.times().pairs()[3] > 1;
     ASSERT_GE(motion.at(1).radius0[0], 0) << n;
   }
   EXPECT_TRUE(is_beyond);

@@ -135,6 +135,46 @@ TEST(MotionPictures, OfASphereThatGrows) {
                   });
 }
 
+// One corner rests, one goes right and one goes round a corner.
+TEST(MotionPictures, OfATriangleWhoseCornersMove) {
+  expect_coverage(
+      from_above + "WorldBegin\n" + shining +
+          "Shape \"trianglemesh\" \"float times\" [0 0.5 1]\n"
+          "  \"point3 P\" [-1.5 -1.5 0  0 -1.5 0  -1.5 0.5 0   -1.5 -1.5 0  0.75 -1.5 0  1 1.5 0\n"
+          "               -1.5 -1.5 0  1.5 -1.5 0  1 -0.5 0]\n",
+      [](const dvec2& at, double time) {
+        const double u = 2 * time;
+        const dvec2 a(-1.5, -1.5), b(1.5 * time, -1.5),
+            c = u < 1 ? glm::mix(dvec2(-1.5, 0.5), dvec2(1, 1.5), u)
+                      : glm::mix(dvec2(1, 1.5), dvec2(1, -0.5), u - 1);
+        const auto left_of = [&](const dvec2& from, const dvec2& to) {
+          return (to.x - from.x) * (at.y - from.y) - (to.y - from.y) * (at.x - from.x) > 0;
+        };
+        return left_of(a, b) && left_of(b, c) && left_of(c, a);
+      });
+}
+
+// A sheet that rests, whose normals turn away from a light behind the camera: they go straight from
+// one end to the other, and are then as long as 1.
+TEST(MotionPictures, OfNormalsThatMove) {
+  const Scene scene = scene_of_text(
+      from_above +
+      "WorldBegin\nLightSource \"distant\" \"rgb L\" [1 1 1] \"point3 from\" [0 0 9]\n"
+      "Material \"diffuse\" \"rgb reflectance\" [0.5 0.5 0.5]\n"
+      "Shape \"trianglemesh\" \"float times\" [0 1] \"integer indices\" [0 1 2 0 2 3]\n"
+      "  \"point3 P\" [-9 -9 0 9 -9 0 9 9 0 -9 9 0  -9 -9 0 9 -9 0 9 9 0 -9 9 0]\n"
+      "  \"normal N\" [0 0 3 0 0 3 0 0 3 0 0 3  4 0 3 4 0 3 4 0 3 4 0 3]\n");
+  double expected = 0;
+  for (int k = 0; k < 1000; ++k) {
+    const double time = (k + 0.5) / 1000;
+    const glm::dvec3 n = (1 - time) * glm::dvec3(0, 0, 1) + time * glm::dvec3(0.8, 0, 0.6);
+    expected += 0.5 / std::numbers::pi * n.z / glm::length(n) / 1000;
+  }
+  const Mean mean = mean_of(render_model(scene, 64).image, "G");
+  EXPECT_NEAR(mean.value, expected, 4 * mean.error + 1e-3 * expected);
+  EXPECT_LT(mean.error, 0.003 * expected);
+}
+
 // Only while the shutter is open; and nothing moves before the first and after the last key.
 TEST(MotionPictures, OfTheTimeThatTheShutterIsOpen) {
   std::string text = from_above;
@@ -331,6 +371,35 @@ TEST(MotionPictures, OfCapsulesWhoseEndsMoveAreTheMeanOfFrozenOnes) {
           "Material \"diffuse\" \"rgb reflectance\" [0.7 0.2 0.2]\n" +
           moving("-0.5 -1.5 0.3  0 -1.5 0.3", "0 -1.5 0.3  0 -1.5 0.9", "0.3 0.2") +
           " \"float alpha\" 0.5\n",
+      512);
+}
+
+// A lamp that bends, a smooth tent of glazed paint with a bump, a sheet with holes that turns, and
+// a closed glass block that grows.
+TEST(MotionPictures, OfMeshesWhoseVerticesMoveAreTheMeanOfFrozenOnes) {
+  expect_mean_of_frozen(
+      in_front + "WorldBegin\nLightSource \"infinite\" \"rgb L\" [0.4 0.4 0.4]\n" + ground +
+          "AttributeBegin\nAreaLightSource \"diffuse\" \"rgb L\" [8 8 8]\n"
+          "Shape \"trianglemesh\" \"float times\" [0 1] \"integer indices\" [0 1 2 1 3 2]\n"
+          "  \"point3 P\" [0 1 1.5  0 2 1.5  1 1 1.5  1 2 1.5   0 1 1  0 2 1.5  1 1 2  2 2 1]\n"
+          "AttributeEnd\nAttributeBegin\n"
+          "Material \"coateddiffuse\" \"rgb reflectance\" [0.2 0.6 0.2] \"float roughness\" 0.3\n"
+          "Shape \"trianglemesh\" \"float times\" [0 1] \"integer indices\" [0 1 2 0 2 3]\n"
+          "  \"point3 P\" [-1 -1 1  -1.8 -1 0.2  -1 -1.8 0.2  -0.2 -1 0.2\n"
+          "               -1 -1 0.4  -1.8 -1 0.2  -1 -1.8 0.8  -0.2 -1 0.2]\n"
+          "  \"normal N\" [0 0 1  -0.7 0 0.7  0 -0.7 0.7  0.7 0 0.7\n"
+          "               0 -1 1  -0.7 0 0.7  0 -0.2 0.7  0.7 0 2]\n"
+          "  \"point2 uv\" [0 0 1 0 1 1 0 1]\n"
+          "AttributeEnd\nAttributeBegin\nMaterial \"dielectric\"\n"
+          "Shape \"trianglemesh\" \"float times\" [0 1]\n"
+          "  \"integer indices\" [0 2 1 0 1 3 1 2 3 2 0 3]\n"
+          "  \"point3 P\" [0.5 -1 0.1  1.5 -1 0.1  1 0 0.1  1 -0.7 0.9\n"
+          "               0.5 -1 0.1  1.5 -1 0.1  1 0 0.1  1 -0.7 1.5]\n"
+          "AttributeEnd\nActiveTransform EndTime\nRotate 60 0 0 1\nActiveTransform All\n"
+          "Material \"diffuse\" \"rgb reflectance\" [0.7 0.2 0.2]\n"
+          "Shape \"trianglemesh\" \"float times\" [0 1] \"integer indices\" [0 1 2 1 3 2]\n"
+          "  \"point3 P\" [-1.5 0.5 0.2  -0.5 0.5 0.2  -1.5 0.5 1  -0.5 0.5 1\n"
+          "               -1.5 0 0.2  -0.5 1 0.2  -1.5 0 1.4  -0.5 1 1.4] \"float alpha\" 0.5\n",
       512);
 }
 

@@ -6,12 +6,13 @@
 #pragma once
 
 #include <array>
+#include <bit>
 #include <cstddef>
 #include <ostream>
 #include <span>
 #include <string>
 
-#include "shared/kinds.h"
+#include "shared/shapes.h"
 
 namespace caplet::test {
 
@@ -46,16 +47,18 @@ struct ShapeKind {
 };
 inline void PrintTo(const ShapeKind& kind, std::ostream* out) { *out << kind.name; }
 
-inline constexpr std::array<ShapeKind, shape_count - 2> shapes_to_hit = [] {
-  std::array<ShapeKind, shape_count - 2> out{};
+inline constexpr std::size_t hit_count = shape_count - 1 - std::popcount(shapes_with(trait_moves));
+inline constexpr std::array<ShapeKind, hit_count> shapes_to_hit = [] {
+  std::array<ShapeKind, hit_count> out{};
   std::size_t count = 0;
   for (const Kind& kind : all_shapes)
-    if (kind.number != shape_instance && kind.number != shape_moving_capsule)
+    if (kind.number != shape_instance &&
+        !shape_has(static_cast<std::uint32_t>(kind.number), trait_moves))
       out[count++] = {kind.number, kind.name};
   return out;
 }();
-/// The shapes that a ray can hit: all but instances, which hold others, and capsules that move,
-/// which tests/motion compares with what they are at one time.
+/// The shapes that a ray can hit: all but instances, which hold others, and those that move, which
+/// tests/motion compares with what they are at one time.
 inline std::span<const ShapeKind> shape_kinds() { return shapes_to_hit; }
 
 /// As the name of a test that has a kind for its parameter.

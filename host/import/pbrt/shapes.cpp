@@ -33,10 +33,48 @@ auto read_other(Parameters& parameters, Read read) -> decltype(read()) {
   }
 }
 
+/// Reads a mesh whose vertices move: a file for each of its "times", with the same faces.
+TriangleMeshShape make_moving_ply_mesh(Parameters& parameters) {
+  const std::vector<double> times = key_times(parameters);
+  const Parameter* files = parameters.values("filename", {"string"});
+  if (!files || times.size() != files->strings.size()) {
+    if (!times.empty() || !parameters.has("times"))
+      parameters.error("filename", "takes one file a time of \"times\", not " +
+                                       std::to_string(files ? files->strings.size() : 0) + " for " +
+                                       std::to_string(times.size()));
+    return {};
+  }
+  const SourceLocation where = parameters.where("filename");
+  return read_other(parameters, [&] {
+    TriangleMeshShape out;
+    std::size_t count = 0;
+    for (const std::string& name : files->strings) {
+      const std::string file = resolve_file(name, where, parameters.main_file());
+      TriangleMeshShape mesh = read_ply(file, where);
+      if (out.positions.empty()) {
+        count = mesh.positions.size();
+        out = std::move(mesh);
+        out.times = times;
+        continue;
+      }
+      if (mesh.positions.size() != count || mesh.triangles != out.triangles ||
+          mesh.normals.empty() != out.normals.empty())
+        throw InputError(where, file + " has other vertices, faces or normals than " +
+                                    files->strings.front() + ", so nothing says how it moves");
+      out.positions.insert(out.positions.end(), mesh.positions.begin(), mesh.positions.end());
+      out.normals.insert(out.normals.end(), mesh.normals.begin(), mesh.normals.end());
+    }
+    return out;
+  });
+}
+
 Geometry make_ply_mesh(Parameters& parameters) {
   for (const char* name : {"displacement", "displacement.edgelength", "displacement.uvscale"})
     if (parameters.has(name))
       parameters.error(name, "is not rendered yet", "not rendered: " + std::string(name));
+  const Parameter* files = parameters.values("filename", {"string"});
+  if (parameters.has("times") || (files && files->strings.size() > 1))
+    return make_moving_ply_mesh(parameters);
   const std::string file = file_of(parameters);
   if (file.empty()) return TriangleMeshShape{};
   return read_other(parameters, [&] { return read_ply(file, parameters.where("filename")); });

@@ -4,7 +4,6 @@
 // Reads capsules from lists in a statement: the content of a .capsules file.
 #include <algorithm>
 #include <cmath>
-#include <functional>
 
 #include "import/detail/pbrt/geometry.h"
 
@@ -38,17 +37,6 @@ std::vector<float> radii(Parameters& parameters, const char* name, std::size_t c
   // Radii that are given once stay the same.
   for (std::size_t i = 0; out.size() < count * times; ++i) out.push_back(out[i]);
   return out;
-}
-
-/// Reads "float times", two or more that rise; none where it is missing or wrong (reported).
-std::vector<double> times_of(Parameters& parameters) {
-  const Parameter* given = parameters.values("times", {"float"});
-  if (!given) return {};
-  const std::vector<double>& times = given->numbers;
-  if (times.size() >= 2 && std::ranges::adjacent_find(times, std::greater_equal()) == times.end())
-    return times;
-  parameters.error("times", times.size() < 2 ? "takes two times or more" : "must rise");
-  return {};
 }
 
 }  // namespace
@@ -112,7 +100,7 @@ CapsulesShape make_capsule_list(Parameters& parameters, const MaterialIndex& mat
     if (!parameters.has(name)) parameters.error("\"" + std::string(name) + "\" is missing");
   capsules.p0 = vectors3(parameters, parameters.values("p0", {"point3"}));
   capsules.p1 = vectors3(parameters, parameters.values("p1", {"point3"}));
-  capsules.times = times_of(parameters);
+  capsules.times = key_times(parameters);
   if (capsules.p0.empty() || capsules.p1.empty()) return {};
   if (capsules.p1.size() != capsules.p0.size()) {
     parameters.error("p1", "has " + std::to_string(capsules.p1.size()) + " points for " +

@@ -23,7 +23,7 @@ CsgShape::Operation operation_of(Parameters& parameters) {
 /// Returns why a shape cannot be an operand; empty: it can.
 std::string objection(const Shape& shape) {
   const auto* capsules = std::get_if<CapsulesShape>(&shape.geometry);
-  if (capsules && !capsules->times.empty()) return "moves; an operand rests";
+  if (!key_times(shape).empty()) return "moves; an operand rests";
   if (capsules && capsules->p0.size() > 1)
     return "holds " + std::to_string(capsules->p0.size()) +
            " capsules in one shape; an operand is one closed shape";

@@ -2,6 +2,9 @@
 // Copyright Caplet authors
 //
 // Readers of triangle meshes and bilinear meshes.
+#include <algorithm>
+#include <functional>
+
 #include "base/log.h"
 #include "import/detail/pbrt/geometry.h"
 
@@ -9,20 +12,40 @@ namespace caplet::pbrt {
 
 namespace {
 
-/// Reads "P", "N" and the uvs under any of their names, one entry per vertex.
+/// Reads "times". Normals that are given once stay the same.
+void read_times(Parameters& parameters, TriangleMeshShape& mesh) {
+  mesh.times = key_times(parameters);
+  const std::size_t times = mesh.times.size(), points = mesh.positions.size();
+  if (times == 0) return;
+  if (points % times != 0) {
+    parameters.error("P", "has " + std::to_string(points) +
+                              " points, which are not as many at each of " + std::to_string(times) +
+                              " times");
+    mesh.times.clear();
+    return;
+  }
+  const std::size_t count = vertex_count(mesh);
+  if (mesh.normals.size() == count)
+    for (std::size_t i = 0; mesh.normals.size() < points; ++i)
+      mesh.normals.push_back(mesh.normals[i]);
+}
+
+/// Reads "P", "N" and the uvs under any of their names, one entry per vertex; of meshes that move
+/// "P" has one per vertex and time, and "N" may have.
 template <class Mesh>
 void read_vertices(Parameters& parameters, Mesh& mesh,
                    std::initializer_list<const char*> uv_names) {
   if (!parameters.has("P")) parameters.error("\"point3 P\" is missing");
   mesh.positions = vectors3(parameters, parameters.values("P", {"point3"}));
-  const std::size_t count = mesh.positions.size();
   mesh.normals = vectors3(parameters, parameters.values("N", {"normal"}));
+  if constexpr (requires { mesh.times; }) read_times(parameters, mesh);
+  const std::size_t count = vertex_count(mesh);
   const auto one_a_vertex = [&](const char* name, std::size_t given) {
     if (given != 0 && count != 0 && given != count)
       parameters.error(name, "has " + std::to_string(given) + " entries for " +
                                  std::to_string(count) + " vertices");
   };
-  one_a_vertex("N", mesh.normals.size());
+  if (mesh.normals.size() != mesh.positions.size()) one_a_vertex("N", mesh.normals.size());
   for (const char* name : uv_names)
     if (const Parameter* uv = parameters.values(name, {"point2"})) {
       for (std::size_t i = 0; i + 1 < uv->numbers.size(); i += 2)
@@ -73,6 +96,16 @@ std::vector<std::array<std::uint32_t, K>> read_indices(Parameters& parameters, s
 
 }  // namespace
 
+std::vector<double> key_times(Parameters& parameters) {
+  const Parameter* given = parameters.values("times", {"float"});
+  if (!given) return {};
+  const std::vector<double>& times = given->numbers;
+  if (times.size() >= 2 && std::ranges::adjacent_find(times, std::greater_equal()) == times.end())
+    return times;
+  parameters.error("times", times.size() < 2 ? "takes two times or more" : "must rise");
+  return {};
+}
+
 TriangleMeshShape make_triangle_mesh(Parameters& parameters) {
   TriangleMeshShape mesh;
   if (parameters.has("uv") && parameters.has("st"))
@@ -82,7 +115,7 @@ TriangleMeshShape make_triangle_mesh(Parameters& parameters) {
     log::info("{}: \"S\" (tangents) has no effect and is ignored",
               parameters.where("S").to_string());
   parameters.values("faceIndices", {"integer"});
-  mesh.triangles = read_indices<3>(parameters, mesh.positions.size());
+  mesh.triangles = read_indices<3>(parameters, vertex_count(mesh));
   return mesh;
 }
 

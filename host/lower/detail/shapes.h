@@ -17,6 +17,7 @@
 #include "lower/flat_primitive.h"
 #include "scene/scene.h"
 #include "scene/shapes/capsule_motion.h"
+#include "scene/shapes/mesh_motion.h"
 
 namespace caplet {
 
@@ -78,6 +79,23 @@ class MovingCapsules {
   std::vector<float>& leaves_;
   std::optional<CapsulesShape> resting_;
   std::uint32_t times_ = 0;  // where they are in `leaves`
+};
+
+/// Writes the segments of time of a shape's keys, up to a whole row; returns where they begin.
+std::uint32_t append_key_times(const ShutterKeys& times, std::vector<float>& leaves);
+
+/// MovingTriangles makes primitives of a mesh whose vertices move, and writes how they move to
+/// `leaves`.
+class MovingTriangles {
+ public:
+  MovingTriangles(const MeshMotion& motion, std::vector<float>& leaves);
+  /// Returns the triangle of these three vertices.
+  FlatPrimitive primitive(const std::array<std::uint32_t, 3>& corners);
+
+ private:
+  const MeshMotion& motion_;
+  std::vector<float>& leaves_;
+  std::uint32_t times_;  // where they are in `leaves`
 };
 
 FlatPrimitive flat_partial_disk(const DiskShape& disk);

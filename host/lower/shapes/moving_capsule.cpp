@@ -25,9 +25,7 @@ MovingCapsules::MovingCapsules(const CapsuleMotion& motion, std::vector<float>& 
     resting_ = motion.at(0);
     return;
   }
-  times_ = narrow<std::uint32_t>(leaves.size());
-  leaves.insert(leaves.end(), motion.pairs().begin(), motion.pairs().end());
-  while (leaves.size() % 8 != 0) leaves.push_back(0);
+  times_ = append_key_times(motion.times(), leaves);
 }
 
 FlatPrimitive MovingCapsules::primitive(std::size_t i) {
@@ -35,12 +33,12 @@ FlatPrimitive MovingCapsules::primitive(std::size_t i) {
   FlatPrimitive p = make_primitive(shape_moving_capsule);
   p.data[moving_capsule_at_begin] = std::bit_cast<float>(narrow<std::uint32_t>(leaves_.size()));
   p.data[moving_capsule_at_times] = std::bit_cast<float>(times_);
-  p.data[moving_capsule_at_segments] = std::bit_cast<float>(motion_.segments());
+  p.data[moving_capsule_at_segments] = std::bit_cast<float>(motion_.times().segments());
   std::array<double, 3> low, high;
   low.fill(INFINITY);
   high.fill(-INFINITY);
   double largest = 0;
-  for (std::size_t key = 0; key <= motion_.segments(); ++key) {
+  for (std::size_t key = 0; key <= motion_.times().segments(); ++key) {
     const std::array<float, 8> ends = motion_.key(i, key);
     leaves_.insert(leaves_.end(), ends.begin(), ends.end());
     for (const float value : ends) largest = std::max(largest, std::abs(double{value}));

@@ -11,7 +11,9 @@ namespace caplet {
 using glm::dvec3;
 using Matrix = glm::dmat4;
 
-bool bakes_under(const TriangleMeshShape&, const Matrix&) { return true; }
+bool bakes_under(const TriangleMeshShape& mesh, const Matrix& m) {
+  return mesh.times.empty() || m == Matrix(1);
+}
 glm::dmat3 turn_under(const TriangleMeshShape&, const Matrix&) { return glm::dmat3(1); }
 
 ExactBox triangle_box(const FlatPrimitive& p) {

@@ -39,17 +39,12 @@ CapsulesShape between(const CapsulesShape& a, const CapsulesShape& b, const Mix&
 }
 
 /// Interpolates in double and rounds once.
-CapsulesShape rounded_at(const CapsulesShape& of, double time) {
-  const std::vector<double>& times = of.times;
-  if (!(time > times.front())) return at_key(of, 0);
-  if (!(time < times.back())) return at_key(of, times.size() - 1);
-  const auto after = static_cast<std::size_t>(std::ranges::upper_bound(times, time) -
-                                              times.begin());  // times[after - 1] <= time
-  const double u = (time - times[after - 1]) / (times[after] - times[after - 1]);
-  if (u == 0) return at_key(of, after - 1);
-  return between(at_key(of, after - 1), at_key(of, after), [u](float a, float b) {
-    return static_cast<float>(double{a} + u * (double{b} - double{a}));
-  });
+CapsulesShape rounded_at(const CapsulesShape& of, const BetweenKeys& place) {
+  if (place.share == 0) return at_key(of, place.before);
+  return between(at_key(of, place.before), at_key(of, place.after),
+                 [u = place.share](float a, float b) {
+                   return static_cast<float>(double{a} + u * (double{b} - double{a}));
+                 });
 }
 
 CapsulesShape with_rest(CapsulesShape ends, const CapsulesShape& of) {
@@ -61,29 +56,30 @@ CapsulesShape with_rest(CapsulesShape ends, const CapsulesShape& of) {
 
 }  // namespace
 
+bool add_key(CapsulesShape& capsules, std::size_t keys, CapsulesShape next) {
+  if (capsules.p0.size() != keys * next.p0.size() ||
+      capsules.materials.size() != next.materials.size() || capsules.u.size() != next.u.size())
+    return false;
+  for (CapsulesShape* one : {&capsules, &next})
+    if (one->radius1.empty()) one->radius1 = one->radius0;
+  const auto append = [](auto& to, const auto& more) {
+    to.insert(to.end(), more.begin(), more.end());
+  };
+  append(capsules.p0, next.p0);
+  append(capsules.p1, next.p1);
+  append(capsules.radius0, next.radius0);
+  append(capsules.radius1, next.radius1);
+  if (capsules.radius1 == capsules.radius0) capsules.radius1.clear();
+  return true;
+}
+
 CapsulesShape at_time(const CapsulesShape& capsules, double time) {
-  return with_rest(rounded_at(capsules, time), capsules);
+  return with_rest(rounded_at(capsules, between_keys(capsules.times, time)), capsules);
 }
 
 CapsuleMotion::CapsuleMotion(const CapsulesShape& capsules, double open, double open_time)
-    : capsules_(capsules) {
-  std::vector<double> ends{0};
-  keys_.push_back(rounded_at(capsules, open));
-  for (std::size_t i = 0; i < capsules.times.size(); ++i) {
-    const double time = (capsules.times[i] - open) / open_time;
-    // As floats, segments have a length.
-    if (static_cast<float>(time) <= static_cast<float>(ends.back()) ||
-        static_cast<float>(time) >= 1)
-      continue;
-    ends.push_back(time);
-    keys_.push_back(at_key(capsules, i));
-  }
-  ends.push_back(1);
-  keys_.push_back(rounded_at(capsules, open + open_time));
-  for (std::size_t i = 1; i < ends.size(); ++i) {
-    pairs_.push_back(static_cast<float>(ends[i - 1]));
-    pairs_.push_back(static_cast<float>(1 / (ends[i] - ends[i - 1])));
-  }
+    : capsules_(capsules), times_(capsules.times, open, open_time) {
+  for (const BetweenKeys& key : times_.keys()) keys_.push_back(rounded_at(capsules, key));
 }
 
 bool CapsuleMotion::rests() const {
@@ -100,11 +96,9 @@ std::array<float, 8> CapsuleMotion::key(std::size_t capsule, std::size_t key) co
 }
 
 CapsulesShape CapsuleMotion::at(float time) const {
-  std::size_t segment = 0;
-  while (segment + 1 < segments() && pairs_[2 * segment + 2] <= time) ++segment;
-  const float u = std::min((time - pairs_[2 * segment]) * pairs_[2 * segment + 1], 1.0f);
-  return with_rest(between(keys_[segment], keys_[segment + 1],
-                           [u](float a, float b) { return std::fma(u, b - a, a); }),
+  const ShutterKeys::Place place = times_.at(time);
+  return with_rest(between(keys_[place.segment], keys_[place.segment + 1],
+                           [u = place.u](float a, float b) { return std::fma(u, b - a, a); }),
                    capsules_);
 }
 

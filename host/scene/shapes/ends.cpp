@@ -77,15 +77,6 @@ void check_ends(const dvec3& p0, const dvec3& p1, const std::string& what, Shape
     report.error(what + " has no axis: its ends are the same point as 32-bit floats");
 }
 
-void check_times(const CapsulesShape& capsules, ShapeCheck& report) {
-  const std::vector<double>& times = capsules.times;
-  if (times.empty()) return;
-  if (times.size() < 2) report.error("capsules that move need two times or more");
-  for (std::size_t i = 0; i < times.size(); ++i)
-    if (!std::isfinite(times[i]) || (i > 0 && !(times[i] > times[i - 1])))
-      return report.error("the capsules' times must be finite and rise");
-}
-
 Cap drawn_cap(Draws& draws) {
   return draws.one_in(2) ? Cap::flat : draws.one_in(2) ? Cap::round : Cap::open;
 }
@@ -113,9 +104,7 @@ void check(const CapsulesShape& capsules, ShapeCheck& report) {
       (!capsules.materials.empty() && capsules.materials.size() != count) ||
       (!capsules.u.empty() && capsules.u.size() != count))
     return report.error("the capsules' lists differ in length");
-  if (!capsules.times.empty() && all % capsules.times.size() != 0)
-    return report.error("capsules that move need as many ends at each of their times");
-  check_times(capsules, report);
+  if (!check_key_times(capsules.times, all, report)) return;
   for (std::size_t i = 0; i < all; ++i) {
     const float r0 = capsules.radius0[i], r1 = capsules.radius1.empty() ? r0 : capsules.radius1[i];
     const auto capsule = [i, count] { return "capsule " + std::to_string(i % count); };

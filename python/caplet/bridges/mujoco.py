@@ -161,7 +161,44 @@ def _lights(scene, mujoco, model, data, sky):
             scene.add_light(light_types.point(I=strength, from_=tuple(at)))
 
 
-def from_mujoco(model, data=None, groups=(0, 1, 2), camera=None, lights="studio"):
+def _states(model, qpos):
+    qpos = np.asarray(qpos, dtype=np.float64)
+    if qpos.ndim != 2 or qpos.shape[1] != model.nq:
+        raise InputError(f"qpos: shape (n, {model.nq}) is needed, not {qpos.shape}")
+    return qpos
+
+
+def _places(mujoco, model, qpos, geoms, camera):
+    """Where geoms are in each state (n, m, 4, 4), and the camera of this number (n, 4, 4), which looks along z, y down."""
+    data = mujoco.MjData(model)
+    worlds, poses = (np.zeros((len(qpos), *more, 4, 4)) for more in ((len(geoms),), ()))
+    worlds[..., 3, 3] = poses[..., 3, 3] = 1
+    for i, state in enumerate(qpos):
+        data.qpos[:] = state
+        mujoco.mj_kinematics(model, data)
+        worlds[i, :, :3, :3] = data.geom_xmat[geoms].reshape(-1, 3, 3)
+        worlds[i, :, :3, 3] = data.geom_xpos[geoms]
+        if camera is not None:
+            mujoco.mj_comPos(model, data)  # cameras may follow the centre of mass
+            mujoco.mj_camlight(model, data)
+            poses[i, :3, :3] = data.cam_xmat[camera].reshape(3, 3) * [1, -1, -1]  # MuJoCo's looks along -z, y up
+            poses[i, :3, 3] = data.cam_xpos[camera]
+    return worlds, poses
+
+
+def _animate(scene, mujoco, model, times, qpos, first, names, camera):
+    """Places the object definitions of the moving geoms, in order, and moves them and the camera."""
+    number = None if camera is None else _camera_number(mujoco, model, camera)
+    worlds, poses = _places(mujoco, model, qpos, scene.info["geom"][first:], number)
+    for i, name in enumerate(names):
+        instance = scene.add_instances(name, worlds[0, i])[0]
+        scene.animate_instance(instance, times, worlds[:, i])
+    if number is not None:
+        scene.animate_camera(times, poses @ np.diag([1, -1, 1, 1]))
+    scene.shutter(times[0], times[-1])
+
+
+def from_mujoco(model, data=None, groups=(0, 1, 2), camera=None, lights="studio", times=None, qpos=None):
     """A scene of a MuJoCo model as it stands: every geom of these groups is one shape, by its name, in MuJoCo's units.
 
     model, data: mujoco.MjModel and MjData (None: the model's initial pose). groups: geom groups that are shown; None: all.
@@ -175,19 +212,36 @@ def from_mujoco(model, data=None, groups=(0, 1, 2), camera=None, lights="studio"
     scene.info["geom"]: the geom of each shape, so that scene.info["geom"][image.object_id] is a segmentation;
     scene.info["moving"]: shapes of bodies that are not fixed to the world.
     update_mujoco(scene, data) moves all of it.
+
+    times: seconds (k,) that rise, with qpos (k, model.nq), the states then: the model moves from one to the next, and is seen
+    with the shutter open from the first to the last; Scene.shutter chooses another time. Moving geoms are then instances,
+    behind the fixed ones in scene.info["geom"], and update_mujoco does not move them.
     """
     import mujoco
+    if (times is None) != (qpos is None):
+        raise InputError("times, qpos: both are needed, or none")
+    if qpos is not None:
+        qpos, times = _states(model, qpos), np.asarray(times, dtype=np.float64)
+        if times.shape != (len(qpos),) or len(times) < 2 or not np.all(np.diff(times) > 0):
+            raise InputError(f"times: two or more that rise are needed, one a state of {len(qpos)}")
     if data is None:
         data = mujoco.MjData(model)
+        if qpos is not None:
+            data.qpos[:] = qpos[0]
         mujoco.mj_forward(model, data)
     if lights not in ("studio", "model"):
         raise InputError(f'lights: "studio" or "model" is needed, not {lights!r}')
     scene, places, looks, geoms = Scene(), _transforms(data), Looks(mujoco, model), []
     far = _FAR * max(float(model.stat.extent), 1e-3)
-    for geom in range(model.ngeom):
+    moves = (model.body_weldid[model.geom_bodyid] != 0) & (times is not None)
+    objects = []
+    for geom in sorted(range(model.ngeom), key=lambda geom: moves[geom]):
         if (groups is not None and model.geom_group[geom] not in groups) or rgba_of(model, geom)[3] <= 0:
             continue
         options = {"name": _name(mujoco, model, geom), "transform": places[geom], **looks.options(geom, places[geom])}
+        if moves[geom]:
+            objects.append(f"geom {geom}")
+            options |= {"transform": np.eye(4), "object": objects[-1]}
         _add(scene, mujoco, model, geom, options, far, looks)
         geoms.append(geom)
     scene.info["geom"] = np.array(geoms, dtype=np.int64)
@@ -202,11 +256,16 @@ def from_mujoco(model, data=None, groups=(0, 1, 2), camera=None, lights="studio"
         scene.fov = 45
     if lights == "model":
         _lights(scene, mujoco, model, data, looks.sky())
+    if times is not None:
+        scene.info["instances"] = len(objects)
+        _animate(scene, mujoco, model, times, qpos, len(geoms) - len(objects), objects, camera)
     return scene
 
 
 def update_mujoco(scene, data):
     """Moves the shapes of a scene that from_mujoco made to where `data` has them; a Session's `update` follows in place."""
+    if scene.info.get("instances"):
+        raise InputError("update_mujoco: the scene moves by its states; from_mujoco makes one of others")
     places = _transforms(data)
     for number, geom in enumerate(scene.info["geom"]):
         scene.shape(number).transform = places[geom] @ scene.info["scale"].get(number, np.eye(4))
@@ -227,24 +286,10 @@ def mujoco_worlds(scene, model, qpos, camera=None):
     (n, 4, 4), for its mujoco_camera.
     """
     import mujoco
-    qpos = np.asarray(qpos, dtype=np.float64)
-    if qpos.ndim != 2 or qpos.shape[1] != model.nq:
-        raise InputError(f"qpos: shape (n, {model.nq}) is needed, not {qpos.shape}")
+    qpos = _states(model, qpos)
     number = None if camera is None else _camera_number(mujoco, model, camera)
-    moving, count, data = scene.info["moving"], len(qpos), mujoco.MjData(model)
-    geoms = scene.info["geom"][moving]
-    worlds, poses = (np.zeros((count, *more, 4, 4)) for more in ((len(geoms),), ()))
-    worlds[..., 3, 3] = poses[..., 3, 3] = 1
-    for i, state in enumerate(qpos):
-        data.qpos[:] = state
-        mujoco.mj_kinematics(model, data)
-        worlds[i, :, :3, :3] = data.geom_xmat[geoms].reshape(-1, 3, 3)
-        worlds[i, :, :3, 3] = data.geom_xpos[geoms]
-        if number is not None:
-            mujoco.mj_comPos(model, data)  # cameras may follow the centre of mass
-            mujoco.mj_camlight(model, data)
-            poses[i, :3, :3] = data.cam_xmat[number].reshape(3, 3) * [1, -1, -1]  # it looks along -z, y up
-            poses[i, :3, 3] = data.cam_xpos[number]
+    moving = scene.info["moving"]
+    worlds, poses = _places(mujoco, model, qpos, scene.info["geom"][moving], number)
     for i, shape in enumerate(moving):
         if shape in scene.info["scale"]:
             worlds[:, i] = worlds[:, i] @ scene.info["scale"][shape]

@@ -80,6 +80,8 @@ Type read_fields(Parameters& parameters) {
 Geometry make_sphere(Parameters& parameters);
 DiskShape make_disk(Parameters& parameters);
 CapsulesShape make_capsule(Parameters& parameters);
+/// Reads "float times", two or more that rise; none where it is missing or wrong (reported).
+std::vector<double> key_times(Parameters& parameters);
 /// Reads "float u": two per capsule, at p0 and at p1; none where it is missing or wrong (reported).
 std::vector<glm::vec2> chain_u(Parameters& parameters, std::size_t capsules);
 /// Makes the capsules of the lists in a statement.
