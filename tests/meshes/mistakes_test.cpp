@@ -131,7 +131,7 @@ TEST(Gltf, MistakesAreRefused) {
       {gltf(kPlaced + R"(,"material":0.5)", "", R"(,"materials":[{}])"),
        "an index of a material is no whole number"},
       {gltf(fifth, accessor(R"("componentType":5126,"count":3,"type":"VEC3","sparse":{})")),
-       "accessor 5 is sparse, which is not read"},
+       "accessor 5 has a componentType that there is not"},
       {gltf(fifth, accessor(R"("componentType":5124,"count":3,"type":"VEC3")")),
        "accessor 5 has a componentType that there is not"},
       {gltf(fifth, accessor(R"("count":3,"type":"VEC3")")),

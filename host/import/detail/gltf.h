@@ -79,6 +79,7 @@ class File {
   template <class Vector>
   std::vector<Vector> vectors(std::size_t accessor);
   std::vector<std::uint32_t> indices(std::size_t accessor);
+  std::vector<glm::dmat4> matrices(std::size_t accessor);
   /// Returns colours of three components; a fourth is ignored.
   std::vector<glm::vec3> colors(std::size_t accessor);
   /// Returns the bytes of a buffer view.
@@ -91,6 +92,10 @@ class File {
  private:
   struct Elements;
   Elements elements(std::size_t accessor);
+  /// Returns elements of a type and count that lie in the buffer view that `of` names. `stride`:
+  /// the view's may be another one than that of elements one behind the other.
+  Elements stored(std::size_t accessor, const Json& of, int type, std::size_t components,
+                  std::size_t count, bool has_stride);
   std::string_view buffer(std::size_t index);
 
   std::string bytes_;
@@ -101,7 +106,7 @@ class File {
                      0;  // bytes of the file and its buffers, and bytes that accessors have read
 };
 
-/// The file's first animation, of translations, rotations and scales.
+/// The file's first animation, of translations, rotations, scales and weights of morph targets.
 class Animation {
  public:
   /// Reads the animation, if there is one. Throws InputError; warns of what it leaves out.
@@ -112,26 +117,106 @@ class Animation {
   /// is curved, at times between these. None: no node moves. A key can be alone.
   TransformKeys keys(const std::vector<std::size_t>& nodes, const glm::dmat4& world);
 
+  /// Returns the times at which a mesh changes that a node's weights and joints move, each of which
+  /// is the last node of a chain; and times between them, so that joints turn by little from one to
+  /// the next. None: nothing moves.
+  std::vector<double> bending_times(std::size_t node,
+                                    const std::vector<std::vector<std::size_t>>& joints) const;
+  /// Returns the times of these alone at which one of them has a key, in order.
+  std::vector<double> key_times(std::size_t node,
+                                const std::vector<std::vector<std::size_t>>& joints) const;
+  /// Returns the node's own transform at a time.
+  glm::dmat4 transform_at(std::size_t node, double time) const;
+  /// Returns the weights of a node's morph targets at a time, or those given where they rest.
+  std::vector<double> weights_at(std::size_t node, double time, std::vector<double> resting) const;
+
  private:
   using Json = nlohmann::json;
   enum class Way { step, linear, cubic };
+  /// What values at two keys and their tangents count at a time between them.
+  struct Share {
+    std::size_t key = 0;  // the first of the two; with one alone `b` is 0
+    double u = 0, a = 1, out_tangent = 0, in_tangent = 0, b = 0;
+  };
+  struct Times {
+    Way way = Way::linear;
+    std::vector<double> times;
+    Share at(double time) const;
+    /// Returns the number of values of a key.
+    std::size_t each() const { return way == Way::cubic ? 3 : 1; }
+  };
   enum Part : std::size_t { translation, rotation, scale };
   static constexpr std::array<std::string_view, 3> part_names = {"translation", "rotation",
                                                                  "scale"};
-  struct Channel {
-    Way way = Way::linear;
-    std::vector<double> times;
+  struct Channel : Times {
     std::vector<glm::dvec4> values;
     glm::dvec4 at(double time, bool turns) const;
   };
+  /// Weights of all targets at the first key, then at the next.
+  struct Weights : Times {
+    std::vector<double> values;
+  };
 
+  /// Reads the sampler's way and times, and returns the accessor of its values.
+  std::size_t read_times(const Json& sampler, Times& out);
   void add(std::size_t node, std::size_t part, const Json& sampler);
+  void add_weights(std::size_t node, const Json& sampler);
   void warn(const std::string& what) const;
-  glm::dmat4 transform_at(std::size_t node, double time) const;
+  /// Adds the times of a channel's keys.
+  static void gather(const Times& channel, std::vector<double>& times);
+  /// Calls add(channel) for the weights of a node and each channel of the nodes of joints' chains.
+  template <class Add>
+  void for_channels(std::size_t node, const std::vector<std::vector<std::size_t>>& joints,
+                    const Add& add) const;
+  /// Returns by how much the nodes of a chain turn between two times, in radians.
+  double turn_of(const std::vector<std::size_t>& nodes, double from, double to) const;
 
   File& file_;
   std::map<std::size_t, std::array<std::optional<Channel>, part_names.size()>> nodes_;
+  std::map<std::size_t, Weights> weights_;
   std::size_t keys_ = 0;  // so far
+};
+
+/// Meshes whose vertices are moved by morph targets and by a skin's joints.
+class Bending {
+ public:
+  /// `world`: in which all nodes lie.
+  Bending(File& file, const Animation& animation, const glm::dmat4& world);
+  /// Returns whether a node's mesh has targets or a skin.
+  bool bends(std::size_t node) const;
+  bool has_skin(std::size_t node) const;
+  /// Moves the vertices of a primitive of the node's mesh, at all times of the animation. Those of
+  /// a skin are then in the world, and others in the node's space.
+  void bend(std::size_t node, const nlohmann::json& primitive, TriangleMeshShape& mesh);
+
+ private:
+  using Json = nlohmann::json;
+  struct Target {
+    std::vector<glm::vec3> positions, normals;  // what is added; none: nothing
+  };
+  struct Skin {
+    std::vector<std::vector<std::size_t>> chains;  // of each joint, from the root to it
+    std::vector<glm::dmat4> inverse_bind;
+    std::vector<glm::vec4> joints, weights;  // of the vertices, some sets one behind the other
+  };
+
+  std::vector<Target> targets_of(const Json& primitive, std::size_t count);
+  std::vector<double> resting_weights(std::size_t node, std::size_t count) const;
+  std::optional<Skin> skin_of(std::size_t node, const Json& primitive, std::size_t count);
+  std::vector<std::size_t> chain_of(std::size_t node) const;
+  /// Throws where so many times are too many for these joints.
+  void check_joints(const std::vector<std::vector<std::size_t>>& chains, std::size_t times) const;
+  /// Applies weighted targets.
+  static void morph(const std::vector<Target>& targets, const std::vector<double>& weights,
+                    TriangleMeshShape& mesh);
+  /// Applies the skin at a time; returns whether it mirrors the mesh.
+  bool apply(const Skin& skin, double time, TriangleMeshShape& mesh) const;
+
+  File& file_;
+  const Animation& animation_;
+  const glm::dmat4& world_;
+  std::vector<std::optional<std::size_t>> parents_;
+  std::size_t moved_ = 0;  // vertices at all times so far
 };
 
 /// What a shape takes from a glTF material.

@@ -102,10 +102,12 @@ ImagemapTexture texture_of_corners(TriangleMeshShape& mesh, const std::vector<gl
       image->floats[3 * (y * width + x) + k] = color[static_cast<glm::length_t>(k)];
   };
   TriangleMeshShape out;
-  out.positions.resize(3 * count);
+  const std::size_t keys = std::max<std::size_t>(1, mesh.times.size());
+  out.positions.resize(keys * 3 * count);
   out.uvs.resize(3 * count);
-  if (!mesh.normals.empty()) out.normals.resize(3 * count);
+  if (!mesh.normals.empty()) out.normals.resize(keys * 3 * count);
   out.triangles.resize(count);
+  out.times = mesh.times;
   const std::vector<std::uint32_t> order = along_curve(mesh);
   for (std::uint32_t number = 0; number < count; ++number) {
     const std::uint32_t triangle = order[number];
@@ -119,8 +121,11 @@ ImagemapTexture texture_of_corners(TriangleMeshShape& mesh, const std::vector<gl
     put(x + 1, y + 1, b + c - a);
     for (std::uint32_t k = 0; k < 3; ++k) {
       const std::uint32_t from = mesh.triangles[triangle][k], to = 3 * triangle + k;
-      out.positions[to] = mesh.positions[from];
-      if (!mesh.normals.empty()) out.normals[to] = mesh.normals[from];
+      for (std::size_t key = 0; key < keys; ++key) {
+        const std::size_t old = key * vertex_count(mesh) + from, now = key * 3 * count + to;
+        out.positions[now] = mesh.positions[old];
+        if (!mesh.normals.empty()) out.normals[now] = mesh.normals[old];
+      }
       // Rows of the image run down, its coordinates up.
       out.uvs[to] = {
           (static_cast<float>(x) + (k == 1 ? 1.5F : 0.5F)) / static_cast<float>(width),

@@ -38,7 +38,8 @@ class GltfReader {
         json_(file_.json),
         options_(options),
         materials_(file_, scene_, reader),
-        animation_(file_) {
+        animation_(file_),
+        bending_(file_, animation_, world_) {
     scene_.source = file_.path.string();
     scene_.unit = "m";
   }
@@ -75,8 +76,7 @@ class GltfReader {
     if (depth > kDeepestChild)
       file_.fail(fmt::format("node {} lies within more than {} others: are there cycles?", index,
                              kDeepestChild));
-    if (++visited_ > kMostNodes)
-      file_.fail(fmt::format("more than {} nodes are placed", kMostNodes));
+    if (++visited_ > kMostNodes) too_many();
     const Json& node = file_.list("nodes")[index];
     chain_.push_back(index);
     glm::dmat4 world = parent * file_.transform_of(node);
@@ -84,8 +84,18 @@ class GltfReader {
     if (!keys.empty()) world = keys.front().matrix;
     if (keys.size() < 2) keys.clear();
     const std::string name = file_.text(node, "name", "");
-    if (const auto mesh = file_.index(node, "mesh", file_.list("meshes").size(), "mesh"))
-      placed_[*mesh].push_back({world, name, keys});
+    if (const auto mesh = file_.index(node, "mesh", file_.list("meshes").size(), "mesh")) {
+      if (!bending_.bends(index))
+        for (const glm::dmat4& copy : copies_of(node)) {
+          Placed& placed = placed_[*mesh].emplace_back(Placed{world * copy, name, keys});
+          for (TransformKey& key : placed.motion) key.matrix *= copy;
+          if (++visited_ > kMostNodes) too_many();
+        }
+      else if (bending_.has_skin(index))  // whose vertices are in the world
+        place_mesh(*mesh, index, {{glm::dmat4(1), name, {}}});
+      else
+        place_mesh(*mesh, index, {{world, name, keys}});
+    }
     if (const auto camera = file_.index(node, "camera", file_.list("cameras").size(), "camera");
         camera && !camera_)
       add_camera(file_.list("cameras")[*camera], world, keys);
@@ -93,6 +103,40 @@ class GltfReader {
     for (const Json& child : file_.list_of(node, "children"))
       visit(file_.index_value(child, file_.list("nodes").size(), "node"), world, depth + 1);
     chain_.pop_back();
+  }
+
+  [[noreturn]] void too_many() const {
+    file_.fail(fmt::format("more than {} nodes are placed", kMostNodes));
+  }
+
+  /// Returns where a node's mesh is placed in its space: once, or as EXT_mesh_gpu_instancing says.
+  std::vector<glm::dmat4> copies_of(const Json& node) {
+    const Json& from = file_.object(file_.extension(node, "EXT_mesh_gpu_instancing"), "attributes");
+    const std::size_t accessors = file_.list("accessors").size();
+    std::vector<gltf::Parts> parts;
+    const auto read = [&]<class Vector>(const char* name, Vector, const auto& set) {
+      const auto accessor = file_.index(from, name, accessors, "accessor");
+      if (!accessor) return;
+      const std::vector<Vector> values = file_.vectors<Vector>(*accessor);
+      if (parts.empty()) parts.resize(values.size());
+      if (parts.size() != values.size())
+        file_.fail(fmt::format("{} places and {} values of {} of instances", parts.size(),
+                               values.size(), name));
+      for (std::size_t i = 0; i < values.size(); ++i) set(parts[i], values[i]);
+    };
+    read("TRANSLATION", glm::vec3(),
+         [](gltf::Parts& to, const glm::vec3& value) { to.translation = value; });
+    read("SCALE", glm::vec3(), [](gltf::Parts& to, const glm::vec3& value) { to.scale = value; });
+    read("ROTATION", glm::vec4(), [&](gltf::Parts& to, const glm::vec4& value) {
+      if (!(glm::length(value) > 0)) file_.fail("a rotation is no quaternion");
+      const glm::dvec4 q = glm::normalize(glm::dvec4(value));
+      to.rotation = glm::dquat(q.w, q.x, q.y, q.z);
+    });
+    std::vector<glm::dmat4> out;
+    for (const gltf::Parts& one : parts) out.push_back(one.matrix());
+    if (!from.contains("TRANSLATION") && !from.contains("ROTATION") && !from.contains("SCALE"))
+      out.emplace_back(1);
+    return out;
   }
 
   void add_camera(const Json& camera, const glm::dmat4& world, const TransformKeys& keys) {
@@ -166,38 +210,45 @@ class GltfReader {
   };
 
   void place_meshes() {
-    for (auto& [mesh, places] : placed_) {
-      std::vector<Shape> shapes = shapes_of(mesh);
-      if (shapes.empty()) continue;
-      for (const Shape& shape : shapes) emits_ |= shape.emission.has_value();
-      if (places.size() == 1 && !places[0].name.empty())
-        for (Shape& shape : shapes) shape.name = places[0].name;
-      if (places.size() == 1 && places[0].motion.empty()) {
-        for (Shape& shape : shapes) {
-          shape.world_from_object = places[0].world;
-          scene_.shapes.push_back(std::move(shape));
-        }
-        continue;
-      }
-      Object object;
-      object.name = shapes[0].name;
-      object.where = {scene_.source, 0, 0};
-      object.shapes = std::move(shapes);
-      for (Placed& place : places) {
-        moves_ |= !place.motion.empty();
-        scene_.instances.push_back({narrow<std::uint32_t>(scene_.objects.size()), place.world,
-                                    object.where, std::move(place.motion)});
-      }
-      scene_.objects.push_back(std::move(object));
-    }
+    for (auto& [mesh, places] : placed_) place_mesh(mesh, std::nullopt, std::move(places));
   }
 
-  std::vector<Shape> shapes_of(std::size_t index) {
+  /// `bent`: the node that moves the mesh's vertices.
+  void place_mesh(std::size_t mesh, std::optional<std::size_t> bent, std::vector<Placed> places) {
+    std::vector<Shape> shapes = shapes_of(mesh, bent);
+    if (shapes.empty()) return;
+    for (const Shape& shape : shapes) {
+      emits_ |= shape.emission.has_value();
+      moves_ |= !key_times(shape).empty();
+    }
+    if (places.size() == 1 && !places[0].name.empty())
+      for (Shape& shape : shapes) shape.name = places[0].name;
+    if (places.size() == 1 && places[0].motion.empty()) {
+      for (Shape& shape : shapes) {
+        shape.world_from_object = places[0].world;
+        scene_.shapes.push_back(std::move(shape));
+      }
+      return;
+    }
+    Object object;
+    object.name = shapes[0].name;
+    object.where = {scene_.source, 0, 0};
+    object.shapes = std::move(shapes);
+    for (Placed& place : places) {
+      moves_ |= !place.motion.empty();
+      scene_.instances.push_back({narrow<std::uint32_t>(scene_.objects.size()), place.world,
+                                  object.where, std::move(place.motion)});
+    }
+    scene_.objects.push_back(std::move(object));
+  }
+
+  std::vector<Shape> shapes_of(std::size_t index, std::optional<std::size_t> bent) {
     const Json& mesh = file_.list("meshes")[index];
     std::vector<Shape> out;
     for (const Json& primitive : file_.list_of(mesh, "primitives")) {
       TriangleMeshShape triangles = mesh_of(primitive);
       if (triangles.triangles.empty()) continue;
+      if (bent) bending_.bend(*bent, primitive, triangles);
       const gltf::MeshMaterial look = materials_.look(
           file_.index(primitive, "material", file_.list("materials").size(), "material"));
       Shape shape =
@@ -218,7 +269,7 @@ class GltfReader {
     if (!accessor) return;
     const auto& mesh = std::get<TriangleMeshShape>(shape.geometry);
     const std::vector<glm::vec3> given = file_.colors(*accessor);
-    if (given.size() != mesh.positions.size())
+    if (given.size() != vertex_count(mesh))
       file_.fail("a mesh has another number of colours than of positions");
     std::vector<glm::vec3> corners;
     for (const auto& triangle : mesh.triangles)
@@ -280,6 +331,7 @@ class GltfReader {
   gltf::Materials materials_;
   gltf::Animation animation_;
   glm::dmat4 world_{1};
+  gltf::Bending bending_;
   std::vector<std::size_t> chain_;  // the node that is visited, behind all that it lies within
   bool moves_ = false;
   std::optional<Camera> camera_;

@@ -21,6 +21,8 @@ namespace {
 
 constexpr std::uint32_t kGlb = 0x46546c67, kJsonChunk = 0x4e4f534a, kBinaryChunk = 0x004e4942;
 
+constexpr double kLeastScale = 1e-6;  // of an axis: a scale of 0 has no inverse
+
 std::uint32_t word(std::string_view bytes, std::size_t at) {
   std::uint32_t value = 0;
   std::memcpy(&value, bytes.data() + at, sizeof value);
@@ -93,6 +95,7 @@ void File::check_version() const {
   for (const Json& name : list("extensionsRequired")) {
     const std::string text = name.is_string() ? name.get<std::string>() : "?";
     if (text != "KHR_texture_transform" && text != "KHR_lights_punctual" &&
+        text != "KHR_mesh_quantization" && text != "EXT_mesh_gpu_instancing" &&
         !text.starts_with("KHR_materials_"))
       fail("requires the extension " + text + ", which is not read");
   }
@@ -183,7 +186,10 @@ Parts File::parts_of(const Json& node) const {
 }
 
 glm::dmat4 Parts::matrix() const {
-  return glm::scale(glm::translate(glm::dmat4(1), translation) * glm::mat4_cast(rotation), scale);
+  glm::dvec3 factors = scale;
+  for (int k = 0; k < 3; ++k)
+    if (std::abs(factors[k]) < kLeastScale) factors[k] = std::copysign(kLeastScale, factors[k]);
+  return glm::scale(glm::translate(glm::dmat4(1), translation) * glm::mat4_cast(rotation), factors);
 }
 
 std::optional<std::string> File::data_uri(const std::string& uri) const {
@@ -246,8 +252,14 @@ struct File::Elements {
   std::size_t count = 0, stride = 0, components = 0;
   int type = 0;
   bool normalized = false;
+  std::vector<std::uint32_t> replaced;   // elements that a sparse accessor gives anew, in order
+  std::shared_ptr<const Elements> anew;  // their values
 
   double at(std::size_t i, std::size_t k) const {
+    if (anew)
+      if (const auto found = std::ranges::lower_bound(replaced, i);
+          found != replaced.end() && *found == i)
+        return anew->at(static_cast<std::size_t>(found - replaced.begin()), k);
     if (bytes.empty()) return 0;
     const char* from = bytes.data() + i * stride;
     const auto read = [&]<class Number>(Number) {
@@ -272,44 +284,82 @@ struct File::Elements {
   }
 };
 
-File::Elements File::elements(std::size_t accessor) {
-  const Json& of = list("accessors")[accessor];
-  if (of.contains("sparse"))
-    fail(fmt::format("accessor {} is sparse, which is not read", accessor));
+File::Elements File::stored(std::size_t accessor, const Json& of, int type, std::size_t components,
+                            std::size_t count, bool has_stride) {
   Elements out;
-  out.type = static_cast<int>(std::clamp(number(of, "componentType", 0), 0.0, 65536.0));
+  out.type = type;
+  out.components = components;
+  out.count = count;
   const std::map<int, std::size_t> sizes = {{5120, 1}, {5121, 1}, {5122, 2},
                                             {5123, 2}, {5125, 4}, {5126, 4}};
-  const auto size = sizes.find(out.type);
+  const auto size = sizes.find(type);
   if (size == sizes.end())
     fail(fmt::format("accessor {} has a componentType that there is not", accessor));
-  const std::map<std::string, std::size_t> kinds = {
-      {"SCALAR", 1}, {"VEC2", 2}, {"VEC3", 3}, {"VEC4", 4}};
-  const auto kind = kinds.find(text(of, "type", ""));
-  if (kind == kinds.end()) fail(fmt::format("accessor {} has a type that is not read", accessor));
-  out.components = kind->second;
-  out.normalized = flag(of, "normalized", false);
-  const double count = number(of, "count", 0), offset = number(of, "byteOffset", 0);
-  if (!(count >= 0 && count < 4294967296.0) || offset < 0)
-    fail(fmt::format("accessor {} has a count or offset out of range", accessor));
-  out.count = static_cast<std::size_t>(count);
+  const double offset = number(of, "byteOffset", 0);
+  if (offset < 0) fail(fmt::format("accessor {} has a count or offset out of range", accessor));
   const auto which = index(of, "bufferView", list("bufferViews").size(), "buffer view");
   if (!which) fail(fmt::format("accessor {} names no buffer view", accessor));
   const std::string_view bytes = view(*which);
-  const std::size_t element = size->second * out.components;
-  out.stride = static_cast<std::size_t>(
-      std::clamp(number(list("bufferViews")[*which], "byteStride", 0), 0.0, 65536.0));
+  const std::size_t element = size->second * components;
+  if (has_stride)
+    out.stride = static_cast<std::size_t>(
+        std::clamp(number(list("bufferViews")[*which], "byteStride", 0), 0.0, 65536.0));
   if (out.stride == 0) out.stride = element;
-  if (out.count > 0 &&
-      (out.stride < element ||
-       offset + static_cast<double>(element) > static_cast<double>(bytes.size()) ||
-       (static_cast<double>(bytes.size()) - offset - static_cast<double>(element)) /
-                   static_cast<double>(out.stride) +
-               1 <
-           count))
-    fail(fmt::format("accessor {} announces {} elements beyond its {} bytes", accessor, out.count,
+  if (count > 0 && (out.stride < element ||
+                    offset + static_cast<double>(element) > static_cast<double>(bytes.size()) ||
+                    (static_cast<double>(bytes.size()) - offset - static_cast<double>(element)) /
+                                static_cast<double>(out.stride) +
+                            1 <
+                        static_cast<double>(count)))
+    fail(fmt::format("accessor {} announces {} elements beyond its {} bytes", accessor, count,
                      bytes.size()));
   out.bytes = bytes.substr(std::min(bytes.size(), static_cast<std::size_t>(offset)));
+  return out;
+}
+
+File::Elements File::elements(std::size_t accessor) {
+  const Json& of = list("accessors")[accessor];
+  const auto type_of = [&](const Json& object) {
+    return static_cast<int>(std::clamp(number(object, "componentType", 0), 0.0, 65536.0));
+  };
+  const auto count_of = [&](const Json& object) {
+    const double count = number(object, "count", 0);
+    if (!(count >= 0 && count < 4294967296.0))
+      fail(fmt::format("accessor {} has a count or offset out of range", accessor));
+    return static_cast<std::size_t>(count);
+  };
+  const std::map<std::string, std::size_t> kinds = {
+      {"SCALAR", 1}, {"VEC2", 2}, {"VEC3", 3}, {"VEC4", 4}, {"MAT4", 16}};
+  const auto kind = kinds.find(text(of, "type", ""));
+  if (kind == kinds.end()) fail(fmt::format("accessor {} has a type that is not read", accessor));
+  const bool is_sparse = of.contains("sparse");
+  Elements out;
+  if (is_sparse && !of.contains("bufferView")) {
+    out.type = type_of(of);
+    out.components = kind->second;
+    out.count = count_of(of);
+  } else {
+    out = stored(accessor, of, type_of(of), kind->second, count_of(of), true);
+  }
+  out.normalized = flag(of, "normalized", false);
+  if (is_sparse) {
+    const Json& sparse = object(of, "sparse");
+    const Json &indices = object(sparse, "indices"), &values = object(sparse, "values");
+    const std::size_t count = count_of(sparse);
+    const Elements at = stored(accessor, indices, type_of(indices), 1, count, false);
+    auto anew = std::make_shared<Elements>(
+        stored(accessor, values, out.type, out.components, count, false));
+    anew->normalized = out.normalized;
+    for (std::size_t i = 0; i < count; ++i) {
+      const double place = at.at(i, 0);
+      if (!(place >= 0 && place < static_cast<double>(out.count)) ||
+          (i > 0 && !(place > out.replaced.back())))
+        fail(fmt::format("the sparse indices of accessor {} do not rise, or are out of range",
+                         accessor));
+      out.replaced.push_back(static_cast<std::uint32_t>(place));
+    }
+    out.anew = std::move(anew);
+  }
   // Every primitive has its own vertices, and any number of primitives can share an accessor.
   taken_ += sizeof(float) * out.components * out.count;
   if (taken_ > std::max<std::uintmax_t>(std::uintmax_t{1} << 30, 100 * held_))
@@ -349,6 +399,21 @@ std::vector<glm::vec3> File::colors(std::size_t accessor) {
       if (!(std::abs(value) <= static_cast<double>(largest_number)))
         fail(fmt::format("element {} of accessor {} is not finite or out of range", i, accessor));
       out[i][k] = static_cast<float>(value);
+    }
+  return out;
+}
+
+std::vector<glm::dmat4> File::matrices(std::size_t accessor) {
+  const Elements from = elements(accessor);
+  if (from.components != 16)
+    fail(fmt::format("accessor {} has another type than is needed", accessor));
+  std::vector<glm::dmat4> out(from.count);
+  for (std::size_t i = 0; i < from.count; ++i)
+    for (std::size_t k = 0; k < 16; ++k) {
+      const double value = from.at(i, k);
+      if (!(std::abs(value) <= static_cast<double>(largest_number)))
+        fail(fmt::format("element {} of accessor {} is not finite or out of range", i, accessor));
+      out[i][static_cast<glm::length_t>(k / 4)][static_cast<glm::length_t>(k % 4)] = value;
     }
   return out;
 }
