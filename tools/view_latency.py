@@ -158,8 +158,8 @@ def start(program, scene, options, size):
     return served, client, hello, times
 
 
-def measure(program, scene, options, size, seconds):
-    """One start, and all that is measured of it, in seconds (lists), and bytes a second."""
+def measure(program, scene, options, size, seconds, has_capsules):
+    """One start, and all that is measured of it, in seconds (lists), bytes a second, and pixels across one of the first picture."""
     served, client, hello, times = start(program, scene, options, size)
     out = {name: [value] for name, value in times.items()}
     view = client.until(lambda got: is_picture(got, scale=1))[0]
@@ -170,16 +170,17 @@ def measure(program, scene, options, size, seconds):
         say()
         got = client.until(lambda got: is_picture(got, after=view))
         out.setdefault(name, []).append(time.monotonic() - begin)
+        out.setdefault("scale of that picture", []).append(got[2])
         view = got[0]
         client.until(lambda got: is_picture(got, after=view - 1, scale=1))
 
     shift = [1, 0, 0, 0.001, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]
     draw = random.Random(7)
-    for _ in range(7):
+    for _ in range(7 if has_capsules else 0):
         at = [draw.uniform(-0.5, 0.5) for _ in range(3)]
         until_new("a capsule moved", lambda: client.say(type="edit", what="reshape", goes_on=False, id=0, capsule=draw.randrange(1000),
                                                         p0=at, p1=[a + 0.01 for a in at], radius0=0.01, radius1=0.01))
-    for _ in range(2):
+    for _ in range(2 if has_capsules else 0):
         until_new("all capsules moved", lambda: client.say(type="edit", what="move", goes_on=False, ids=[0], matrix=shift))
     for i in range(7):
         until_new("the camera moved", lambda: look(client, hello["camera"], size, 0.01 * (i + 1)))
@@ -206,6 +207,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n", 1)[0])
     parser.add_argument("program")
     parser.add_argument("--capsules", type=int, default=100000)
+    parser.add_argument("--scene", help="a file in place of the capsules: then only the camera moves")
     parser.add_argument("--runs", type=int, default=3)
     parser.add_argument("--size", default="1000x640")
     parser.add_argument("--seconds", type=float, default=4)
@@ -213,16 +215,19 @@ def main():
     chosen = parser.parse_args()
     size = [int(v) for v in chosen.size.split("x")]
     with tempfile.TemporaryDirectory() as folder:
-        scene = pathlib.Path(folder) / "scene.pbrt"
-        scene.write_text(SCENE, encoding="ascii")
-        walk(scene.with_name("walk.capsules"), chosen.capsules)
+        scene = pathlib.Path(chosen.scene or pathlib.Path(folder) / "scene.pbrt")
+        if not chosen.scene:
+            scene.write_text(SCENE, encoding="ascii")
+            walk(scene.with_name("walk.capsules"), chosen.capsules)
         start(chosen.program, scene, chosen.options, size)[0].end()
-        runs = [measure(chosen.program, scene, chosen.options, size, chosen.seconds) for _ in range(chosen.runs)]
-    print(f"{chosen.capsules} capsules, {chosen.size}, medians of {chosen.runs} runs; load {os.getloadavg()[0]:.1f} on {os.cpu_count()} cores")
+        runs = [measure(chosen.program, scene, chosen.options, size, chosen.seconds, not chosen.scene) for _ in range(chosen.runs)]
+    print(f"{chosen.scene or f'{chosen.capsules} capsules'}, {chosen.size}, medians of {chosen.runs} runs; load {os.getloadavg()[0]:.1f} on {os.cpu_count()} cores")
     for name in runs[0]:
         values = sorted(value for run in runs for value in run[name])
         if name.startswith("bytes"):
             print(f"{name:28} {statistics.median(values) / 1e6:8.2f} MB")
+        elif name.startswith("scale"):
+            print(f"{name:28} {statistics.median(values):8.0f}     greatest {values[-1]}")
         else:
             last = values[min(len(values) - 1, math.ceil(0.99 * len(values)) - 1)]
             print(f"{name:28} {statistics.median(values):8.3f} s   {'99 % below' if len(values) >= 100 else 'longest'} {last:.3f} s")

@@ -163,11 +163,10 @@ void EyeFilms::change_eyes() {
 void EyeFilms::begin(const ShowView& look) {
   drop();
   const double pixels = static_cast<double>(look.width) * look.height;
-  int scale = 1;
-  while (scale < coarsest_scale &&
-         pixels > options_.coarse_seconds * paths_a_second_ * scale * scale)
-    scale *= 2;
-  set_film(look, scale);
+  const double affordable = std::max(1.0, options_.coarse_seconds * paths_a_second_);
+  first_scale_ =
+      std::clamp(static_cast<int>(std::ceil(std::sqrt(pixels / affordable))), 1, coarsest_scale);
+  set_film(look, first_scale_);
   look_ = look;
   ++view_;
   begun_ = Clock::now();
@@ -181,17 +180,19 @@ std::uint32_t EyeFilms::samples_of_step(std::size_t eye, double pixels) const {
                     std::max(1u, std::min(samples_[0], target() - samples_[0])));
 }
 
-void EyeFilms::step(const std::function<void(bool is_coarse)>& between_batches) {
+void EyeFilms::step(const std::function<void(bool is_first)>& between_batches) {
   const bool both = samples_[0] > 0 && (eyes() == 1 || samples_[1] > 0);
-  if (scale_ == 0 || (scale_ > 1 && both)) set_film(look_, 1);
+  // A film between the first one and that of all pixels costs a quarter of the latter at most.
+  if (scale_ == 0 || (scale_ > 1 && both))
+    set_film(look_, scale_ > 3 && scale_ == first_scale_ ? (scale_ + 1) / 2 : 1);
   const std::size_t eye = eyes() == 2 && samples_[1] < samples_[0] ? 1 : 0;
   if (eye != eye_) change_eyes();
   const double pixels =
       static_cast<double>(live_.scene().view.film.width) * live_.scene().view.film.height;
   const std::uint32_t count = samples_of_step(eye, pixels);
-  const bool is_coarse = scale_ > 1;
+  const bool is_first = scale_ > 1 && scale_ == first_scale_;
   const Clock::time_point start = Clock::now();
-  drawn().render(count, [&](const SessionProgress&) { between_batches(is_coarse); });
+  drawn().render(count, [&](const SessionProgress&) { between_batches(is_first); });
   const double seconds = std::max(1e-4, seconds_since(start));
   paths_a_second_ = 0.5 * (paths_a_second_ + pixels * count / seconds);
   samples_[eye_] += count;

@@ -66,10 +66,10 @@ void RenderLoop::begin(const ShowView& look) {
 }
 
 void RenderLoop::step() {
-  tools_.films.step([this](bool is_coarse) {
+  tools_.films.step([this](bool is_first) {
     answer_all();
-    // A coarse picture is always shown, because nothing else appears while the camera moves.
-    if (!is_coarse && tools_.clients.is_superseded()) throw Superseded();
+    // The first picture is always shown, because nothing else appears while the camera moves.
+    if (!is_first && tools_.clients.is_superseded()) throw Superseded();
   });
   show(tools_.films.picture());
   if (tools_.films.is_full()) tools_.keeping.pause();

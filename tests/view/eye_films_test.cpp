@@ -59,6 +59,31 @@ ViewerOptions options_to(double noise, int most = 4096) {
   return out;
 }
 
+// The first picture of a view is as coarse as its time demands, a finer one follows, then that of
+// all pixels. Where there is time enough it is of all pixels at once.
+TEST(EyeFilms, BeginCoarse) {
+  for (const auto& [seconds, first] : {std::pair(1e-9, 16), std::pair(1e9, 1)}) {
+    ViewerOptions options = test::options_of(1);
+    options.coarse_seconds = seconds;
+    LiveScene live(test::some_scene());
+    const Editor editor(live);
+    EyeFilms films(live, editor, test::test_device(), options, false);
+    ShowView look = look_of_scene(live.scene());
+    look.width = 70;
+    look.height = 50;
+    films.begin(look);
+    std::vector<int> scales;
+    while (films.has_more()) {
+      const bool is_coarse = first > 1 && scales.empty();
+      films.step([&](bool is_first) { EXPECT_EQ(is_first, is_coarse); });
+      const Picture picture = films.picture();
+      scales.push_back(picture.scale);
+      EXPECT_EQ(static_cast<int>(picture.width), (70 - 1) / picture.scale + 1);
+    }
+    EXPECT_EQ(scales, first == 1 ? std::vector({1}) : std::vector({16, 8, 1}));
+  }
+}
+
 // The noise is the first that is asked for. Of two eyes, both have it, and equal samples.
 TEST(EyeFilms, EndWithTheNoiseThatIsAskedFor) {
   const Ended one = ended(options_to(0.04));

@@ -59,8 +59,8 @@ class EyeFilms {
   /// Drops the picture in progress.
   void drop() { scale_ = 0; }
   /// Renders the next samples. `between_batches` may throw to end it; its argument says whether the
-  /// picture is coarse.
-  void step(const std::function<void(bool is_coarse)>& between_batches);
+  /// picture is the first one of a view, which is coarse.
+  void step(const std::function<void(bool is_first)>& between_batches);
 
   /// Returns the picture of the eye that the last step rendered, or of another one that has
   /// samples.
@@ -109,6 +109,7 @@ class EyeFilms {
   std::array<std::optional<Film>, 2> films_;
   std::size_t eye_ = 0;  // the eye whose film is in the session
   int scale_ = 0;        // of the film; 0: it is empty
+  int first_scale_ = 1;  // of the view's first film
   double paths_a_second_;
   Clock::time_point begun_ = Clock::now();
 };
