@@ -13,6 +13,7 @@
 #include "base/error.h"
 #include "import/import.h"
 #include "import/poses.h"
+#include "present/next_frame.h"
 #include "present/open_shutter.h"
 #include "scene/frozen.h"
 
@@ -59,6 +60,24 @@ std::pair<double, double> parse_seconds(const std::string& text) {
     throw InputError(SourceLocation{"--play"},
                      fmt::format("'{}' is not A:B, two times in seconds, A not after B", text));
   return {first, last};
+}
+
+/// Reads a frame of numbered files or of the models of one.
+Scene read_frame(const RenderFlags& options, const FrameSource& source, std::uint32_t frame) {
+  if (source.kind == FrameSource::Kind::files)
+    return import_files(numbered_all(options.scenes, frame), options.import_options);
+  ImportOptions of_frame = options.import_options;
+  of_frame.set("model", std::to_string(frame));
+  return import_files(options.scenes, of_frame);
+}
+
+/// Returns whether there is such a frame, whichever are asked for.
+bool has_frame(const RenderFlags& options, const FrameSource& source, std::uint32_t frame) {
+  if (source.kind == FrameSource::Kind::models) return frame <= source.range.count;
+  return std::ranges::all_of(numbered_all(options.scenes, frame), [](const std::string& scene) {
+    std::error_code ignored;
+    return fs::exists(scene, ignored);
+  });
 }
 
 }  // namespace
@@ -123,9 +142,9 @@ FrameSource source_of(const RenderFlags& options) {
     const std::uint32_t count = read_scene(*moves, FileImageReader(), of_file).frames;
     source.range = {1, count, count};
   }
-  if (options.shutter > 0 && !source.has_times && source.kind != FrameSource::Kind::turntable)
+  if (options.shutter > 0 && !source.has_times && source.kind == FrameSource::Kind::poses)
     throw InputError(SourceLocation{"--shutter"},
-                     "goes with --turntable, --play, and --poses that have times");
+                     "goes with --turntable, --frames, --play, and --poses that have times");
   if (asked && source.kind != FrameSource::Kind::files) {
     if (asked->last > source.range.last)
       refuse(fmt::format("'{}': there are {} frames", options.frames, source.range.last));
@@ -137,11 +156,10 @@ FrameSource source_of(const RenderFlags& options) {
 
 Scene scene_of_frame(const RenderFlags& options, const FrameSource& source, std::uint32_t frame) {
   if (source.has_one_scene()) return import_files(options.scenes, options.import_options);
-  if (source.kind == FrameSource::Kind::files)
-    return import_files(numbered_all(options.scenes, frame), options.import_options);
-  ImportOptions of_frame = options.import_options;
-  of_frame.set("model", std::to_string(frame));
-  return import_files(options.scenes, of_frame);
+  Scene out = read_frame(options, source, frame);
+  if (options.shutter > 0 && has_frame(options, source, frame + 1))
+    move_to_next_frame(out, read_frame(options, source, frame + 1), options.shutter);
+  return out;
 }
 
 void read_poses_of(const RenderFlags& options, const Scene& scene, FrameSource& source) {

@@ -86,7 +86,8 @@ void check_frame_options(const RenderFlags& options, const Files& files) {
     throw InputError(SourceLocation{flag}, why);
   };
   if (!options.has_frames()) {
-    if (options.shutter > 0) refuse("--shutter", "goes with --turntable, --poses and --play");
+    if (options.shutter > 0)
+      refuse("--shutter", "goes with --turntable, --frames, --poses and --play");
     if (options.skip_existing)
       refuse("--skip-existing", "goes with --turntable, --frames, --poses or --play");
     return;

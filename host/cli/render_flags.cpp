@@ -61,8 +61,7 @@ void add_frames(CLI::App& command, RenderFlags& o) {
       ->type_name("R");
   command
       .add_option("--shutter", o.shutter,
-                  "Motion blur: the part of a frame's time for which the shutter is open, of a "
-                  "turntable or an animation")
+                  "Motion blur: the part of a frame's time for which the shutter is open")
       ->check(CLI::Range(0.0, 1.0))
       ->capture_default_str()
       ->type_name("SHARE");

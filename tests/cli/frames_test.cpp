@@ -382,7 +382,7 @@ TEST(Frames, AreAnAnimationBetweenPosesWithTimes) {
   write_file(folder / "still.jsonl", "{}\n");
   EXPECT_THAT(
       run(folder, {"1.pbrt", "--poses", "still.jsonl", "--shutter", "0.5", "-o", "b#.exr"}).err,
-      HasSubstr("--shutter: goes with --turntable, --play, and --poses that have times"));
+      HasSubstr("--shutter: goes with --turntable, --frames, --play, and --poses that have times"));
 }
 
 // A scene that moves is played: frames are those of files in which everything is where it is then,
@@ -472,6 +472,59 @@ TEST(Frames, ATurntableIsBlurredByItsTurn) {
                        folder / fmt::format("blurred{}.exr", number)));
 }
 
+// A frame of numbered files goes on towards the next file's while the shutter is open: what both
+// have. The last one, which has none, is still. So are the models of a file.
+TEST(Frames, OfFilesAreBlurredTowardsTheNext) {
+  const auto scene = [](const std::string& shapes, const std::string& camera = "") {
+    return "Option \"string rendercoordsys\" \"world\"\nLookAt 0 0 8 0 0 0 0 1 0\n"
+           "Camera \"perspective\" \"float fov\" 40 " +
+           camera +
+           "\nWorldBegin\nLightSource \"infinite\"\nObjectBegin \"bead\"\nShape \"sphere\" \"float "
+           "radius\" 0.5\nObjectEnd\n" +
+           shapes;
+  };
+  const auto still = [&](const std::string& x) {
+    return scene("Shape \"capsules\" \"point3 p0\" [" + x + " -1 0] \"point3 p1\" [" + x +
+                 " -1.5 0] \"float radius\" 0.3\n"
+                 "Shape \"trianglemesh\" \"point3 P\" [" +
+                 x + " 0 0 1 0 0 0 1 0]\nAttributeBegin\nTranslate " + x +
+                 " 2 0\nObjectInstance \"bead\"\nAttributeEnd\n");
+  };
+  const fs::path folder = folder_of(
+      {{"s1.pbrt", still("-1")},
+       {"s2.pbrt", still("0.5")},
+       {"moves.pbrt",
+        scene(
+            "Shape \"capsules\" \"float times\" [0 1] \"point3 p0\" [-1 -1 0 0.5 -1 0] \"point3 "
+            "p1\" [-1 -1.5 0 0.5 -1.5 0] \"float radius\" 0.3\n"
+            "Shape \"trianglemesh\" \"float times\" [0 1] \"point3 P\" [-1 0 0 1 0 0 0 1 0 0.5 0 0 "
+            "1 0 0 0 1 0]\nAttributeBegin\nActiveTransform StartTime\nTranslate -1 2 "
+            "0\nActiveTransform EndTime\nTranslate 0.5 2 0\nActiveTransform "
+            "All\nObjectInstance \"bead\"\nAttributeEnd\n",
+            "\"float shutterclose\" 0.5")},
+       {"m.xyz", "1\nfirst\nO 0 0 0\n1\nsecond\nO 1 0 0\n"}});
+  const Names frames{"s#.pbrt", "--frames", "1-2", "--shutter", "0.5", "-o", "f#.exr"};
+  const Result result = run(folder, frames);
+  ASSERT_EQ(result.code, 0) << result.err;
+  ASSERT_EQ(run(folder, {"moves.pbrt", "-o", "moves.exr"}).code, 0);
+  ASSERT_EQ(run(folder, {"s2.pbrt", "-o", "last.exr"}).code, 0);
+  expect_equal(folder / "f2.exr", folder / "last.exr");
+  // Exposed for half a second, that file's picture is half as bright.
+  const std::vector<float> is = read_exr(folder / "f1.exr").find("G")->floats,
+                           wanted = read_exr(folder / "moves.exr").find("G")->floats;
+  ASSERT_EQ(is.size(), wanted.size());
+  for (std::size_t i = 0; i < is.size(); ++i) EXPECT_NEAR(is[i], 2 * wanted[i], 1e-5F * is[i]) << i;
+  // A frame does not depend on which are asked for.
+  ASSERT_EQ(run(folder, {"s#.pbrt", "--frames", "1", "--shutter", "0.5", "-o", "one#.exr"}).code,
+            0);
+  expect_equal(folder / "one1.exr", folder / "f1.exr");
+
+  ASSERT_EQ(run(folder, {"m.xyz", "--frames", "all", "-o", "still#.exr"}).code, 0);
+  ASSERT_EQ(run(folder, {"m.xyz", "--frames", "all", "--shutter", "1", "-o", "m#.exr"}).code, 0);
+  EXPECT_TRUE(differ(folder / "still1.exr", folder / "m1.exr"));
+  expect_equal(folder / "still2.exr", folder / "m2.exr");
+}
+
 TEST(Frames, SayWhatIsWrongInAFileOfPoses) {
   const fs::path folder = folder_of({{"s.pbrt", Posed().text()}, {"empty.jsonl", "\n \n"}});
   const auto refused = [&](const std::string& line, const std::string& why) {
@@ -548,7 +601,7 @@ TEST(Frames, SayWhatIsWrong) {
   refused({"n.#.swc", "--frames", "all", "-o", "t#.exr"}, "--frames", "such as 1-100");
   refused({"n.#.swc", "--frames", "1-2", "-o", "t#.exr"}, "n.1.swc", "no such file");
   refused({"a.swc", "--shutter", "0.5", "-o", "a.exr"}, "--shutter",
-          "goes with --turntable, --poses and --play");
+          "goes with --turntable, --frames, --poses and --play");
   refused({"a.swc", "-o", "m.mp4"}, "-o", "goes with --turntable, --frames, --poses or --play");
   refused({"a.swc", "-o", "m.xyzzy"}, "-o", "pictures are written as .exr");
   refused({"a.swc", "--skip-existing", "-o", "t.exr"}, "--skip-existing", "goes with");

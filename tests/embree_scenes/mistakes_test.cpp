@@ -144,7 +144,17 @@ TEST(EmbreeNotes, AreToldWithTheirPlace) {
       {"<Transform><AffineSpace translate=\"1 0 0\"/>\n\n<AffineSpace translate=\"2 0 0\"/>" +
            kTriangle + "</Transform>",
        "e.xml:6:2: " + moved},
-      {"<RoundLineSegments>\n\n<animated_positions/></RoundLineSegments>", "e.xml:6:2: " + moved},
+      // Cones do not move, and capsules that become more cannot.
+      {"<ConeSegments><animated_positions>" + points + points +
+           "</animated_positions><indices>0</indices></ConeSegments>",
+       moved},
+      {"<RoundLineSegments><animated_positions><positions>0 0 0 1 0 4 0 2 0 8 0 2</positions>"
+       "<positions>0 0 0 1 0 4 0 0 0 8 0 0</positions></animated_positions><indices>0 1</indices>"
+       "</RoundLineSegments>",
+       moved},
+      {"<Points type=\"sphere\"><animated_positions>" + points +
+           "<positions>0 0 0 1 0 4 0 0</positions></animated_positions></Points>",
+       moved},
       {"<SubdivisionMesh/>", "<SubdivisionMesh> is left out"},
       {"<FurBall/>", "<FurBall> is left out"},
       {"<AnimatedLight/>", "<AnimatedLight> is left out"},
@@ -219,6 +229,47 @@ TEST(EmbreeNotes, AreOfWhatIsDrawn) {
   for (const char* nothing : {"<SubdivisionMesh/>", "<FurBall/>", "<AnimatedLight/>",
                               "<RoundLineSegments><animated_positions/></RoundLineSegments>"})
     EXPECT_EQ(scene_of(kTriangle + nothing).shapes.size(), 1U) << nothing;
+}
+
+// Points, lines, curves and meshes at time steps, which are evenly in a second.
+TEST(EmbreeScenes, PointsAtTimeStepsMove) {
+  test::LogOf log;
+  const CapsulesShape line = test::capsules_of(
+      scene_of("<RoundLineSegments><animated_positions><positions>0 0 0 1 0 4 0 2</positions>"
+               "<positions>1 0 0 1 0 4 3 2</positions><positions>2 0 0 3 0 4 0 2</positions>"
+               "</animated_positions><indices>0</indices></RoundLineSegments>"));
+  EXPECT_EQ(line.times, (std::vector<double>{0, 0.5, 1}));
+  EXPECT_EQ(line.p0, (std::vector<glm::vec3>{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}}));
+  EXPECT_EQ(line.p1, (std::vector<glm::vec3>{{0, 4, 0}, {0, 4, 3}, {0, 4, 0}}));
+  EXPECT_EQ(line.radius0, (std::vector<float>{1, 1, 3}));
+  EXPECT_EQ(line.radius1, (std::vector<float>{2, 2, 2}));
+  const CapsulesShape ball = test::capsules_of(
+      scene_of("<Points type=\"sphere\"><animated_positions><positions>0 0 0 1</positions>"
+               "<positions>0 0 5 2</positions></animated_positions></Points>"));
+  EXPECT_EQ(ball.p1, (std::vector<glm::vec3>{{0, 0, 0}, {0, 0, 5}}));
+  EXPECT_EQ(ball.times, (std::vector<double>{0, 1}));
+  // A curve that is moved as a whole has the same chords, and tangents turn it.
+  const CapsulesShape curve = test::capsules_of(scene_of(
+      "<Curves type=\"round\" basis=\"hermite\"><animated_positions><positions>0 0 0 1 0 4 0 1"
+      "</positions><positions>0 0 2 1 0 4 2 1</positions></animated_positions><animated_tangents>"
+      "<tangents>1 0 0 0 1 0 0 0</tangents><tangents>1 0 0 0 1 0 0 0</tangents>"
+      "</animated_tangents><indices>0</indices></Curves>"));
+  const std::size_t half = curve.p0.size() / 2;
+  ASSERT_GT(half, 1U);
+  for (std::size_t i = 0; i < half; ++i)
+    EXPECT_LT(glm::length(curve.p0[half + i] - curve.p0[i] - glm::vec3(0, 0, 2)), 1e-6F);
+  const Scene meshes = scene_of(
+      "<TriangleMesh><animated_positions><positions>0 0 0 1 0 0 0 1 0</positions><positions>0 0 1 "
+      "1 0 "
+      "1 0 1 3</positions></animated_positions><animated_normals><normals>0 0 1 0 0 1 0 0 "
+      "1</normals>"
+      "<normals>0 1 0 0 1 0 0 1 0</normals></animated_normals><triangles>0 1 2</triangles>"
+      "</TriangleMesh>");
+  const auto& mesh = std::get<TriangleMeshShape>(meshes.shapes.at(0).geometry);
+  EXPECT_EQ(mesh.times, (std::vector<double>{0, 1}));
+  EXPECT_EQ(mesh.positions.at(5), glm::vec3(0, 1, 3));
+  EXPECT_EQ(mesh.normals.at(3), glm::vec3(0, 1, 0));
+  EXPECT_EQ(log.text(), "");
 }
 
 TEST(EmbreeScenes, WhatMovesIsAtItsFirstMoment) {

@@ -12,10 +12,14 @@
 
 #include "import/detail/cubic_chain.h"
 #include "import/detail/embree.h"
+#include "scene/shapes/capsule_motion.h"
+#include "scene/shapes/mesh_motion.h"
 
 namespace caplet::embree {
 
 namespace {
+
+constexpr std::size_t most_moved = 100'000'000;  // capsules and triangles at all time steps
 
 using glm::dvec4;
 
@@ -71,15 +75,21 @@ std::size_t vertices_of(Basis basis) {
   return basis == Basis::linear || basis == Basis::cone || basis == Basis::hermite ? 2 : 4;
 }
 
-/// Returns the list at the first time step of an animated element.
-pugi::xml_node first_list(pugi::xml_node node, const std::string& name, const SceneFile& file,
-                          Notes& notes) {
+/// Returns the lists of an element at its time steps; one where it rests.
+std::vector<pugi::xml_node> lists_of(pugi::xml_node node, const std::string& name) {
   const pugi::xml_node animated = node.child(("animated_" + name).c_str());
-  if (!animated) return node.child(name.c_str());
-  notes.add("what moves is drawn as at its first moment", file.place(animated));
+  if (!animated) return {node.child(name.c_str())};
+  std::vector<pugi::xml_node> out;
   for (const pugi::xml_node one : animated.children())
-    if (one.type() == pugi::node_element) return one;
-  return {};
+    if (one.type() == pugi::node_element) out.push_back(one);
+  if (out.empty()) out.emplace_back();
+  return out;
+}
+
+/// Returns the list at a time step, or the only one.
+pugi::xml_node list_at(pugi::xml_node node, const std::string& name, std::size_t step) {
+  const std::vector<pugi::xml_node> lists = lists_of(node, name);
+  return lists[std::min(step, lists.size() - 1)];
 }
 
 std::vector<dvec4> rows4(SceneFile& file, pugi::xml_node node, bool with_nan) {
@@ -104,8 +114,9 @@ std::vector<Vector> rows(SceneFile& file, pugi::xml_node node) {
 
 class CurveSet {
  public:
-  CurveSet(SceneFile& file, pugi::xml_node node, Notes& notes)
-      : file_(file), node_(node), notes_(notes) {}
+  /// `step`: of the time, from 0.
+  CurveSet(SceneFile& file, pugi::xml_node node, std::size_t step, Notes& notes)
+      : file_(file), node_(node), step_(step), notes_(notes) {}
 
   std::vector<Shape> read(const MeshMaterial& look) {
     const Curves curves = curves_of(file_, node_);
@@ -113,12 +124,12 @@ class CurveSet {
     if (curves.is_flat) notes_.add("flat curves are drawn as round ones", file_.place(node_));
     if (curves.is_oriented)
       notes_.add("curves that are oriented by normals are drawn as round ones", file_.place(node_));
-    const pugi::xml_node positions = first_list(node_, "positions", file_, notes_);
+    const pugi::xml_node positions = list_at(node_, "positions", step_);
     points_ = rows4(file_, positions, basis_ == Basis::bspline);
     const std::vector<std::uint32_t> indices =
         file_.indices(node_.child("indices"), curves.in_pairs ? 2 : 1);
     if (basis_ == Basis::hermite)
-      tangents_ = rows4(file_, first_list(node_, "tangents", file_, notes_), false);
+      tangents_ = rows4(file_, list_at(node_, "tangents", step_), false);
     if (basis_ == Basis::hermite && tangents_.size() != points_.size())
       file_.fail(node_, fmt::format("{} tangents of {} points", tangents_.size(), points_.size()));
     const std::vector<std::uint32_t> flags = file_.bytes(node_.child("flags"));
@@ -144,7 +155,7 @@ class CurveSet {
                  fmt::format("type=\"{}\" is none of sphere, disc, oriented", type.substr(0, 40)));
     if (type != "sphere")
       notes_.add("points that are discs are drawn as balls", file_.place(node_));
-    points_ = rows4(file_, first_list(node_, "positions", file_, notes_), false);
+    points_ = rows4(file_, list_at(node_, "positions", step_), false);
     for (const dvec4& p : points_) segment(p, p, {});
     return shapes(look);
   }
@@ -263,6 +274,7 @@ class CurveSet {
 
   SceneFile& file_;
   pugi::xml_node node_;
+  std::size_t step_;
   Notes& notes_;
   Basis basis_ = Basis::linear;
   std::vector<dvec4> points_, tangents_;
@@ -305,10 +317,10 @@ std::vector<std::array<std::uint32_t, 4>> quads_of(SceneFile& file, pugi::xml_no
 }
 
 std::vector<Shape> mesh(SceneFile& file, pugi::xml_node node, const MeshMaterial& look,
-                        Notes& notes) {
+                        std::size_t step) {
   TriangleMeshShape out;
-  out.positions = rows<glm::vec3>(file, first_list(node, "positions", file, notes));
-  out.normals = rows<glm::vec3>(file, first_list(node, "normals", file, notes));
+  out.positions = rows<glm::vec3>(file, list_at(node, "positions", step));
+  out.normals = rows<glm::vec3>(file, list_at(node, "normals", step));
   out.uvs = rows<glm::vec2>(file, node.child("texcoords"));
   const std::size_t count = out.positions.size();
   if ((!out.normals.empty() && out.normals.size() != count) ||
@@ -337,6 +349,27 @@ std::vector<Shape> mesh(SceneFile& file, pugi::xml_node node, const MeshMaterial
   return all;
 }
 
+/// Appends the points of one more step; returns whether all shapes can move so.
+bool add_step(std::vector<Shape>& shapes, std::size_t steps, std::vector<Shape> next) {
+  if (shapes.size() != next.size()) return false;
+  for (std::size_t i = 0; i < shapes.size(); ++i) {
+    auto *capsules = std::get_if<CapsulesShape>(&shapes[i].geometry),
+         *next_capsules = std::get_if<CapsulesShape>(&next[i].geometry);
+    auto *mesh = std::get_if<TriangleMeshShape>(&shapes[i].geometry),
+         *next_mesh = std::get_if<TriangleMeshShape>(&next[i].geometry);
+    const bool goes_on = capsules && next_capsules
+                             ? add_key(*capsules, steps, std::move(*next_capsules))
+                             : mesh && next_mesh && add_key(*mesh, steps, *next_mesh);
+    if (!goes_on) return false;
+  }
+  return true;
+}
+
+std::vector<double>& times_of(Shape& shape) {
+  auto* capsules = std::get_if<CapsulesShape>(&shape.geometry);
+  return capsules ? capsules->times : std::get<TriangleMeshShape>(shape.geometry).times;
+}
+
 bool is_mesh(std::string_view name) {
   return name == "TriangleMesh" || name == "QuadMesh" || name == "GridMesh";
 }
@@ -351,10 +384,30 @@ bool is_geometry(std::string_view name) {
 
 std::vector<Shape> shapes_of(SceneFile& file, pugi::xml_node node, const MeshMaterial& look,
                              Notes& notes) {
-  const std::string_view name = node.name();
-  if (is_mesh(name)) return mesh(file, node, look, notes);
-  CurveSet set(file, node, notes);
-  return name == "Points" ? set.read_points(look) : set.read(look);
+  const auto shapes_at = [&](std::size_t step) {
+    const std::string_view name = node.name();
+    if (is_mesh(name)) return mesh(file, node, look, step);
+    CurveSet set(file, node, step, notes);
+    return name == "Points" ? set.read_points(look) : set.read(look);
+  };
+  const std::size_t steps = lists_of(node, "positions").size();
+  std::vector<Shape> out = shapes_at(0);
+  if (steps < 2 || out.empty()) return out;
+  std::size_t points = 0;
+  for (const Shape& shape : out) points += primitive_count(shape);
+  if (steps * points > most_moved)
+    file.fail(node, fmt::format("{} capsules or triangles at {} time steps", points, steps));
+  std::vector<Shape> moving = out;
+  for (std::size_t step = 1; step < steps; ++step)
+    if (!add_step(moving, step, shapes_at(step))) {
+      notes.add("what moves is drawn as at its first moment", file.place(node));
+      return out;
+    }
+  // Steps are evenly in the time that the shutter is open, a second.
+  for (Shape& shape : moving)
+    for (std::size_t step = 0; step < steps; ++step)
+      times_of(shape).push_back(static_cast<double>(step) / static_cast<double>(steps - 1));
+  return moving;
 }
 
 }  // namespace caplet::embree
