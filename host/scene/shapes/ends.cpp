@@ -2,6 +2,8 @@
 // Copyright Caplet authors
 #include "scene/shapes/ends.h"
 
+#include "scene/shapes/shutter_keys.h"
+
 namespace caplet {
 
 namespace {
