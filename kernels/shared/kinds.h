@@ -28,7 +28,8 @@ enum {
   trait_ball_light = 16,  // as a light sampled by a ball around it (lights/shapes/ball.cl)
   trait_kept_box = 32,    // its data do not tell its box: the host keeps it behind them
   trait_stands_straight = 64,  // its data do not hold a rotation: turned it is placed by an instance
-  trait_rare = 128,  // its test takes so many registers that it is done apart where rays are traced one at a time (trace/single.cl)
+  trait_rare = 128,  // its test takes many registers: done apart where rays are traced one at a time
+                     // (trace/single.cl)
   trait_moves = 256  // its data change with time: programs for scenes at rest have no code of it
 };
 

@@ -3,7 +3,6 @@
 #include "scene/shapes/capsule_motion.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace caplet {
 
@@ -41,10 +40,7 @@ CapsulesShape between(const CapsulesShape& a, const CapsulesShape& b, const Mix&
 /// Interpolates in double and rounds once.
 CapsulesShape rounded_at(const CapsulesShape& of, const BetweenKeys& place) {
   if (place.share == 0) return at_key(of, place.before);
-  return between(at_key(of, place.before), at_key(of, place.after),
-                 [u = place.share](float a, float b) {
-                   return static_cast<float>(double{a} + u * (double{b} - double{a}));
-                 });
+  return between(at_key(of, place.before), at_key(of, place.after), rounded_between(place.share));
 }
 
 CapsulesShape with_rest(CapsulesShape ends, const CapsulesShape& of) {
@@ -97,8 +93,7 @@ std::array<float, 8> CapsuleMotion::key(std::size_t capsule, std::size_t key) co
 
 CapsulesShape CapsuleMotion::at(float time) const {
   const ShutterKeys::Place place = times_.at(time);
-  return with_rest(between(keys_[place.segment], keys_[place.segment + 1],
-                           [u = place.u](float a, float b) { return std::fma(u, b - a, a); }),
+  return with_rest(between(keys_[place.segment], keys_[place.segment + 1], fused_between(place.u)),
                    capsules_);
 }
 

@@ -43,10 +43,7 @@ MeshMotion::Key between(MeshMotion::Key a, const MeshMotion::Key& b, const Mix& 
 /// Interpolates in double and rounds once.
 MeshMotion::Key rounded_at(const TriangleMeshShape& of, const BetweenKeys& place) {
   if (place.share == 0) return at_key(of, place.before);
-  return between(at_key(of, place.before), at_key(of, place.after),
-                 [u = place.share](float a, float b) {
-                   return static_cast<float>(double{a} + u * (double{b} - double{a}));
-                 });
+  return between(at_key(of, place.before), at_key(of, place.after), rounded_between(place.share));
 }
 
 TriangleMeshShape with_faces(MeshMotion::Key key, const TriangleMeshShape& of) {
@@ -81,8 +78,7 @@ bool MeshMotion::rests() const {
 
 TriangleMeshShape MeshMotion::at(float time) const {
   const ShutterKeys::Place place = times_.at(time);
-  return with_faces(between(keys_[place.segment], keys_[place.segment + 1],
-                            [u = place.u](float a, float b) { return std::fma(u, b - a, a); }),
+  return with_faces(between(keys_[place.segment], keys_[place.segment + 1], fused_between(place.u)),
                     mesh_);
 }
 

@@ -4,6 +4,7 @@
 // When a shape whose numbers change with time is as one of its keys says.
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -25,6 +26,18 @@ struct BetweenKeys {
 /// Returns where a time (seconds) lies between keys, whose times rise. Before the first key and
 /// after the last one both keys are that one.
 BetweenKeys between_keys(const std::vector<double>& times, double time);
+
+/// Returns a function of two floats: what is a share u of the way from one to the other, rounded
+/// once.
+inline auto rounded_between(double u) {
+  return
+      [u](float a, float b) { return static_cast<float>(double{a} + u * (double{b} - double{a})); };
+}
+/// Returns the same as kernels do it, to the bit (kernels/shapes/moving_ends.cl,
+/// moving_corners.cl).
+inline auto fused_between(float u) {
+  return [u](float a, float b) { return std::fma(u, b - a, a); };
+}
 
 /// ShutterKeys are the keys of a shape while the shutter is open, at times from 0, when it opens,
 /// to 1, when it closes. Kernels read them so (motion_segment, kernels/math/motion.cl).
