@@ -331,6 +331,48 @@ TEST(GltfMorphs, MayBeOfOnePartAlone) {
   EXPECT_EQ(moving.positions.at(3), vec3(0, 0, 2));
 }
 
+// Two sets of joints: a vertex without weights stays with the first joint, others have either or
+// both.
+TEST(GltfSkins, HaveAnyNumberOfJoints) {
+  const auto read = [](const std::vector<float>& second) {
+    Gltf file;
+    const int points = file.points(triangle), first = file.bytes(std::string(12, '\0')),
+              ones = file.bytes(std::string("\1\0\0\0\1\0\0\0\1\0\0\0", 12)),
+              weights = file.floats({0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0}, "VEC4", 4),
+              others = file.floats(second, "VEC4", 4);
+    return mesh_of(file.scene(fmt::format(
+        R"("nodes":[{{"mesh":0,"skin":0,"children":[1,2]}},{{"translation":[0,0,2]}},)"
+        R"({{"translation":[0,0,4]}}],"skins":[{{"joints":[1,2]}}],"meshes":[{{"primitives":[)"
+        R"({{"attributes":{{"POSITION":{},"JOINTS_0":{},"WEIGHTS_0":{},"JOINTS_1":{},)"
+        R"("WEIGHTS_1":{}}}}}]}}])",
+        points, first, weights, ones, others)));
+  };
+  EXPECT_EQ(read({0, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0}).positions,
+            (std::vector<vec3>{{0, 0, 2}, {1, 0, 3}, {0, 1, 4}}));
+  EXPECT_THAT(test::complaint([&] {
+                read({0, 0, 0, 0, 1, 0, 0, 0});
+              }),
+              HasSubstr("another number of joints or weights"));
+}
+
+// Copies of a node that moves move with it.
+TEST(GltfCopies, Move) {
+  Gltf file;
+  const int points = file.points(triangle), places = file.points({1, 0, 0, 0, 5, 0}),
+            times = file.floats({0, 1}, "SCALAR", 1), way = file.points({0, 0, 0, 0, 0, 3});
+  const Scene scene = file.scene(fmt::format(
+      R"("nodes":[{{"mesh":0,"extensions":{{"EXT_mesh_gpu_instancing":{{"attributes":)"
+      R"({{"TRANSLATION":{}}}}}}}}}],"meshes":[{{"primitives":[{{"attributes":{{"POSITION":{}}}}}]}}],)"
+      R"("animations":[{{"channels":[{{"sampler":0,"target":{{"node":0,"path":"translation"}}}}],)"
+      R"("samplers":[{{"input":{},"output":{}}}]}}])",
+      places, points, times, way));
+  ASSERT_EQ(scene.instances.size(), 2U);
+  ASSERT_EQ(scene.instances[1].motion.size(), 2U);
+  expect_near(vec3(scene.instances[0].motion[1].matrix[3]), {1, 0, 3});
+  expect_near(vec3(scene.instances[1].motion[0].matrix[3]), {0, 5, 0});
+  expect_near(vec3(scene.instances[1].motion[1].matrix[3]), {0, 5, 3});
+}
+
 // Places of EXT_mesh_gpu_instancing, within the node's; positions as whole numbers.
 TEST(GltfCopies, AreInstances) {
   Gltf file;
