@@ -181,7 +181,7 @@ class Hour:
         def made():
             tried = self.tried(f"trial-{scene.stem}", 60 * self.options.trial_minutes + 120)
             code, out, err = tried.run("caplet_noise_trial", scene, "--device", "0", "--minutes", self.options.trial_minutes, "--seeds",
-                                       self.options.trial_seeds, "--width", 64, "--height", 36, "--noise", 0.05, 0.01)
+                                       self.options.trial_seeds, "--width", 64, "--height", 36, "--noise", *self.options.trial_noise)
             return {"lines": [json.loads(line) for line in out.splitlines()], **({} if code == 0 else {"fails": tried.how(code, err)})}
         self.part("trial", scene.name, made)
 
@@ -283,6 +283,7 @@ def main(arguments):
     parser.add_argument("--steps", type=some_steps, default=usual, help=f"default: {','.join(usual)}; trial: how true the stated noise is")
     parser.add_argument("--trial-minutes", type=float, default=3, help="of trial, for each scene (default %(default)s)")
     parser.add_argument("--trial-seeds", type=int, default=256, help="the most seeds of trial (default %(default)s)")
+    parser.add_argument("--trial-noise", type=float, nargs="+", default=[0.05, 0.01], help="targets of trial (default 0.05 0.01)")
     parser.add_argument("--scenes", type=lambda text: text.split(","), default=[], help="parts of names of the pictures' scenes; default: all")
     parser.add_argument("--rays", type=int, default=1000000, help="of verify, beside the pictures (default %(default)s)")
     parser.add_argument("--launches", type=lambda text: text.split("/"), default=[], help="values of CAPLET_LAUNCH in place of the sweep's, with / between")
