@@ -104,7 +104,9 @@ void check_frame_options(const RenderFlags& options, const Files& files) {
   for (const auto* paths : {&files.pictures, &files.previews})
     for (const fs::path& path : *paths) check_numbered("-o", path);
   if (!files.deep.empty()) check_numbered("--deep", files.deep);
-  if (files.pictures.empty() && files.previews.empty() && files.movie.empty())
+  if (!files.depth.empty()) check_numbered("--depth", files.depth);
+  if (files.pictures.empty() && files.previews.empty() && files.movie.empty() &&
+      files.depth.empty())
     refuse("-o", "frames need a name, such as frame.####.png or movie.mp4");
 }
 
@@ -127,10 +129,10 @@ Overrides check_options(const RenderFlags& options, Files& files) {
   if (none && options.outputs.size() > 1)
     throw InputError(SourceLocation{"-o"}, "'none' does not go with another -o");
   if (none && options.preview.empty() && options.stats.empty() && options.film.film.empty() &&
-      options.mattes.deep.empty())
+      options.mattes.deep.empty() && options.depth.file.empty())
     throw InputError(
         SourceLocation{"-o"},
-        "'none' goes with --preview, --deep, --film or --stats: nothing would be written");
+        "'none' goes with --preview, --deep, --depth, --film or --stats: nothing would be written");
   for (const std::string& output : options.outputs)
     if (output != no_picture) add_output(options, files, output_named(output));
   if (!options.preview.empty()) add_preview(files, options.preview, "--preview");
@@ -138,6 +140,12 @@ Overrides check_options(const RenderFlags& options, Files& files) {
     if (options.separation) throw InputError(SourceLocation{"--deep"}, "does not go with --stereo");
     files.deep = deep_path(options.mattes);
     files.all.add("--deep", files.deep);
+  }
+  files.depth = depth_path(options.depth);
+  if (!files.depth.empty()) {
+    if (options.separation)
+      throw InputError(SourceLocation{"--depth"}, "does not go with --stereo");
+    files.all.add("--depth", files.depth);
   }
   if (options.overlays.any() &&
       ((files.previews.empty() && files.movie.empty()) || options.separation))
@@ -166,7 +174,7 @@ report::StereoLayout layout_of(const RenderFlags& options) {
 /// from.
 void check_outputs(const RenderFlags& options, const Scene& scene, Layers layers, Files& files) {
   if (options.outputs.empty() && !options.has_frames() && options.film.film.empty() &&
-      options.mattes.deep.empty()) {
+      options.mattes.deep.empty() && options.depth.file.empty()) {
     fs::path name = fs::path(scene.view.film.filename).filename();
     if (name.empty()) name = fs::path(options.scenes.front()).filename();
     add_output(options, files, name.replace_extension(".exr"));
@@ -186,6 +194,8 @@ void check_outputs(const RenderFlags& options, const Scene& scene, Layers layers
                     (scene.view.film.denoise ? report::denoising_channels : std::size_t{0})) *
                        (options.separation ? 2 : 1),
                    flag);
+  check_depth(options.depth, scene.view.camera, options.turntable > 0 && options.shutter > 0);
+  if (files.depth.extension() == ".png") check_preview_size(files.depth, width, height, flag);
   const bool is_transparent =
       scene.view.film.backdrop && scene.view.film.backdrop->kind == Backdrop::Kind::transparent;
   for (const fs::path& preview : files.previews) {
@@ -353,14 +363,31 @@ std::size_t channels_of(const Work& work) {
          (work.scene.view.film.denoise ? report::denoising_channels : std::size_t{0});
 }
 
+/// Returns what reads rows of the film, wherever it is.
+std::function<Film(int, int)> rows_of(const RenderResult& result) {
+  return [&result](int first, int count) {
+    return result.device_film ? result.device_film->read(first, count)
+                              : result.film.rows(first, count);
+  };
+}
+
+const FilmLayout& layout_of(const RenderResult& result) {
+  return result.device_film ? result.device_film->layout : result.film.layout();
+}
+
 void write_deep(const Work& work, const RenderResult& result) {
-  const auto& on_device = result.device_film;
-  write_deep_exr(
-      work.files.deep, on_device ? on_device->layout : result.film.layout(),
-      [&](int first, int count) {
-        return on_device ? on_device->read(first, count) : result.film.rows(first, count);
-      },
-      notes_of(work, result));
+  write_deep_exr(work.files.deep, layout_of(result), rows_of(result), notes_of(work, result));
+}
+
+void write_depths(const Work& work, const RenderResult& result) {
+  const DepthPicture picture =
+      depth_picture(work.options.depth, work.files.depth, work.scene.view.camera);
+  auto notes = notes_of(work, result);
+  notes["caplet.depth"] = picture.plane ? "planar" : "range";
+  const FilmLayout& layout = layout_of(result);
+  if (const std::size_t beyond = write_depth(picture, layout, rows_of(result), notes); beyond > 0)
+    log::warn("{}: {} of {} pixels lie beyond 1 to 65535 steps of {:g} and are 0",
+              picture.path.string(), beyond, layout.window.pixels(), picture.unit);
 }
 
 /// Fixes the exposure of the previews, and tells of one that the pictures have chosen.
@@ -375,6 +402,7 @@ void expose(const Work& work, std::span<BandedImage> pictures, PictureFlaws& fla
 RenderResult written(const Work& work, RenderResult result, report::RunSeconds& seconds) {
   add_to(seconds, result);
   if (!work.files.deep.empty()) write_deep(work, result);
+  if (!work.files.depth.empty()) write_depths(work, result);
   if (work.files.pictures.empty() && work.files.previews.empty()) return result;
   PictureFlaws flaws;
   Stopwatch phase;
@@ -494,7 +522,9 @@ void frame_all(const RenderFlags& options, const FrameSource& source, const Over
 bool is_there(const Files& files) {
   std::error_code ignored;
   const auto exists = [&](const fs::path& path) { return fs::is_regular_file(path, ignored); };
-  return std::ranges::all_of(files.pictures, exists) && std::ranges::all_of(files.previews, exists);
+  return std::ranges::all_of(files.pictures, exists) &&
+         std::ranges::all_of(files.previews, exists) &&
+         (files.deep.empty() || exists(files.deep)) && (files.depth.empty() || exists(files.depth));
 }
 
 /// Renders the frames one after the other. What they share (the device, its kernels, for a
@@ -567,7 +597,8 @@ RenderResult render_frames(const Work& of_all, const FrameSource& source,
       throw RunError(fmt::format("interrupted: {} of {} frames are written", made, count));
     result = written(work, std::move(result), seconds);
     ++made;
-    if (!files.pictures.empty() || files.previews.size() > (movie ? 1U : 0U))
+    if (!files.pictures.empty() || !files.depth.empty() ||
+        files.previews.size() > (movie ? 1U : 0U))
       log::info("frame {}: wrote {}", frame, files.first().string());
   }
   if (movie) movie->finish();
@@ -657,6 +688,9 @@ void run_render(const RenderFlags& given, const Invocation& invocation) {
     render_options.layers = Layers::of_bits(film_layers.bits() | report::denoising_layers().bits());
   if (!files.deep.empty())
     render_options.layers = Layers::of_bits(render_options.layers.bits() | deep_layers().bits());
+  if (!files.depth.empty())
+    render_options.layers = Layers::of_bits(render_options.layers.bits() |
+                                            depth_layers(options.depth.is_planar()).bits());
   if (options.noise) render_options.layers = render_options.layers.with(Layer::variance);
   render_options.patience = options.patience;
   const Work work{options, invocation,  scene, flat,           devices,

@@ -18,6 +18,7 @@ Files of_frame(const Files& files, std::uint32_t frame) {
   for (const fs::path& path : files.pictures) out.pictures.push_back(numbered(path, frame));
   for (const fs::path& path : files.previews) out.previews.push_back(numbered(path, frame));
   if (!files.deep.empty()) out.deep = numbered(files.deep, frame);
+  if (!files.depth.empty()) out.depth = numbered(files.depth, frame);
   return out;
 }
 

@@ -18,7 +18,7 @@ namespace caplet::cli {
 /// written.
 struct Files {
   std::vector<std::filesystem::path> pictures, previews;
-  std::filesystem::path movie, stats, film, deep;
+  std::filesystem::path movie, stats, film, deep, depth;
   Outputs all;
 
   /// Returns the first output, which stands for all in messages.
@@ -26,7 +26,8 @@ struct Files {
     if (!pictures.empty()) return pictures.front();
     if (!previews.empty()) return previews.front();
     if (!movie.empty()) return movie;
-    return !deep.empty() ? deep : !film.empty() ? film : stats;
+    if (!deep.empty()) return deep;
+    return !depth.empty() ? depth : !film.empty() ? film : stats;
   }
 };
 

@@ -164,6 +164,7 @@ void add_layer_choice(CLI::App& command, RenderFlags& o) {
       ->type_name("all|none|LAYER,...")
       ->default_str("all but the variance, the mattes and deep");
   add_matte_flags(command, o.mattes);
+  add_depth_flags(command, o.depth);
 }
 
 void add_two_eyes(CLI::App& command, RenderFlags& o) {

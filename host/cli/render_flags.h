@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "cli/depth_options.h"
 #include "cli/film_output.h"
 #include "cli/matte_options.h"
 #include "cli/options.h"
@@ -34,6 +35,7 @@ struct RenderFlags {
   std::string layout, display;
   FilmFlags film;
   MatteFlags mattes;
+  DepthFlags depth;
   double patience = 60;
   std::size_t batch_paths = 0;
   std::uint32_t turntable = 0;

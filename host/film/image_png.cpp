@@ -183,6 +183,36 @@ std::string failure_of(const char* what, const Function& function) {
   }
 }
 
+/// Format says what the rows of a PNG hold; those of 8 bits are sRGB.
+struct Format {
+  int width = 0, height = 0, type = PNG_COLOR_TYPE_RGB, bits = 8;
+  std::size_t row_bytes = 0;
+};
+
+/// Encodes rows from the top; `out`: the file's bytes.
+void encode(const Format& format, const std::uint8_t* rows, std::string& out) {
+  const Writer writer;
+  png_structp png = writer.png;
+  out.clear();
+  png_set_write_fn(
+      png, &out,
+      [](png_structp to, png_bytep data, png_size_t count) {
+        static_cast<std::string*>(png_get_io_ptr(to))
+            ->append(reinterpret_cast<const char*>(data), count);
+      },
+      nullptr);
+  guarded(png, writer.errors, [&] {
+    png_set_IHDR(png, writer.info, static_cast<png_uint_32>(format.width),
+                 static_cast<png_uint_32>(format.height), format.bits, format.type,
+                 PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+    if (format.bits == 8) png_set_sRGB(png, writer.info, PNG_sRGB_INTENT_PERCEPTUAL);
+    png_write_info(png, writer.info);
+    for (std::size_t y = 0; y < static_cast<std::size_t>(format.height); ++y)
+      png_write_row(png, rows + y * format.row_bytes);
+    png_write_end(png, writer.info);
+  });
+}
+
 }  // namespace
 
 bool is_png(const fs::path& path) {
@@ -219,28 +249,30 @@ std::string read_png_linear(const fs::path& path, const SizeCheck& check, Pixels
 std::string encode_png(int width, int height, int channels, const std::vector<std::uint8_t>& values,
                        std::string& out) {
   return failure_of("cannot be written", [&] {
-    const Writer writer;
-    png_structp png = writer.png;
-    out.clear();
-    png_set_write_fn(
-        png, &out,
-        [](png_structp to, png_bytep data, png_size_t count) {
-          static_cast<std::string*>(png_get_io_ptr(to))
-              ->append(reinterpret_cast<const char*>(data), count);
-        },
-        nullptr);
-    guarded(png, writer.errors, [&] {
-      png_set_IHDR(png, writer.info, static_cast<png_uint_32>(width),
-                   static_cast<png_uint_32>(height), 8,
-                   channels == 4 ? PNG_COLOR_TYPE_RGB_ALPHA : PNG_COLOR_TYPE_RGB,
-                   PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
-      png_set_sRGB(png, writer.info, PNG_sRGB_INTENT_PERCEPTUAL);
-      png_write_info(png, writer.info);
-      const std::size_t row = static_cast<std::size_t>(width) * static_cast<std::size_t>(channels);
-      for (std::size_t y = 0; y < static_cast<std::size_t>(height); ++y)
-        png_write_row(png, values.data() + y * row);
-      png_write_end(png, writer.info);
-    });
+    encode({.width = width,
+            .height = height,
+            .type = channels == 4 ? PNG_COLOR_TYPE_RGB_ALPHA : PNG_COLOR_TYPE_RGB,
+            .bits = 8,
+            .row_bytes = static_cast<std::size_t>(width) * static_cast<std::size_t>(channels)},
+           values.data(), out);
+  });
+}
+
+std::string encode_grey_png(int width, int height, const std::vector<std::uint16_t>& values,
+                            std::string& out) {
+  std::vector<std::uint8_t> bytes;  // the higher one first
+  bytes.reserve(2 * values.size());
+  for (const std::uint16_t value : values) {
+    bytes.push_back(static_cast<std::uint8_t>(value >> 8));
+    bytes.push_back(static_cast<std::uint8_t>(value & 255));
+  }
+  return failure_of("cannot be written", [&] {
+    encode({.width = width,
+            .height = height,
+            .type = PNG_COLOR_TYPE_GRAY,
+            .bits = 16,
+            .row_bytes = 2 * static_cast<std::size_t>(width)},
+           bytes.data(), out);
   });
 }
 

@@ -551,7 +551,8 @@ TEST(Pictures, WhatCannotBeWrittenIsFoundOutBefore) {
   }
   const Result nothing = render(folder, {"-o", "none"});
   EXPECT_EQ(nothing.code, 2);
-  EXPECT_THAT(nothing.err, HasSubstr("-o: 'none' goes with --preview, --deep, --film or --stats"));
+  EXPECT_THAT(nothing.err,
+              HasSubstr("-o: 'none' goes with --preview, --deep, --depth, --film or --stats"));
   EXPECT_EQ(test::names_in(folder), Names{"scene.pbrt"});
 }
 

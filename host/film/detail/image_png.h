@@ -28,5 +28,8 @@ std::string read_png_stored(const std::filesystem::path& path, const SizeCheck& 
 /// multiplied in. `out`: the file's bytes.
 std::string encode_png(int width, int height, int channels, const std::vector<std::uint8_t>& values,
                        std::string& out);
+/// Encodes numbers of 16 bits, one a pixel, row-major from the top. `out`: the file's bytes.
+std::string encode_grey_png(int width, int height, const std::vector<std::uint16_t>& values,
+                            std::string& out);
 
 }  // namespace caplet::image_files
