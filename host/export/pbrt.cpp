@@ -289,7 +289,7 @@ class SceneWriter {
   }
 
   void write_film(const FilmSettings& film) {
-    const auto& [width, height, crop, filename, iso, exposure_time, shutter_open, readout,
+    const auto& [width, height, crop, filename, iso, exposure_time, f_number, shutter_open, readout,
                  readout_order, diagonal, max_component_value, white_balance, space, backdrop,
                  exposure, denoise, matte_levels, least_width] = film;
     const SourceLocation where{here()};

@@ -77,7 +77,7 @@ class Developer {
       : film_(film),
         picture_from_xyz_(picture_from_xyz(settings)),
         rgb_from_xyz_(rgb_from_xyz(settings.space)),
-        exposure_(settings.exposure_time * settings.iso / 100) {
+        exposure_(settings.exposure_factor()) {
     if (layers.has(Layer::variance)) variances_ = variances_of_means(film, picture_from_xyz_);
   }
 

@@ -25,6 +25,7 @@ namespace {
 
 constexpr const char* format_name = "caplet.film";
 constexpr const char* exposure_name = "caplet.film.exposure";
+constexpr const char* f_number_name = "caplet.film.fnumber";  // older films have none
 constexpr const char* format_version = "4";
 
 using Notes = std::map<std::string, std::string>;
@@ -169,6 +170,7 @@ class Reader {
     out.height = image_.height;
     out.iso = real("caplet.film.iso");
     out.exposure_time = real("caplet.film.exposure_time");
+    if (image_.metadata.contains(f_number_name)) out.f_number = real(f_number_name);
     out.white_balance = real("caplet.film.white_balance");
     const std::string space = text("caplet.film.space");
     const auto found = std::ranges::find(color_space_names, space);
@@ -253,6 +255,7 @@ void save_film(const std::filesystem::path& path, const SavedFilm& saved, double
        {"caplet.film.view", saved.view},
        {"caplet.film.iso", fmt::format("{}", saved.settings.iso)},
        {"caplet.film.exposure_time", fmt::format("{}", saved.settings.exposure_time)},
+       {f_number_name, fmt::format("{}", saved.settings.f_number)},
        {"caplet.film.white_balance", fmt::format("{}", saved.settings.white_balance)},
        {"caplet.film.space", color_space_names[static_cast<std::size_t>(saved.settings.space)]},
        {"caplet.film.matte_levels", std::to_string(saved.settings.matte_levels)},

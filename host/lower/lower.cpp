@@ -68,8 +68,7 @@ FlatView lower_view(const Scene& scene) {
   lower_integrator(scene.view.integrator, out.view);
   if (scene.view.film.max_component_value > 0)
     out.view.sample_limit =
-        static_cast<float>(scene.view.film.max_component_value /
-                           (scene.view.film.exposure_time * scene.view.film.iso / 100));
+        static_cast<float>(scene.view.film.max_component_value / scene.view.film.exposure_factor());
   return out;
 }
 

@@ -63,10 +63,9 @@ struct FilmSettings {
   int width = 1280, height = 720;
   std::optional<std::array<int, 4>> crop;  // x0, x1, y0, y1 in pixels, half open
   std::string filename;                    // as the scene file states it
-  double iso = 100,
-         exposure_time =
-             1;  // film scale = exposure_time * iso / 100 (sensor-free rgb: 1 by default)
-  double shutter_open = 0;         // seconds; it closes exposure_time later
+  double iso = 100, exposure_time = 1;     // seconds
+  double f_number = 0;                     // of the lens; 0: exposure does not know it
+  double shutter_open = 0;                 // seconds; it closes exposure_time later
   double readout = 0;              // seconds between the first row's exposure and the last one's
   int readout_order = 0;           // of readout_orders
   double diagonal = 35;            // mm; realistic cameras alone know it
@@ -81,6 +80,15 @@ struct FilmSettings {
   double least_width = 0;  // pixels: capsules and spheres are drawn at least this thick
                            // (present/least_width.h); 0: no minimum
 
+  /// Returns what multiplies light. With an f-number N a luminance of 120 N^2 / (iso
+  /// exposure_time) candela per square metre becomes 1: what exposes to the speed that saturates a
+  /// sensor, 78 / iso lux seconds, through a lens that passes 0.65 of its axial light (ISO
+  /// 12232:2006, 6.2).
+  double exposure_factor() const {
+    const double seen = exposure_time * iso / 100;
+    return f_number > 0 ? seen / (1.2 * f_number * f_number) : seen;
+  }
+
   /// Returns for how long, in seconds, the shutter is open for some row.
   double open_time() const { return exposure_time + readout; }
 
@@ -89,6 +97,8 @@ struct FilmSettings {
     visit.integer({"xresolution", "width", 1, most_image_pixels, "pixels"}, self.width);
     visit.integer({"yresolution", "height", 1, most_image_pixels, "pixels"}, self.height);
     visit.number({"iso", "sensitivity; 100 changes nothing", 0, no_limit, "", true}, self.iso);
+    visit.number({"fnumber", "of the lens: 120 N^2 / (iso seconds) is white; 0: any", 0},
+                 self.f_number);
     visit.number(
         {"diagonal", "of the film, of which realistic cameras alone know", 0, no_limit, "mm", true},
         self.diagonal);

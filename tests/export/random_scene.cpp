@@ -565,6 +565,7 @@ class Maker {
                         "a name.exr",
                         200,
                         0.7,
+                        2.8,
                         0.25,
                         0.125,
                         static_cast<int>(random_.below(4)),

@@ -103,6 +103,7 @@ TEST(RoundTrip, EveryRowOfEveryList) {
     EXPECT_EQ(read.view.film.max_component_value, scene.view.film.max_component_value);
     EXPECT_EQ(read.view.film.white_balance, scene.view.film.white_balance);
     EXPECT_EQ(read.view.film.iso, scene.view.film.iso);
+    EXPECT_EQ(read.view.film.f_number, scene.view.film.f_number);
     EXPECT_EQ(read.view.filter.kind, scene.view.filter.kind);
     EXPECT_EQ(read.view.filter.tau, scene.view.filter.tau);
     EXPECT_EQ(read.view.filter.radius_x, scene.view.filter.radius_x);

@@ -229,6 +229,24 @@ TEST(Develop, ExposureScalesColorAndVariance) {
   EXPECT_NEAR(value(image, "variance.R"), 4, rounding);
 }
 
+// Sunny 16: at f/16, ISO 100 and 1/100 s white paper in sunlight, 100,000 lux over pi, is white to
+// 4 %. Twice the f-number is two stops.
+TEST(Develop, AnFNumberExposesToASensorThatSaturates) {
+  Scene scene;
+  scene.view.film.exposure_time = 0.01;
+  scene.view.film.f_number = 16;
+  const double paper = 100000 / 3.14159265358979;
+  const auto exposed = [&] {
+    return value(develop({with_samples({{paper, paper, paper}, {paper, paper, paper}})},
+                         window(1, 1), scene, Layers::usual()),
+                 "G");
+  };
+  EXPECT_NEAR(exposed(), 1, 0.04);
+  EXPECT_NEAR(exposed(), paper / (1.2 * 16 * 16 * 100), 1e-5);
+  scene.view.film.f_number = 32;
+  EXPECT_NEAR(exposed(), paper / (1.2 * 32 * 32 * 100), 1e-5);
+}
+
 /// A pixel of one sample of luminance 1 and these coordinates.
 Pixel with_white(double x, double y) {
   Pixel pixel;

@@ -203,6 +203,7 @@ TEST(SavedFilm, FilesHoldWhatPicturesAreDevelopedBy) {
     SavedFilm film = saved_film(4, 8);
     film.settings.iso = 1. / 3;
     film.settings.exposure_time = 0.1;
+    film.settings.f_number = 5.6;
     film.settings.white_balance = 3456.7;
     film.settings.space = ColorSpace::aces2065_1;
     film.settings.backdrop = backdrop;
@@ -218,6 +219,7 @@ TEST(SavedFilm, FilesHoldWhatPicturesAreDevelopedBy) {
     EXPECT_EQ(again.samples_wanted, 16u);
     EXPECT_EQ(again.settings.iso, film.settings.iso);
     EXPECT_EQ(again.settings.exposure_time, film.settings.exposure_time);
+    EXPECT_EQ(again.settings.f_number, film.settings.f_number);
     EXPECT_EQ(again.settings.white_balance, film.settings.white_balance);
     EXPECT_EQ(again.settings.space, film.settings.space);
     EXPECT_EQ(again.settings.exposure, film.settings.exposure);
@@ -326,6 +328,7 @@ TEST(Film, FilesThatAreNoneAreRefused) {
            {"caplet.film.space", "srgb2"},
            {"caplet.film.iso", "1x"},
            {"caplet.film.exposure_time", ""},
+           {"caplet.film.fnumber", "x"},
            {"caplet.film.white_balance", "inf"},
            {"caplet.film.exposure", "some"},
            {"caplet.film.backdrop", "0.1 0.2"},

@@ -346,6 +346,13 @@ TEST(FilmOfPbrt, ShutterAndIsoExpose) {
                                           film + " \"float iso\" 400"),
                            "G")),
               10, 0.5);
+  EXPECT_NEAR(mean(channel(plane_in_front("", film + " \"float fnumber\" 0.5"), "G")), 1 / 0.3,
+              0.17);
+  // A limit of samples is one of what is exposed: 2, of the largest of X, Y and Z.
+  EXPECT_NEAR(
+      mean(channel(
+          plane_in_front("", film + " \"float fnumber\" 0.5 \"float maxcomponentvalue\" 2"), "G")),
+      1.8, 0.2);
 }
 
 // pbrt-v4 (film.cpp, FilmBaseParameters): each edge is ceil(resolution * fraction), in 32-bit
