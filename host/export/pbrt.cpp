@@ -71,7 +71,7 @@ class SceneWriter {
       if (motion.empty())
         stream_.text << transform_of(world_from_object, where);
       else
-        write_motion(motion);
+        stream_.text << motion_text(motion);
       stream_.text << "ObjectInstance " << quoted(names_.objects[object], where)
                    << "\nAttributeEnd\n";
     }
@@ -184,7 +184,7 @@ class SceneWriter {
     stream_.go_on();
     ensure_operands(scene_.objects[instance.object].shapes[0]);
     stream_.text << "AttributeBegin\n";
-    write_motion(instance.motion);
+    stream_.text << motion_text(instance.motion);
     const std::string outer = material_;
     write_shape(scene_.objects[instance.object].shapes[0]);
     material_ = outer;
@@ -217,19 +217,27 @@ class SceneWriter {
     };
     add(scene_.view.camera.motion, {here()});
     for (const Instance& instance : scene_.instances) add(instance.motion, instance.where);
+    const std::function<void(const Shape&)> add_operands = [&](const Shape& shape) {
+      const auto* csg = std::get_if<CsgShape>(&shape.geometry);
+      for (std::size_t i = 0; csg && i < csg->operands.size(); ++i) {
+        add(csg->motion(i), csg->operands[i]->where);
+        add_operands(*csg->operands[i]);
+      }
+    };
+    std::ranges::for_each(scene_.shapes, add_operands);
+    for (const Object& object : scene_.objects) std::ranges::for_each(object.shapes, add_operands);
     if (!first) return;
     write_pivots();
     stream_.text << "TransformTimes " << (*first)[0].time << " " << (*first)[1].time << "\n";
   }
 
-  void write_motion(const TransformKeys& motion) {
-    write_motion("Transform " + matrix_text(motion[0].matrix) + "\n",
-                 "Transform " + matrix_text(motion[1].matrix) + "\n");
+  static std::string motion_text(const TransformKeys& motion) {
+    return motion_text("Transform " + matrix_text(motion[0].matrix) + "\n",
+                       "Transform " + matrix_text(motion[1].matrix) + "\n");
   }
-  void write_motion(const std::string& start, const std::string& end) {
-    stream_.text << "ActiveTransform StartTime\n"
-                 << start << "ActiveTransform EndTime\n"
-                 << end << "ActiveTransform All\n";
+  static std::string motion_text(const std::string& start, const std::string& end) {
+    return "ActiveTransform StartTime\n" + start + "ActiveTransform EndTime\n" + end +
+           "ActiveTransform All\n";
   }
 
   void write_camera(const Camera& camera, const std::optional<ClipPlane>& clip) {
@@ -239,7 +247,7 @@ class SceneWriter {
     if (motion.empty())
       stream_.text << inverse_text(world_from_camera);
     else
-      write_motion(inverse_text(motion[0].matrix), inverse_text(motion[1].matrix));
+      stream_.text << motion_text(inverse_text(motion[0].matrix), inverse_text(motion[1].matrix));
     if (medium)
       stream_.text << "MediumInterface \"\" " << quoted(names_.media[*medium], where) << "\n";
     Statement out(std::string("Camera \"") + projection_names.at(projection.index()) + "\"",
@@ -392,8 +400,9 @@ class SceneWriter {
   }
 
   ShapeReferences references() {
-    return {scene_, names_,
-            [this](const Shape& operand) { return operands_.at(operand_text(operand)); }};
+    return {scene_, names_, [this](const CsgShape& csg, std::size_t operand) {
+              return operands_.at(operand_text(*csg.operands[operand], csg.motion(operand)));
+            }};
   }
 
   void use_material(const Shape& shape, std::string& current) {
@@ -428,30 +437,36 @@ class SceneWriter {
   }
 
   /// Returns a text that differs between different operands.
-  std::string operand_text(const Shape& shape) {
+  std::string operand_text(const Shape& shape, const TransformKeys& motion) {
     return text_of([&](Text& text) {
       Stream aside{text, stream_.folder, {}};
       if (const auto material = stated_material(shape))
         text << "NamedMaterial " << quoted(names_.materials[*material], shape.where) << "\n";
-      text << transform_of(shape.world_from_object, shape.where);
+      text << operand_transform(shape, motion);
       shape_statement(shape, references(), true).write(aside);
     });
+  }
+
+  std::string operand_transform(const Shape& shape, const TransformKeys& motion) {
+    if (motion.empty()) return transform_of(shape.world_from_object, shape.where);
+    return motion_text(motion);
   }
 
   /// Writes every operand of a csg shape as an object before the csg.
   void ensure_operands(const Shape& shape) {
     const auto* csg = std::get_if<CsgShape>(&shape.geometry);
     if (!csg) return;
-    for (const auto& operand : csg->operands) {
+    for (std::size_t i = 0; i < csg->operands.size(); ++i) {
+      const std::shared_ptr<const Shape>& operand = csg->operands[i];
       ensure_operands(*operand);
-      const std::string text = operand_text(*operand);
+      const std::string text = operand_text(*operand, csg->motion(i));
       const auto [found, fresh] = operands_.try_emplace(text);
       if (!fresh) continue;
       found->second = object_names_.take("", "operand");
       stream_.text << "ObjectBegin " << quoted(found->second, operand->where) << "\n";
       const std::string outer = material_;
       use_material(*operand, material_);
-      const std::string transform = transform_of(operand->world_from_object, operand->where);
+      const std::string transform = operand_transform(*operand, csg->motion(i));
       if (!transform.empty()) stream_.text << "AttributeBegin\n" << transform;
       Statement statement = shape_statement(*operand, references(), true);
       if (is_hair(scene_, *operand) && !operand->one_sided) statement.boolean("onesided", false);
@@ -465,7 +480,7 @@ class SceneWriter {
     if (object.shapes.size() != 1) return false;
     const Shape& shape = object.shapes[0];
     const auto* capsules = std::get_if<CapsulesShape>(&shape.geometry);
-    return is_closed(shape) && !(capsules && capsules->p0.size() != 1) && !shape.emission &&
+    return is_closed(shape) && !(capsules && count_of(*capsules) != 1) && !shape.emission &&
            !shape.reverse_orientation && !shape.alpha &&
            (!shape.one_sided || is_hair(scene_, shape));
   }
@@ -480,7 +495,7 @@ class SceneWriter {
     material_ = outer;
     stream_.text << "ObjectEnd\n";
     if (may_be_operand(scene_.objects[index]))
-      operands_.try_emplace(operand_text(shapes[0]), names_.objects[index]);
+      operands_.try_emplace(operand_text(shapes[0], {}), names_.objects[index]);
   }
 
   const Scene& scene_;

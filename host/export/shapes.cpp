@@ -103,7 +103,8 @@ struct GeometryWriter {
     Statement out = begin("csg");
     out.text("operation", operations[static_cast<std::size_t>(of.operation)]);
     std::vector<std::string> operands;
-    for (const auto& operand : of.operands) operands.push_back(references.operand(*operand));
+    for (std::size_t i = 0; i < of.operands.size(); ++i)
+      operands.push_back(references.operand(of, i));
     out.texts("operands", operands);
     return out;
   }

@@ -98,11 +98,11 @@ Shape read_shape(const ProgramStatement& statement, pbrt::Parameters& parameters
     if (found == scene.materials.end()) unknown_name("material", name, scene.materials);
     return static_cast<std::uint32_t>(found - scene.materials.begin());
   };
-  const auto object_named = [&](const std::string& name, std::string& problem) -> const Object* {
+  const auto object_named = [&](const std::string& name, std::string& problem) {
     const auto found = std::ranges::find(scene.objects, name, &Object::name);
-    if (found != scene.objects.end()) return &*found;
+    if (found != scene.objects.end()) return pbrt::FinishedObject{&*found};
     problem = "names the object " + pbrt::in_quotes(name) + ", which there is none of";
-    return nullptr;
+    return pbrt::FinishedObject{};
   };
   return pbrt::make_shape(statement.type, parameters, material,
                           {textures, material_named, object_named});

@@ -83,6 +83,7 @@ std::string fingerprint(const FlatScene& scene) {
   hasher.add(scene.leaf_kind_bits);
   hasher.add(scene.sky_is_unseen);
   hasher.add(scene.has_chains);
+  hasher.add(scene.has_moving_operands);
   return hasher.result();
 }
 

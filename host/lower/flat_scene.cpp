@@ -45,7 +45,7 @@ bool FlatScene::has_media() const {
 }
 
 bool FlatScene::moves() const {
-  return (shapes & shapes_with(trait_moves)) != 0 ||
+  return (shapes & shapes_with(trait_moves)) != 0 || has_moving_operands ||
          std::ranges::any_of(instances,
                              [](const InstanceRecord& one) { return one.motion_segments > 0; });
 }

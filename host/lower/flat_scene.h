@@ -37,8 +37,9 @@ struct FlatScene {
   bool moves() const;          // some instance or capsule moves while the shutter is open
   bool multiscatters() const;  // some material makes up for what one scattering loses
   int leaf_kind_bits = CAPLET_LEAF_KIND_BITS;
-  bool sky_is_unseen = false;  // by camera rays: there is a backdrop
-  bool has_chains = false;     // capsules with u at their ends, operands of csg among them
+  bool sky_is_unseen = false;        // by camera rays: there is a backdrop
+  bool has_moving_operands = false;  // of csg shapes
+  bool has_chains = false;           // capsules with u at their ends, operands of csg among them
 
   // These are for `info` and statistics.
   std::uint64_t primitive_count = 0, bvh_nodes = 0;

@@ -179,10 +179,11 @@ class GeometryLowering {
     check_tree_limits(least_rows(counts), 0, leaf_kind_bits(0));
   }
 
-  /// Sets FlatScene::shapes and has_chains: every kind that is to be encoded, and those within csg
-  /// shapes.
+  /// Sets FlatScene::shapes, has_chains and has_moving_operands: every kind that is to be encoded,
+  /// and those within csg shapes.
   void find_shapes(const LoweredGeometry& lowered) {
     out_.shapes = 0;
+    out_.has_moving_operands = false;
     out_.has_chains = std::ranges::any_of(out_.geometries, [](const GeometryRecord& one) {
       return (one.flags & CAPLET_GEOMETRY_CHAIN) != 0;
     });
@@ -193,6 +194,7 @@ class GeometryLowering {
           if (p.shape != shape_csg) continue;
           out_.shapes |= csg_operand_shapes(p, out_.leaves);
           out_.has_chains = out_.has_chains || csg_has_chain(p, out_.leaves);
+          out_.has_moving_operands = out_.has_moving_operands || csg_moves(p, out_.leaves);
         }
     };
     add(lowered.world);
@@ -311,7 +313,15 @@ class GeometryLowering {
   template <class Geometry>
   void append(const Geometry& geometry, const Matrix& m, const GeometryRecord& record,
               Subtree& subtree) {
-    const FlatPrimitive flat = flat_primitive(geometry, m, out_.leaves);
+    append_one(flat_primitive(geometry, m, out_.leaves), record, subtree);
+  }
+
+  void append(const CsgShape& csg, const Matrix& m, const GeometryRecord& record,
+              Subtree& subtree) {
+    append_one(flat_csg(csg, m, scene_.view.film, out_.leaves), record, subtree);
+  }
+
+  void append_one(const FlatPrimitive& flat, const GeometryRecord& record, Subtree& subtree) {
     FlatPrimitive& p = add_primitive(subtree, static_cast<int>(flat.shape),
                                      add_geometry(record, static_cast<int>(flat.shape)));
     std::copy(std::begin(flat.data), std::end(flat.data), std::begin(p.data));

@@ -65,14 +65,24 @@ std::optional<MotionPath> MotionPath::of(const TransformKeys& keys, const FilmSe
                                          const SourceLocation& where) {
   if (keys.empty()) return std::nullopt;
   const AnimatedTransform animated(keys, pivot);
+  std::vector<double> times;
+  for (const TransformKey& key : keys) times.push_back(key.time);
+  return of([&](double seconds) { return animated.at(seconds) * right; }, times, film, where);
+}
+
+std::optional<MotionPath> MotionPath::of(const std::function<Matrix(double)>& at_seconds,
+                                         const std::vector<double>& times, const FilmSettings& film,
+                                         const SourceLocation& where) {
   const double open = film.shutter_open, close = open + film.open_time();
-  const auto at = [&](double time) { return animated.at(open + time * (close - open)) * right; };
+  const auto at = [&](double time) { return at_seconds(open + time * (close - open)); };
   MotionPath out;
   out.start_ = at(0);
   // Speeds change at keys alone, so segments end there.
   std::vector<double> ends{0};
-  for (const TransformKey& key : keys)
-    if (const double time = (key.time - open) / (close - open); time > ends.back() && time < 1)
+  std::vector<double> rising = times;
+  std::ranges::sort(rising);
+  for (const double seconds : rising)
+    if (const double time = (seconds - open) / (close - open); time > ends.back() && time < 1)
       ends.push_back(time);
   ends.push_back(1);
 
@@ -110,6 +120,21 @@ std::optional<MotionPath> MotionPath::of(const TransformKeys& keys, const FilmSe
            is_near(out.start_, value(one.matrix, 0.5));
   });
   if (rests) return std::nullopt;
+  return out;
+}
+
+Matrix MotionPath::greatest(bool of_inverse) const {
+  Matrix out(0);
+  for (const Segment& segment : segments_) {
+    const Cubic& c = of_inverse ? segment.inverse : segment.matrix;
+    // A cubic lies within the hull of its Bezier points.
+    const std::array<Matrix, 4> hull{c[0], c[0] + c[1] / 3.0, c[0] + 2.0 / 3 * c[1] + c[2] / 3.0,
+                                     c[0] + c[1] + c[2] + c[3]};
+    for (const Matrix& point : hull)
+      for (int column = 0; column < 4; ++column)
+        for (int row = 0; row < 4; ++row)
+          out[column][row] = std::max(out[column][row], std::abs(point[column][row]));
+  }
   return out;
 }
 

@@ -30,9 +30,17 @@ class MotionPath {
                                       const glm::dmat4& right = glm::dmat4(1),
                                       const SourceLocation& where = {});
 
+  /// Returns the path of a thing that is at at(seconds), whose speed changes at `times` (seconds)
+  /// alone.
+  static std::optional<MotionPath> of(const std::function<glm::dmat4(double)>& at,
+                                      const std::vector<double>& times, const FilmSettings& film,
+                                      const SourceLocation& where);
+
   std::uint32_t segments() const { return static_cast<std::uint32_t>(segments_.size()); }
   /// Returns the matrix at time 0.
   const glm::dmat4& start() const { return start_; }
+  /// Returns bounds of the absolute values of the entries of the matrices, or of their inverses.
+  glm::dmat4 greatest(bool of_inverse) const;
   /// Returns a box of all places of a box that moves.
   Bounds swept(const Bounds& box) const;
   /// Appends the path as kernels read it; `with_inverse`: the inverse matrices first.

@@ -14,7 +14,7 @@ namespace caplet {
 namespace {
 
 bool any_moves(const std::vector<Shape>& shapes) {
-  return std::ranges::any_of(shapes, [](const Shape& one) { return !key_times(one).empty(); });
+  return std::ranges::any_of(shapes, [](const Shape& one) { return moves(one); });
 }
 
 /// Returns the shape as kernels see it while the shutter is open, and else to one rounding.
@@ -23,6 +23,24 @@ Type frozen(const Type& moving, const FilmSettings& film, double time) {
   const double at = (time - film.shutter_open) / film.open_time();
   if (!(at >= 0 && at <= 1)) return at_time(moving, time);
   return Motion(moving, film.shutter_open, film.open_time()).at(static_cast<float>(at));
+}
+
+void freeze_shape(Shape& shape, const FilmSettings& film, double time) {
+  if (!moves(shape)) return;
+  if (auto* capsules = std::get_if<CapsulesShape>(&shape.geometry))
+    *capsules = frozen<CapsuleMotion>(*capsules, film, time);
+  if (auto* mesh = std::get_if<TriangleMeshShape>(&shape.geometry))
+    *mesh = frozen<MeshMotion>(*mesh, film, time);
+  auto* csg = std::get_if<CsgShape>(&shape.geometry);
+  if (!csg) return;
+  for (std::size_t i = 0; i < csg->operands.size(); ++i) {
+    Shape operand = *csg->operands[i];
+    freeze_shape(operand, film, time);
+    if (!csg->motion(i).empty())
+      operand.world_from_object = AnimatedTransform(csg->motion(i)).at(time);
+    csg->operands[i] = std::make_shared<const Shape>(std::move(operand));
+  }
+  csg->motions.clear();
 }
 
 }  // namespace
@@ -40,8 +58,7 @@ std::optional<std::array<double, 2>> motion_span(const Scene& scene) {
   std::array<double, 2> out{INFINITY, -INFINITY};
   const auto add = [&out](double time) { out = {std::min(out[0], time), std::max(out[1], time)}; };
   const auto add_shapes = [&](const std::vector<Shape>& shapes) {
-    for (const Shape& shape : shapes)
-      for (const double time : key_times(shape)) add(time);
+    for (const Shape& shape : shapes) visit_key_times(shape, add);
   };
   add_shapes(scene.shapes);
   for (const Object& object : scene.objects) add_shapes(object.shapes);
@@ -59,13 +76,7 @@ Scene frozen_at(Scene scene, double time) {
   for (Instance& instance : scene.instances)
     freeze(instance.motion, instance.pivot, instance.world_from_object);
   const auto freeze_shapes = [&](std::vector<Shape>& shapes) {
-    for (Shape& shape : shapes) {
-      if (key_times(shape).empty()) continue;
-      if (auto* capsules = std::get_if<CapsulesShape>(&shape.geometry))
-        *capsules = frozen<CapsuleMotion>(*capsules, scene.view.film, time);
-      if (auto* mesh = std::get_if<TriangleMeshShape>(&shape.geometry))
-        *mesh = frozen<MeshMotion>(*mesh, scene.view.film, time);
-    }
+    for (Shape& shape : shapes) freeze_shape(shape, scene.view.film, time);
   };
   freeze_shapes(scene.shapes);
   for (Object& object : scene.objects) freeze_shapes(object.shapes);

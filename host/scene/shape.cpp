@@ -16,6 +16,16 @@ const std::vector<double>& key_times(const Shape& shape) {
       shape.geometry);
 }
 
+bool moves(const Shape& shape) {
+  const auto* csg = std::get_if<CsgShape>(&shape.geometry);
+  return csg ? moves(*csg) : !key_times(shape).empty();
+}
+
+void visit_key_times(const Shape& shape, const std::function<void(double)>& visit) {
+  if (const auto* csg = std::get_if<CsgShape>(&shape.geometry)) visit_key_times(*csg, visit);
+  for (const double time : key_times(shape)) visit(time);
+}
+
 std::size_t surface_count(const Shape& shape) {
   return std::visit([](const auto& own) { return surfaces_of(own); }, shape.geometry);
 }

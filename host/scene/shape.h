@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <glm/mat4x4.hpp>
 #include <memory>
 #include <optional>
@@ -62,6 +63,12 @@ std::size_t surface_count(const Shape& shape);
 
 /// Returns the times (seconds) of a shape whose points move; none where it rests.
 const std::vector<double>& key_times(const Shape& shape);
+
+/// Returns whether its points move or, of a csg shape, its operands.
+bool moves(const Shape& shape);
+
+/// Calls visit(time) for the times (seconds) of all keys of the shape and of its operands.
+void visit_key_times(const Shape& shape, const std::function<void(double)>& visit);
 
 /// Returns whether the shape has an inside, so that csg can combine it.
 bool is_closed(const Shape& shape);

@@ -529,10 +529,13 @@ class Validator {
         error(s.where, "the alpha is not a finite number");
     }
     if (const auto* csg = std::get_if<CsgShape>(&s.geometry))
-      for (const auto& operand : csg->operands)
-        if (operand->alpha)
-          error(operand->where,
+      for (std::size_t i = 0; i < csg->operands.size(); ++i) {
+        const Shape& operand = *csg->operands[i];
+        if (operand.alpha)
+          error(operand.where,
                 "an operand of a csg has no \"alpha\" of its own: give it to the csg");
+        if (i < csg->motions.size()) motion(csg->motions[i], operand.where);
+      }
     medium(s.media.inside, s.where, "the inside of the shape");
     medium(s.media.outside, s.where, "the outside of the shape");
     if (s.one_sided && s.media.inside && s.media.differ())
@@ -561,7 +564,7 @@ class Validator {
       error(s.where,
             "a csg cannot be a light of a given \"power\", as its area is not known; give it an "
             "\"L\"");
-    if (s.emission->power && !key_times(s).empty())
+    if (s.emission->power && moves(s))
       error(
           s.where,
           "a shape whose points move cannot be a light of a given \"power\", as its area changes; "

@@ -12,7 +12,7 @@
 //   groups, a row each: shape kind, offset of the leaf block, operands (1 to 4), number of the
 //     first operand, offset of the transform (object_from_csg and csg_from_object, 12 floats each),
 //     or CAPLET_NONE, offset of u at both ends of each operand of chains (a row), or CAPLET_NONE,
-//     0 0
+//     segments of time, 0. With segments the transform is a motion (math/motion.cl) of these two.
 //   operands: one number each, its surface 0's number in the csg shape, | CAPLET_CSG_SUBTRACTED
 //     where it is subtracted
 //   program: postfix, one number each: an operand, or CAPLET_CSG_UNION, _INTERSECTION, _DIFFERENCE
@@ -31,6 +31,7 @@
 #define CAPLET_SHAPES_CSG_CL
 
 #include "math/vector.cl"
+#include "shapes/csg_space.cl"
 #include "shapes/fields.cl"
 #include "shapes/spans.cl"
 
@@ -173,10 +174,22 @@ static inline int csg_start(const ShapeRay* ray, uint begin, CsgLine* line) {
     float3 group_o = (float3)(kept[0], kept[1], kept[2]),
            group_d = (float3)(kept[3], kept[4], kept[5]);
     if (group[4] != CAPLET_NONE) {
+#ifdef CAPLET_MOTION
+      const CsgSpace space = csg_space(ray->leaves, group, ray_time(ray));
+      const Affine in = object_from_csg(&space);
+      group_o = affine_point(&in, group_o);
+      group_d = affine_vector(&in, group_d);
+#else
       group_o = transform_point(ray->leaves + group[4], group_o);
       group_d = transform_vector(ray->leaves + group[4], group_d);
+#endif
     }
+#ifdef CAPLET_MOTION
+    ShapeRay own = shape_ray(group_o, group_d, ray->t_min, ray->leaves);
+    own.time = ray_time(ray);
+#else
     const ShapeRay own = shape_ray(group_o, group_d, ray->t_min, ray->leaves);
+#endif
     csg_add_group(line, &own, group, kept[6]);
   }
   return line->pending != 0;

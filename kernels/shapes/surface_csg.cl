@@ -6,13 +6,14 @@
 #ifndef CAPLET_SHAPES_SURFACE_CSG_CL
 #define CAPLET_SHAPES_SURFACE_CSG_CL
 
+#include "shapes/csg_space.cl"
 #include "shapes/surface_shapes.cl"
 
 // CsgOperand says which operand a csg shape's surface comes from.
 typedef struct {
   float3 center;
   int subtracted;
-  __global const float* transform;  // object_from_csg, csg_from_object, where placed
+  CsgSpace space;  // where placed
   int placed;
 } CsgOperand;
 
@@ -40,7 +41,7 @@ static inline uint csg_operand(const SurfaceQuery* q, CsgOperand* operand, Surfa
   operand->center = load3(header);
   operand->subtracted = (operands[found] & CAPLET_CSG_SUBTRACTED) != 0;
   operand->placed = row[4] != CAPLET_NONE;
-  operand->transform = leaves + (operand->placed ? row[4] : 0u);
+  operand->space = csg_space(leaves, row, q->time);
   own->surface = q->surface - begin;
   own->data = lane_data(leaves + row[1], found - row[3]);
   own->x = q->x - operand->center;
@@ -50,10 +51,10 @@ static inline uint csg_operand(const SurfaceQuery* q, CsgOperand* operand, Surfa
   own->fallback = operand->subtracted ? -q->fallback : q->fallback;
   own->chain_u = any_chain && row[5] != CAPLET_NONE ? leaves + row[5] + 2u * (found - row[3]) : 0;
   if (operand->placed) {
-    own->x = transform_point(operand->transform, own->x);
-    own->direction = transform_vector(operand->transform, own->direction);
-    own->fallback =
-        unit_or(transform_transposed(operand->transform + 12, own->fallback), own->fallback);
+    const Affine in = object_from_csg(&operand->space), out = csg_from_object(&operand->space);
+    own->x = affine_point(&in, own->x);
+    own->direction = affine_vector(&in, own->direction);
+    own->fallback = unit_or(affine_transposed(&out, own->fallback), own->fallback);
   }
   return row[0];
 }
@@ -61,7 +62,7 @@ static inline uint csg_operand(const SurfaceQuery* q, CsgOperand* operand, Surfa
 // Returns the csg shape's surface from its operand's.
 static inline LocalSurface csg_surface(const CsgOperand* operand, LocalSurface s) {
   if (operand->placed) {
-    const Affine out = affine_load(operand->transform + 12), in = affine_load(operand->transform);
+    const Affine out = csg_from_object(&operand->space), in = object_from_csg(&operand->space);
     s = surface_transformed(&out, &in, s);
   }
   if (operand->subtracted) {

@@ -62,6 +62,69 @@ TEST(MotionText, IsWrittenAndReadAgain) {
   }
 }
 
+TEST(MotionText, OfOperandsIsWrittenAndReadAgain) {
+  const Scene scene = scene_of(
+      "TransformTimes 0.5 2\nCamera \"perspective\"\nWorldBegin\nObjectBegin \"still\"\n"
+      "Scale 1 2 1\nShape \"sphere\"\nObjectEnd\nObjectBegin \"moving\"\nRotate 20 1 1 0\n" +
+      to_the_right + "Shape \"sphere\"\nObjectEnd\nObjectBegin \"both\"\nRotate 10 0 0 1\n" +
+      to_the_right +
+      "Shape \"csg\" \"string operation\" \"union\" \"string operands\" [\"still\" \"moving\"]\n"
+      "ObjectEnd\nShape \"csg\" \"string operation\" \"difference\" \"string operands\" "
+      "[\"both\" \"still\"]\n");
+  const std::string text = written(scene);
+  const Scene again = scene_of(text);
+  EXPECT_EQ(written(again), text);
+  const auto motions_of = [](const Geometry& geometry) {
+    std::vector<std::pair<double, glm::dmat4>> out;
+    for (const TransformKeys& keys : std::get<CsgShape>(geometry).motions) {
+      out.emplace_back(-1, glm::dmat4(static_cast<double>(keys.size())));
+      for (const TransformKey& key : keys) out.emplace_back(key.time, key.matrix);
+    }
+    return out;
+  };
+  const auto outer = std::get<CsgShape>(scene.shapes.back().geometry),
+             outer_again = std::get<CsgShape>(again.shapes.back().geometry);
+  // Objects of shapes that move, which no instance places, are gone.
+  EXPECT_EQ(scene.objects.size(), 3u);
+  EXPECT_EQ(motions_of(outer).size(), 4u);
+  EXPECT_EQ(motions_of(outer), motions_of(outer_again));
+  EXPECT_EQ(motions_of(outer.operands[0]->geometry), motions_of(outer_again.operands[0]->geometry));
+  // The one that rests is the second in one csg and the first in the other.
+  EXPECT_EQ(outer.motions[0].front().matrix, outer.operands[0]->world_from_object);
+  EXPECT_TRUE(outer.motions[1].empty());
+  EXPECT_TRUE(std::get<CsgShape>(outer.operands[0]->geometry).motions[0].empty());
+
+  Scene other = scene;
+  std::get<CsgShape>(other.shapes.back().geometry).motions[0][1].time = 3;
+  EXPECT_THROW(written(other), InputError);
+}
+
+// The numbers of the objects change when those of operands go.
+TEST(MotionText, InstancesKeepTheirObjects) {
+  const Scene scene =
+      scene_of("Camera \"perspective\"\nWorldBegin\nObjectBegin \"cut\"\n" + to_the_right +
+               "Shape \"sphere\"\nObjectEnd\nObjectBegin \"seen\"\n" + to_the_right +
+               "Shape \"cylinder\"\nObjectEnd\nObjectBegin \"block\"\nShape \"box\" \"point3 p0\" "
+               "[0 0 0] \"point3 p1\" [1 1 1]\nObjectEnd\nObjectInstance \"seen\"\nObjectInstance "
+               "\"block\"\nShape \"csg\" \"string operation\" \"difference\" \"string operands\" "
+               "[\"block\" \"cut\"]\n");
+  std::vector<std::string> kinds;
+  for (const Instance& instance : scene.instances)
+    for (const Shape& shape : scene.objects.at(instance.object).shapes)
+      kinds.emplace_back(geometry_name(shape));
+  EXPECT_THAT(kinds, testing::UnorderedElementsAre("cylinder", "box"));
+  EXPECT_EQ(scene.objects.size(), 4u);
+  try {
+    scene_of("Camera \"perspective\"\nWorldBegin\nObjectBegin \"two\"\nShape \"sphere\"\n" +
+             to_the_right +
+             "Shape \"sphere\"\nObjectEnd\nShape \"csg\" \"string operation\" "
+             "\"union\" \"string operands\" [\"two\" \"two\"]\n");
+    ADD_FAILURE();
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("which holds 2 shapes; an operand is one closed shape"));
+  }
+}
+
 TEST(MotionText, ThatCannotSayAMotionIsRefused) {
   Scene scene =
       scene_of("Camera \"perspective\"\nWorldBegin\n" +

@@ -398,6 +398,7 @@ class Maker {
       csg.operands.push_back(std::make_shared<const Shape>(operand));
       scene_.objects.push_back({"", {operand}, {}});
     }
+    if (random_.one_in(2)) csg.motions = {{}, keys(csg.operands[1]->world_from_object), {}};
     finish(csg);
     if (Shape& made = scene_.shapes.back(); made.materials.empty())
       made.material = csg.operands[0]->material;

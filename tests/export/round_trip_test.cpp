@@ -534,7 +534,7 @@ TEST(OurStatements, CapsulesThatMove) {
   EXPECT_THAT(said("ObjectBegin \"a\"\n" + statement +
                    "\nObjectEnd\nObjectBegin \"b\" Shape \"sphere\" ObjectEnd\nShape \"csg\" "
                    "\"string operation\" \"union\" \"string operands\" [\"a\" \"b\"]\n"),
-              HasSubstr("moves; an operand rests"));
+              HasSubstr("holds 2 capsules in one shape"));
   EXPECT_THAT(said("Shape \"capsule\" \"float times\" [0 1] \"point3 p0\" [0 0 0] \"point3 p1\" [1 "
                    "0 0] \"float radius\" 1\n"),
               HasSubstr("times"));

@@ -47,6 +47,7 @@ TEST(Fingerprint, DiffersForAnyOtherScene) {
   add([](FlatScene& flat) { flat.shapes ^= 1; });
   add([](FlatScene& flat) { flat.sky_is_unseen = !flat.sky_is_unseen; });
   add([](FlatScene& flat) { flat.has_chains = !flat.has_chains; });
+  add([](FlatScene& flat) { flat.has_moving_operands = !flat.has_moving_operands; });
   add([](FlatScene& flat) { flat.leaf_kind_bits += 1; });
   // Each buffer, and which of them a value is in.
 #define GROUP_BEGIN(Type, group)

@@ -416,8 +416,18 @@ TEST(Model, BadCsg) {
   auto two = solid();
   two->geometry = CapsulesShape{{{0, 0, 0}, {0, 0, 0}}, {{1, 0, 0}, {1, 0, 0}}, {1, 1}, {}, {}};
   expect_refused(CsgShape{set_union, {solid(), two}}, "one capsule");
-  std::get<CapsulesShape>(two->geometry).times = {0, 1};
-  expect_refused(CsgShape{set_union, {solid(), two}}, "one capsule that rests");
+  auto odd = CsgShape{set_union, {solid(), solid()}};
+  odd.motions.resize(3);
+  expect_refused(odd, "motions of 3 operands, but 2 operands");
+  odd.operands[0] = odd.operands[1] = [] {
+    auto here = std::make_shared<Shape>(*solid());
+    here->where = {"here", 1, 2};
+    return here;
+  }();
+  odd.motions = {{{0, glm::dmat4(1)}}, {}};
+  expect_refused(odd, "a motion has two keys or more");
+  odd.motions = {{{0, glm::dmat4(1)}, {1, glm::dmat4(-1)}}, {}};
+  expect_refused(odd, "mirror image");
   auto light = solid();
   light->emission = AreaEmission{};
   expect_refused(CsgShape{set_union, {solid(), light}}, "area light");

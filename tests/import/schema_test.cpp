@@ -51,7 +51,9 @@ std::vector<std::string> asked_of(const std::string& directive, const std::strin
   };
   const pbrt::PartFinder no_part = [](const std::string&, std::string&) { return std::nullopt; };
   const auto no_material = [](const std::string&, const SourceLocation&) { return 0u; };
-  const pbrt::ObjectLookup no_object = [](const std::string&, std::string&) { return nullptr; };
+  const pbrt::ObjectLookup no_object = [](const std::string&, std::string&) {
+    return pbrt::FinishedObject{};
+  };
   std::optional<Medium> within;
   if (directive == "Material")
     pbrt::make_material(type, parameters, textures, no_image, no_part, scene, within);

@@ -18,6 +18,7 @@
 #include "lower/lower.h"
 #include "render_scene.h"
 #include "scene/frozen.h"
+#include "support/thorough.h"
 
 namespace caplet::test {
 namespace {
@@ -371,7 +372,7 @@ TEST(MotionPictures, OfCapsulesWhoseEndsMoveAreTheMeanOfFrozenOnes) {
           "Material \"diffuse\" \"rgb reflectance\" [0.7 0.2 0.2]\n" +
           moving("-0.5 -1.5 0.3  0 -1.5 0.3", "0 -1.5 0.3  0 -1.5 0.9", "0.3 0.2") +
           " \"float alpha\" 0.5\n",
-      512);
+      thorough() ? 8192 : 512, thorough() ? 4096 : 32);
 }
 
 // A lamp that bends, a smooth tent of glazed paint with a bump, a sheet with holes that turns, and
@@ -400,6 +401,40 @@ TEST(MotionPictures, OfMeshesWhoseVerticesMoveAreTheMeanOfFrozenOnes) {
           "Shape \"trianglemesh\" \"float times\" [0 1] \"integer indices\" [0 1 2 1 3 2]\n"
           "  \"point3 P\" [-1.5 0.5 0.2  -0.5 0.5 0.2  -1.5 0.5 1  -0.5 0.5 1\n"
           "               -1.5 0 0.2  -0.5 1 0.2  -1.5 0 1.4  -0.5 1 1.4] \"float alpha\" 0.5\n",
+      512);
+}
+
+// A lamp of balls that part, a glass of two, and a block of fog through which a drill goes.
+TEST(MotionPictures, OfCsgWhoseOperandsMoveAreTheMeanOfFrozenOnes) {
+  const auto object = [](const std::string& name, const std::string& material,
+                         const std::string& shape, const std::string& motion) {
+    return "ObjectBegin \"" + name + "\"\nMaterial \"" + material +
+           "\"\nActiveTransform EndTime\n" + motion + "\nActiveTransform All\nShape " + shape +
+           "\nObjectEnd\n";
+  };
+  const auto csg = [](const std::string& operation, const std::string& operands) {
+    return "Shape \"csg\" \"string operation\" \"" + operation + "\" \"string operands\" [" +
+           operands + "]\n";
+  };
+  const std::string ball = "\"sphere\" \"float radius\" 0.4", part = "Translate 0.5 0 0.2";
+  expect_mean_of_frozen(
+      in_front +
+          "MakeNamedMedium \"fog\" \"string type\" \"homogeneous\" \"rgb sigma_s\" [2 2 2] \"rgb "
+          "sigma_a\" [0.2 0.2 0.2]\nWorldBegin\nLightSource \"infinite\" \"rgb L\" [0.4 0.4 "
+          "0.4]\n" +
+          ground + object("still", "diffuse", ball, "") + object("apart", "diffuse", ball, part) +
+          object("glass", "dielectric", ball, "") + object("more", "dielectric", ball, part) +
+          object("block", "interface",
+                 "\"box\" \"point3 p0\" [-0.5 -0.5 -0.5] \"point3 p1\" [0.5 0.5 0.5]",
+                 "Rotate 60 0 0 1") +
+          object("drill", "interface",
+                 "\"capsule\" \"point3 p0\" [0 0 -1] \"point3 p1\" [0 0 1] \"float radius\" 0.3",
+                 "Translate 0.6 0 0\nRotate 40 1 0 0") +
+          "AttributeBegin\nTranslate 0 1 1.5\nAreaLightSource \"diffuse\" \"rgb L\" [8 8 8]\n" +
+          csg("intersection", "\"still\" \"apart\"") +
+          "AttributeEnd\nAttributeBegin\nTranslate 1 -1 0.5\n" +
+          csg("union", "\"glass\" \"more\"") + "AttributeEnd\nTranslate -1 0 0.6\n" +
+          "MediumInterface \"fog\" \"\"\n" + csg("difference", "\"block\" \"drill\""),
       512);
 }
 

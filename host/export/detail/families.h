@@ -32,7 +32,8 @@ Statement area_statement(const AreaEmission& emission, const SourceLocation& whe
 struct ShapeReferences {
   const Scene& scene;
   const Names& names;
-  std::function<std::string(const Shape&)> operand;  // returns the object that holds an operand
+  /// Returns the object that holds an operand of a csg.
+  std::function<std::string(const CsgShape&, std::size_t operand)> operand;
 };
 /// Leaves out what the graphics state holds. `as_operand`: also what operands cannot have.
 Statement shape_statement(const Shape& shape, const ShapeReferences& references,

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <set>
 #include <string>
@@ -20,16 +21,16 @@ class NameList {
   /// Returns `wanted`; if it is empty or taken, a free name that begins with `kind`.
   std::string take(const std::string& wanted, const std::string& kind) {
     if (!wanted.empty() && taken_.insert(wanted).second) return wanted;
-    for (;; ++next_)
-      if (std::string name = (wanted.empty() ? kind : wanted) + " " + std::to_string(next_);
-          taken_.insert(name).second)
+    const std::string& begin = wanted.empty() ? kind : wanted;
+    for (std::size_t& next = next_.try_emplace(begin, 1).first->second;; ++next)
+      if (std::string name = begin + " " + std::to_string(next); taken_.insert(name).second)
         return name;
   }
   void free(const std::string& name) { taken_.erase(name); }
 
  private:
   std::set<std::string> taken_;
-  std::size_t next_ = 1;
+  std::map<std::string, std::size_t> next_;  // by begin: the first number that may be free
 };
 
 /// Names by index in the scene.

@@ -161,19 +161,25 @@ void SceneBuilder::shape(const Statement& at, const std::string& type, Parameter
   (open ? draft_.scene.objects[*open].shapes : draft_.scene.shapes).push_back(std::move(shape));
 }
 
-const Object* SceneBuilder::finished_object(const std::string& name, std::string& problem) const {
+FinishedObject SceneBuilder::finished_object(const std::string& name, std::string& problem) const {
   const ObjectDraft& objects = draft_.objects;
   const auto found = objects.names.find(name);
   if (found == objects.names.end()) {
     problem = "names the object " + in_quotes(name) + ", which is not defined before this" +
               draft_.nearest(name, objects.names);
-    return nullptr;
+    return {};
   }
   const Object& object = draft_.scene.objects[found->second];
-  if (objects.open != found->second) return &object;
+  if (objects.open != found->second) {
+    FinishedObject out{&object};
+    for (const ObjectDraft::MovingShape& moving : objects.moving)
+      if (moving.of == found->second)
+        out.moving.push_back({&draft_.scene.objects[moving.object].shapes[0], &moving.motion});
+    return out;
+  }
   problem = "names the object " + in_quotes(name) + ", which is being defined (" +
             object.where.to_string() + "): a csg cannot hold itself";
-  return nullptr;
+  return {};
 }
 
 }  // namespace caplet::pbrt

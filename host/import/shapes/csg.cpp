@@ -23,9 +23,8 @@ CsgShape::Operation operation_of(Parameters& parameters) {
 /// Returns why a shape cannot be an operand; empty: it can.
 std::string objection(const Shape& shape) {
   const auto* capsules = std::get_if<CapsulesShape>(&shape.geometry);
-  if (!key_times(shape).empty()) return "moves; an operand rests";
-  if (capsules && capsules->p0.size() > 1)
-    return "holds " + std::to_string(capsules->p0.size()) +
+  if (capsules && count_of(*capsules) > 1)
+    return "holds " + std::to_string(count_of(*capsules)) +
            " capsules in one shape; an operand is one closed shape";
   if (!is_closed(shape)) return "is an open surface; operands are closed solids";
   if (shape.emission) return "is an area light; only the csg itself may be one";
@@ -35,9 +34,10 @@ std::string objection(const Shape& shape) {
   return {};
 }
 
-/// Returns the operand with a material for each of its surfaces.
-std::shared_ptr<const Shape> operand_of(const Shape& shape) {
+/// Returns the operand with a material for each of its surfaces, where it is at first.
+std::shared_ptr<const Shape> operand_of(const Shape& shape, const TransformKeys& motion) {
   auto operand = std::make_shared<Shape>(shape);
+  if (!motion.empty()) operand->world_from_object = motion.front().matrix;
   if (auto* capsules = std::get_if<CapsulesShape>(&operand->geometry);
       capsules && !capsules->materials.empty()) {
     operand->material = capsules->materials[0];
@@ -55,6 +55,7 @@ CsgShape make_csg(Parameters& parameters, const ObjectLookup& objects) {
   const Parameter* operands = parameters.values("operands", {"string"});
   if (!operands) return {};
   bool good = true;
+  const TransformKeys rests;
   std::set<std::string> said;  // messages already reported, because an object may be named twice
   const auto wrong = [&](const std::string& message) {
     if (said.insert(message).second) parameters.error("operands", message);
@@ -63,21 +64,23 @@ CsgShape make_csg(Parameters& parameters, const ObjectLookup& objects) {
   std::size_t solids = 0;
   for (const std::string& name : operands->strings) {
     std::string problem;
-    const Object* object = objects(name, problem);
-    if (!object) {
+    const FinishedObject object = objects(name, problem);
+    if (!object.object) {
       wrong(problem);
       continue;
     }
-    if (object->shapes.empty() && parameters.diagnostics().has_errors()) {
+    const std::size_t shapes = object.object->shapes.size() + object.moving.size();
+    if (shapes == 0 && parameters.diagnostics().has_errors()) {
       good = false;  // its only shape may have been refused
       continue;
     }
-    if (object->shapes.size() != 1) {
-      wrong("names " + in_quotes(name) + " (" + object->where.to_string() + "), which holds " +
-            std::to_string(object->shapes.size()) + " shapes; an operand is one closed shape");
+    if (shapes != 1) {
+      wrong("names " + in_quotes(name) + " (" + object.object->where.to_string() +
+            "), which holds " + std::to_string(shapes) + " shapes; an operand is one closed shape");
       continue;
     }
-    const Shape& shape = object->shapes[0];
+    const bool is_moving = !object.moving.empty();
+    const Shape& shape = is_moving ? *object.moving[0].shape : object.object->shapes[0];
     const auto* nested = std::get_if<CsgShape>(&shape.geometry);
     const auto* capsules = std::get_if<CapsulesShape>(&shape.geometry);
     if ((nested && nested->operands.empty()) || (capsules && capsules->p0.empty())) {
@@ -89,14 +92,20 @@ CsgShape make_csg(Parameters& parameters, const ObjectLookup& objects) {
       continue;
     }
     solids += solid_count(shape);
-    csg.operands.push_back(operand_of(shape));
+    csg.operands.push_back(operand_of(shape, is_moving ? *object.moving[0].motion : rests));
+    if (is_moving) csg.motions.resize(csg.operands.size());
+    if (is_moving) csg.motions.back() = *object.moving[0].motion;
   }
   if (operands->strings.size() < 2) wrong("takes two names or more, not 1");
   if (solids > max_csg_operands)
     wrong("come to " + std::to_string(solids) +
           " solids, nested ones counted; a csg shape holds at most " +
           std::to_string(max_csg_operands));
-  if (!good) csg.operands.clear();
+  if (!csg.motions.empty()) csg.motions.resize(csg.operands.size());
+  if (!good) {
+    csg.operands.clear();
+    csg.motions.clear();
+  }
   return csg;
 }
 

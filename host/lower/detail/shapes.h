@@ -104,6 +104,11 @@ std::vector<FlatPrimitive> flat_patches(const MolecularSurfaceShape& molecule, c
                                         std::vector<float>& leaves);
 /// Returns the kinds of a csg primitive's operands, as shape_bit()s.
 std::uint64_t csg_operand_shapes(const FlatPrimitive& csg, const std::vector<float>& leaves);
+/// Returns a csg shape under `m`, as it is while the shutter of `film` is open.
+FlatPrimitive flat_csg(const CsgShape& csg, const glm::dmat4& m, const FilmSettings& film,
+                       std::vector<float>& leaves);
+/// Returns whether an operand moves as a whole.
+bool csg_moves(const FlatPrimitive& csg, const std::vector<float>& leaves);
 /// Returns whether an operand is a capsule with u at its ends.
 bool csg_has_chain(const FlatPrimitive& csg, const std::vector<float>& leaves);
 

@@ -9,11 +9,13 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <functional>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/gtc/matrix_transform.hpp>
 #include <glm/matrix.hpp>
 #include <glm/vec2.hpp>
+#include <memory>
 #include <optional>
 #include <stdexcept>
 
@@ -21,6 +23,7 @@
 #include "lower/detail/flat_shapes.h"
 #include "lower/detail/floats.h"
 #include "lower/detail/shapes.h"
+#include "lower/motion.h"
 
 namespace caplet {
 
@@ -32,9 +35,42 @@ using glm::dvec3;
 constexpr double eps = 0x1p-24;
 constexpr std::size_t lanes_per_group = 4;
 
+/// Place is where a solid is in the csg's space.
+struct Place {
+  Matrix matrix{1};                       // of one that rests
+  std::function<Matrix(double)> at = {};  // of one that moves, by seconds
+  std::vector<double> times = {};         // when its speed changes, seconds
+
+  /// Returns the place of an operand of a csg that is here.
+  Place of_operand(const CsgShape& csg, std::size_t i) const {
+    const Matrix& rests = csg.operands[i]->world_from_object;
+    const TransformKeys& keys = csg.motion(i);
+    if (!at && keys.empty()) return {matrix * rests};
+    Place out{Matrix(1), {}, times};
+    for (const TransformKey& key : keys) out.times.push_back(key.time);
+    std::shared_ptr<const AnimatedTransform> own;
+    if (!keys.empty()) own = std::make_shared<const AnimatedTransform>(keys);
+    out.at = [outer = *this, own, rests](double seconds) {
+      return (outer.at ? outer.at(seconds) : outer.matrix) * (own ? own->at(seconds) : rests);
+    };
+    return out;
+  }
+
+  /// Returns how it moves while the shutter is open, in csg space; no value where it rests then.
+  std::optional<MotionPath> path(const dvec3& center, const FilmSettings& film,
+                                 const SourceLocation& where) const {
+    if (!at) return std::nullopt;
+    const Matrix to_center = glm::translate(Matrix(1), -center);
+    return MotionPath::of([&](double seconds) { return to_center * at(seconds); }, times, film,
+                          where);
+  }
+
+  Matrix at_opening(const FilmSettings& film) const { return at ? at(film.shutter_open) : matrix; }
+};
+
 struct Solid {
   const Shape* shape;
-  Matrix space_from_solid;
+  Place place;
   std::uint32_t surface_begin;
   bool subtracted;
 };
@@ -47,8 +83,9 @@ struct Operand {
   std::uint32_t uv_space;
   std::optional<glm::vec2> u;  // at the ends of a chain's capsule
   bool placed;
-  Matrix csg_from_object{1};
-  double error;  // in csg space
+  Matrix csg_from_object{1};         // of one that rests
+  std::optional<MotionPath> motion;  // of csg_from_object
+  double error;                      // in csg space
 };
 
 /// Flattening makes the expression a postfix program over its solids, in the order of their
@@ -58,13 +95,13 @@ class Flattening {
   std::vector<Solid> solids;
   std::vector<std::uint32_t> program;
 
-  void add(const CsgShape& csg, const Matrix& m, bool subtracted) {
+  void add(const CsgShape& csg, const Place& place, bool subtracted) {
     using Operation = CsgShape::Operation;
     CHECK_LT_(std::size_t(0), csg.operands.size());
     const bool takes_away = csg.operation == Operation::set_difference;
     for (std::size_t i = 0; i < csg.operands.size(); ++i) {
       const Shape& operand = *csg.operands[i];
-      const Matrix placed = m * operand.world_from_object;
+      const Place placed = place.of_operand(csg, i);
       const bool turned = subtracted != (takes_away && i > 0);
       if (const auto* nested = std::get_if<CsgShape>(&operand.geometry)) {
         add(*nested, placed, turned);
@@ -95,12 +132,17 @@ class Flattening {
 /// FlatOf returns a solid's kernel form: that of the shape by itself.
 struct FlatOf {
   const Matrix& m;
+  const FilmSettings& film;
   std::vector<float>& leaves;
   const SourceLocation& where;
 
   FlatPrimitive operator()(const CapsulesShape& capsules) const {
-    if (capsules.p0.size() != 1)
-      throw InputError(where, "a csg operand of capsules must hold exactly one that rests");
+    if (count_of(capsules) != 1)
+      throw InputError(where, "a csg operand of capsules must hold exactly one");
+    if (!capsules.times.empty()) {
+      const CapsuleMotion motion(capsules, film.shutter_open, film.open_time());
+      return MovingCapsules(motion, leaves).primitive(0);
+    }
     return flat_capsule(capsules, 0, &m, similarity_scale(m));
   }
   FlatPrimitive operator()(const TriangleMeshShape&) const { return open(); }
@@ -137,23 +179,26 @@ FlatPrimitive grown_by(const FlatPrimitive& p, double b, std::vector<float>& lea
 /// Returns `solid`, moved so that `center` is the origin of csg space. Rays come from the ball of
 /// `radius` around it.
 Operand make_operand(const Solid& solid, const dvec3& center, double radius,
-                     std::vector<float>& leaves) {
+                     const FilmSettings& film, std::vector<float>& leaves) {
   Operand out{};
   Shape moved = *solid.shape;
-  moved.world_from_object = glm::translate(Matrix(1), -center) * solid.space_from_solid;
-  out.placed = !bakes(moved);
+  moved.world_from_object = glm::translate(Matrix(1), -center) * solid.place.at_opening(film);
+  out.motion = solid.place.path(center, film, moved.where);
+  out.placed = out.motion || !bakes(moved);
   // from: how far from the origin of the operand's space rays may begin; scale: of lengths from
   // there to csg space.
   double from = radius, scale = 1;
   if (out.placed) {
     out.csg_from_object = moved.world_from_object;
-    const Matrix object_from_csg = glm::inverse(out.csg_from_object);
+    const Matrix object_from_csg =
+                     out.motion ? out.motion->greatest(true) : glm::inverse(out.csg_from_object),
+                 outward = out.motion ? out.motion->greatest(false) : out.csg_from_object;
     double reach[3] = {};
     scale = 0;
     for (int k = 0; k < 3; ++k) {
       reach[k] = std::abs(object_from_csg[3][k]);
       for (int j = 0; j < 3; ++j) reach[k] += std::abs(object_from_csg[j][k]) * radius;
-      scale += glm::dot(dvec3(out.csg_from_object[k]), dvec3(out.csg_from_object[k]));
+      scale += glm::dot(dvec3(outward[k]), dvec3(outward[k]));
     }
     from = length3(reach);
     scale = std::sqrt(scale);
@@ -163,10 +208,11 @@ Operand make_operand(const Solid& solid, const dvec3& center, double radius,
   const double extent = glm::length(glm::max(glm::abs(bounds.min), glm::abs(bounds.max)));
   // The kernels' error is at most 16 eps (distance of the origin + size): at most from + extent,
   // and 2 extent. The transform to the operand's space adds 5 eps of its terms (matrix, products,
-  // sums), 8 here.
-  const double error = eps * (16 * (from + 3 * extent) + (out.placed ? 8 * from : 0));
+  // sums), 8 here; the entries of one that moves are cubics in time, 4 eps more, 12 here.
+  const double roundings = out.motion ? 12 : out.placed ? 8 : 0;
+  const double error = eps * (16 * (from + 3 * extent) + roundings * from);
   out.flat =
-      std::visit(FlatOf{moved.world_from_object, leaves, solid.shape->where}, moved.geometry);
+      std::visit(FlatOf{moved.world_from_object, film, leaves, solid.shape->where}, moved.geometry);
   out.uv_space = append_uv_space(moved.geometry, moved.world_from_object, leaves);
   if (const auto* capsules = std::get_if<CapsulesShape>(&moved.geometry);
       capsules && !capsules->u.empty())
@@ -187,7 +233,7 @@ std::vector<Group> grouped(const std::vector<Operand>& operands) {
   for (std::size_t i = 0; i < operands.size(); ++i) {
     const auto fits = [&](const Group& group) {
       const Operand& first = operands[group.operands[0]];
-      return group.operands.size() < lanes_per_group &&
+      return group.operands.size() < lanes_per_group && !first.motion && !operands[i].motion &&
              first.flat.shape == operands[i].flat.shape && first.placed == operands[i].placed &&
              first.csg_from_object == operands[i].csg_from_object &&
              first.u.has_value() == operands[i].u.has_value();
@@ -227,7 +273,11 @@ void write_group(const Group& group, const std::vector<Operand>& operands, std::
     }
   }
   std::size_t transform = CAPLET_NONE;
-  if (one.placed) {
+  if (one.motion) {
+    transform = append_rows(leaves, 0);
+    one.motion->append(true, leaves);
+    append_rows(leaves, 0);  // what follows begins with a row
+  } else if (one.placed) {
     transform = append_rows(leaves, 24);
     write_matrix(&leaves[transform], glm::inverse(one.csg_from_object));
     write_matrix(&leaves[transform + 12], one.csg_from_object);
@@ -240,8 +290,13 @@ void write_group(const Group& group, const std::vector<Operand>& operands, std::
       leaves[chain + 2 * lane + 1] = operands[group.operands[lane]].u->y;
     }
   }
-  const std::size_t values[] = {one.flat.shape, block,     group.operands.size(),
-                                first,          transform, chain};
+  const std::size_t values[] = {one.flat.shape,
+                                block,
+                                group.operands.size(),
+                                first,
+                                transform,
+                                chain,
+                                one.motion ? one.motion->segments() : 0};
   for (std::size_t k = 0; k < std::size(values); ++k) leaves[row + k] = as_row(values[k]);
 }
 
@@ -266,18 +321,57 @@ bool csg_has_chain(const FlatPrimitive& csg, const std::vector<float>& leaves) {
   return false;
 }
 
+bool csg_moves(const FlatPrimitive& csg, const std::vector<float>& leaves) {
+  const auto number = [&](std::size_t at) {
+    return std::bit_cast<std::uint32_t>(leaves[csg_begin(csg.data) + at]);
+  };
+  for (std::size_t group = 0; group < number(4); ++group)
+    if (number(8 * (1 + group) + 6) > 0) return true;
+  return false;
+}
+
+namespace {
+
+/// Returns bounds of a csg while the shutter is open.
+Bounds bounds_while_open(const CsgShape& csg, const Place& place, const FilmSettings& film) {
+  Bounds out;
+  for (std::size_t i = 0; i < csg.operands.size(); ++i) {
+    if (csg.operation == CsgShape::Operation::set_difference && i > 0) break;
+    const Shape& operand = *csg.operands[i];
+    const Place own = place.of_operand(csg, i);
+    Bounds box;
+    if (const auto* nested = std::get_if<CsgShape>(&operand.geometry))
+      box = bounds_while_open(*nested, own, film);
+    else if (const auto path = own.path(dvec3(0), film, operand.where))
+      box = path->swept(bounds_of(operand.geometry, Matrix(1)));
+    else
+      box = bounds_of(operand.geometry, own.at_opening(film));
+    if (csg.operation == CsgShape::Operation::set_intersection && i > 0) {
+      out.min = glm::max(out.min, box.min);
+      out.max = glm::min(out.max, box.max);
+    } else {
+      out.extend(box);
+    }
+  }
+  return out;
+}
+
+}  // namespace
+
 // Operands hold their own transforms.
 bool bakes_under(const CsgShape&, const Matrix&) { return true; }
 glm::dmat3 turn_under(const CsgShape&, const Matrix&) { return glm::dmat3(1); }
 
 FlatPrimitive flat_primitive(const CsgShape& csg, const Matrix& m, std::vector<float>& leaves) {
-  Flattening flattening;
-  flattening.add(csg, m, false);
+  return flat_csg(csg, m, FilmSettings(), leaves);
+}
 
-  Shape whole;
-  whole.geometry = csg;
-  whole.world_from_object = m;
-  Bounds box = bounds_of(whole);
+FlatPrimitive flat_csg(const CsgShape& csg, const Matrix& m, const FilmSettings& film,
+                       std::vector<float>& leaves) {
+  Flattening flattening;
+  flattening.add(csg, {m}, false);
+
+  Bounds box = moves(csg) ? bounds_while_open(csg, {m}, film) : bounds_of(Geometry(csg), m);
   for (int k = 0; k < 3; ++k)  // no bounds (boxes of an intersection that do not meet): an empty
                                // box at any place will do
     if (!(box.min[k] <= box.max[k])) box.min[k] = box.max[k] = 0.5 * (box.min[k] + box.max[k]);
@@ -290,7 +384,7 @@ FlatPrimitive flat_primitive(const CsgShape& csg, const Matrix& m, std::vector<f
   std::vector<Operand> operands;
   double error = 0;
   for (const Solid& solid : flattening.solids) {
-    operands.push_back(make_operand(solid, center, radius, leaves));
+    operands.push_back(make_operand(solid, center, radius, film, leaves));
     error = std::max(error, operands.back().error);
   }
   const std::vector<Group> groups = grouped(operands);

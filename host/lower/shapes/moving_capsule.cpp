@@ -68,8 +68,18 @@ void moving_capsule_pieces(const FlatPrimitive& p, const std::vector<float>& lea
   pieces.balls(ends, ends + 4, ends[3], ends[7], {0, 0, 0});
 }
 
-FlatPrimitive moving_capsule_grown(FlatPrimitive p, double b, std::vector<float>&) {
-  CHECK_LE_(b, 0.0);  // no operand of a csg moves (validate)
+FlatPrimitive moving_capsule_grown(FlatPrimitive p, double b, std::vector<float>& leaves) {
+  // Radii are linear between keys, so those of all times grow by b.
+  const std::size_t begin = moving_capsule_begin(p.data),
+                    floats = 8 * (moving_capsule_segments(p.data) + std::size_t{1});
+  p.data[moving_capsule_at_begin] = std::bit_cast<float>(narrow<std::uint32_t>(leaves.size()));
+  for (std::size_t i = 0; i < floats; ++i) leaves.push_back(leaves[begin + i]);
+  for (std::size_t i = leaves.size() - floats + 3; i < leaves.size(); i += 4)
+    move_by(leaves[i], 1, b);
+  for (std::size_t k = 0; k < 3; ++k) {
+    move_by(p.kept_box()[k], -1, b);
+    move_by(p.kept_box()[3 + k], 1, b);
+  }
   return p;
 }
 

@@ -2,9 +2,11 @@
 // Copyright Caplet authors
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <vector>
 
+#include "scene/motion.h"
 #include "scene/shapes/family.h"
 
 namespace caplet {
@@ -20,6 +22,14 @@ struct CsgShape {
   } operation = Operation::set_union;
   std::vector<std::shared_ptr<const Shape>>
       operands;  // two or more; their world_from_object is object_from_operand
+  /// Says how each operand moves: object_from_operand, about its origin, the one of its
+  /// world_from_object first. No keys: it rests. Empty: all rest.
+  std::vector<TransformKeys> motions = {};
+
+  const TransformKeys& motion(std::size_t operand) const {
+    static const TransformKeys none;
+    return motions.empty() ? none : motions[operand];
+  }
 };
 inline constexpr std::size_t max_csg_operands = 32;  // solids in one csg shape, nested ones counted
 
@@ -29,8 +39,13 @@ std::size_t solids_of(const CsgShape& csg);
 inline std::size_t count_of(const CsgShape&) { return 1; }
 std::size_t surfaces_of(const CsgShape& csg);
 inline bool closed(const CsgShape&) { return true; }
+/// Returns whether an operand moves, or its points do.
+bool moves(const CsgShape& csg);
+/// Calls visit(time) for the times (seconds) of all keys of its operands' motions.
+void visit_key_times(const CsgShape& csg, const std::function<void(double)>& visit);
 /// Returns bounds tight to about 1/64 of the size, at moderate cost (csg_bounds.cpp); empty when
-/// the solid is found to be empty.
+/// the solid is found to be empty. Bounds of one whose operands move hold it at all times, and are
+/// those of the operands' boxes.
 Bounds bounds_under(const CsgShape& csg, const glm::dmat4& m);
 void check(const CsgShape& csg, ShapeCheck& report);
 /// This is never called: nested csg is resolved into its solids.

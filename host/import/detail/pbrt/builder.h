@@ -154,7 +154,7 @@ class SceneBuilder : public SceneTarget {
 
  private:
   std::optional<std::uint32_t> side_of(const Word& medium);
-  const Object* finished_object(const std::string& name, std::string& problem) const;
+  FinishedObject finished_object(const std::string& name, std::string& problem) const;
 
   Building& to_;
   Draft& draft_;

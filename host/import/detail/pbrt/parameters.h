@@ -54,9 +54,19 @@ class TextureTable {
   std::map<std::string, TextureValue> of_[2];
 };
 
-/// Finds a finished object by its name. Returns null, with the reason in `problem`, if there is
-/// none.
-using ObjectLookup = std::function<const Object*(const std::string& name, std::string& problem)>;
+/// FinishedObject is an object that a csg may name. Shapes of it that move are not in `object`.
+struct FinishedObject {
+  struct MovingShape {
+    const Shape* shape;
+    const TransformKeys* motion;
+  };
+  const Object* object = nullptr;
+  std::vector<MovingShape> moving = {};
+};
+
+/// Finds a finished object by its name. Returns one without an object, with the reason in
+/// `problem`, if there is none.
+using ObjectLookup = std::function<FinishedObject(const std::string& name, std::string& problem)>;
 
 using SharedParameters = std::vector<std::shared_ptr<Parameter>>;
 

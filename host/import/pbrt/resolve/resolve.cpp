@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
+#include <algorithm>
+
 #include "import/detail/pbrt/resolve.h"
 #include "scene/transform.h"
 
@@ -55,6 +57,21 @@ void resolve_instances(Draft& draft) {
   }
 }
 
+/// Removes the objects of moving shapes that no instance places: operands of csg shapes are copies.
+void drop_unplaced(Draft& draft) {
+  Scene& scene = draft.scene;
+  for (auto moving = draft.objects.moving.rbegin(); moving != draft.objects.moving.rend();
+       ++moving) {
+    const std::uint32_t unplaced = moving->object;
+    if (std::ranges::any_of(scene.instances,
+                            [&](const Instance& one) { return one.object == unplaced; }))
+      continue;
+    scene.objects.erase(scene.objects.begin() + static_cast<std::ptrdiff_t>(unplaced));
+    for (Instance& instance : scene.instances)
+      if (instance.object > unplaced) --instance.object;
+  }
+}
+
 }  // namespace
 
 void resolve(Draft& draft) {
@@ -62,6 +79,7 @@ void resolve(Draft& draft) {
   resolve_materials(draft);
   check_attributes(draft);
   resolve_instances(draft);
+  drop_unplaced(draft);
 }
 
 }  // namespace caplet::pbrt
