@@ -6,6 +6,7 @@ import numpy as np
 from . import _caplet, arrays
 from .errors import InputError
 from .image import Image
+from .named import Material
 from .rendering import _count, _devices, _scene
 from .sensors import Pinhole
 
@@ -110,8 +111,25 @@ class Batch:
         return out
 
 
-def _pictures(scene, moving, views, camera, mode, spp, seed, device):
-    native = _scene(scene)._native.copy()
+def _materials(scene, materials, count):
+    """For each world (number, type, parameters) of the materials that it has in the place of the scene's."""
+    out = [[] for _ in range(count)]
+    for which, each in ({} if materials is None else dict(materials)).items():
+        number, each = scene._material(which), list(each)
+        if not 0 <= number < len(scene.materials):
+            raise InputError(f"materials: numbers below {len(scene.materials)}, or names, are needed, not {which!r}")
+        if len(each) != count:
+            raise InputError(f"materials: {len(each)} of {which!r}, and {count} worlds")
+        for world, material in zip(out, each):
+            if not isinstance(material, Material):
+                raise InputError(f"materials: ones of caplet.materials are needed, not {type(material).__name__}")
+            world.append((number, material.type, scene._parameters(material.parameters)))
+    return out
+
+
+def _pictures(scene, moving, views, camera, mode, spp, seed, device, materials):
+    looks = _materials(_scene(scene), materials, len(views.worlds))
+    native = scene._native.copy()
     native.set_size(camera.width, camera.height)
     if mode == "direct":
         native.max_depth = 1
@@ -125,6 +143,8 @@ def _pictures(scene, moving, views, camera, mode, spp, seed, device):
     for w, places in enumerate(views.worlds):
         for shape, place in zip(moving, places):
             native.set_transform(shape, place)
+        for number, kind, parameters in looks[w]:
+            native.set_material(number, kind, parameters)
         for c, pose in enumerate(views.cameras[w]):
             if shown is None or not np.array_equal(shown, pose):
                 pose_4 = np.vstack([pose.reshape(3, 4), [0, 0, 0, 1]]) @ _FLIP
@@ -139,12 +159,13 @@ def _pictures(scene, moving, views, camera, mode, spp, seed, device):
     return out
 
 
-def render_batch(scene, worlds, camera, poses, moving=None, mode="rays", layers=None, spp=16, seed=None, device=None):
+def render_batch(scene, worlds, camera, poses, moving=None, mode="rays", layers=None, spp=16, seed=None, device=None, materials=None):
     """What cameras see of many worlds of one scene: a dict of arrays, as Batch.look returns them.
 
     scene, worlds, camera, poses, moving: as in Batch. mode: "rays", one a pixel, without shading (layers: "depth" and "shape", or
     as in Batch.look); "direct", pictures lit by what comes from lights without a detour, and "paths", by all of it: layer "rgb", linear
-    sRGB (n, height, width, 3), with `spp` samples a pixel and the scene's seed or another.
+    sRGB (n, height, width, 3), with `spp` samples a pixel and the scene's seed or another. materials: of pictures, by name or number
+    in the scene, n of caplet.materials, one a world, in its place.
 
     >>> from caplet import Scene
     >>> scene = Scene()
@@ -157,9 +178,11 @@ def render_batch(scene, worlds, camera, poses, moving=None, mode="rays", layers=
     if mode not in _MODES:
         raise InputError(f"mode: one of {', '.join(_MODES)} is needed, not {mode!r}")
     if mode == "rays":
+        if materials is not None:
+            raise InputError("materials: rays see none, only their numbers; modes \"direct\" and \"paths\" show them")
         return Batch(scene, moving, device).look(worlds, camera, poses, ("depth", "shape") if layers is None else layers)
     if layers is not None and list(layers) != ["rgb"]:
         raise InputError('layers: pictures have "rgb" alone')
     numbers = _moving(_scene(scene), moving)
     views = _Views(worlds, len(numbers), camera, poses)
-    return {"rgb": _pictures(scene, numbers, views, camera, mode, _count(spp, "spp", 1 << 24), seed, device)}
+    return {"rgb": _pictures(scene, numbers, views, camera, mode, _count(spp, "spp", 1 << 24), seed, device, materials)}

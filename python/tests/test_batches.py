@@ -174,6 +174,26 @@ def test_pictures_are_those_of_each_alone(parts):
     assert (image.object_id == ids)[ids != NONE].mean() > 0.9
 
 
+def test_worlds_have_materials_of_their_own():
+    scene = caplet.Scene()
+    scene.add_light(caplet.lights.infinite(L=(0.5, 0.6, 0.7)))
+    scene.add_spheres((0, 0, 0), 1, name="ball", material=caplet.materials.diffuse(name="paint"))
+    scene.add_spheres((0, 2.2, 0), 1, material=caplet.materials.diffuse(name="rest", reflectance=0.3))
+    checks = caplet.textures.checkerboard(tex1=0.1, tex2=0.9)
+    looks = [caplet.materials.diffuse(reflectance=(0.9, 0.1, 0.1)), caplet.materials.conductor(roughness=0.2), caplet.materials.diffuse(reflectance=checks)]
+    worlds = np.tile(np.eye(4), (3, 1, 1, 1))
+    seen = caplet.render_batch(scene, worlds, CAMERA, placed(0, 0, -5), "ball", "paths", spp=4, seed=3, materials={"paint": looks})["rgb"]
+    assert seen[0][15, 20, 0] > 3 * seen[0][15, 20, 1] and not np.array_equal(seen[1], seen[2])
+    for w, look in enumerate(looks):
+        scene.set_material("paint", look)
+        alone = caplet.render_batch(scene, worlds[:1], CAMERA, placed(0, 0, -5), "ball", "paths", spp=4, seed=3)["rgb"]
+        assert np.array_equal(alone[0], seen[w])
+    # The scene keeps its own.
+    before = caplet.render_batch(scene, worlds[:1], CAMERA, placed(0, 0, -5), "ball", "paths", spp=4, seed=3)["rgb"]
+    caplet.render_batch(scene, worlds, CAMERA, placed(0, 0, -5), "ball", "paths", spp=4, materials={0: looks, "rest": looks[::-1]})
+    assert np.array_equal(before, caplet.render_batch(scene, worlds[:1], CAMERA, placed(0, 0, -5), "ball", "paths", spp=4, seed=3)["rgb"])
+
+
 @pytest.mark.parametrize("change, said", [
     ({"moving": ["rod", "rod"]}, "shape 1 is there twice"), ({"moving": [6]}, "there is no shape 6 in the world, which has 6"), ({"moving": [-1]}, "numbers below 7"),
     ({"moving": ["wheel"]}, "wheel"), ({"worlds": np.zeros((2, 2, 4, 4))}, "the last row of an affine transform is 0 0 0 1"),
@@ -181,7 +201,10 @@ def test_pictures_are_those_of_each_alone(parts):
     ({"worlds": np.tile(np.eye(4), (2, 3, 1, 1))}, "worlds: 3 transforms each, and 2 shapes move"), ({"worlds": np.eye(4)}, "worlds: shape (n, m, 4, 4) is needed"),
     ({"poses": np.tile(np.eye(4), (3, 1, 1))}, "poses: 3 of them, and 2 worlds"), ({"poses": np.zeros(4)}, "poses: shape (4, 4) or (n, 4, 4) or (n, c, 4, 4) is needed"),
     ({"poses": placed(0, np.nan, 0)}, "poses: finite numbers are needed"), ({"camera": 3}, "camera: a caplet.sensors.Pinhole is needed, not int"), ({"layers": ["colour"]}, "layers: depth, shape"), ({"mode": "rasters"}, "mode: one of rays"),
-    ({"mode": "paths", "layers": ["depth"]}, 'pictures have "rgb" alone')])
+    ({"mode": "paths", "layers": ["depth"]}, 'pictures have "rgb" alone'), ({"materials": {}}, "rays see none, only their numbers"),
+    ({"mode": "paths", "materials": {"gold": []}}, "there is no material 'gold'"), ({"mode": "paths", "materials": {99: []}}, "materials: numbers below"),
+    ({"mode": "direct", "materials": {0: [caplet.materials.diffuse()]}}, "materials: 1 of 0, and 2 worlds"),
+    ({"mode": "paths", "materials": {0: [caplet.materials.diffuse(), "red"]}}, "ones of caplet.materials are needed, not str")])
 def test_what_is_wrong_is_told(parts, change, said):
     given = {"worlds": np.tile(np.eye(4), (2, 2, 1, 1)), "camera": CAMERA, "poses": np.eye(4), "moving": ["rod", "egg"], **change}
     with pytest.raises(caplet.InputError) as problem:
