@@ -6,6 +6,7 @@
 
 #include <bit>
 #include <cmath>
+#include <glm/geometric.hpp>
 #include <random>
 
 #include "lower/lower.h"
@@ -45,6 +46,17 @@ std::vector<std::uint32_t> seen(const PickRecord& pick) {
 }
 
 }  // namespace
+
+OffReference off_reference(const PickRecord& pick, const reference::Ray& ray, double t) {
+  const double length = glm::length(ray.direction);
+  const dvec3 normal(pick.normal[0], pick.normal[1], pick.normal[2]);
+  const double cosine = std::abs(glm::dot(normal, ray.direction)) / length;
+  const double scale = glm::length(ray.origin) + pick.t * length;
+  // The bound of the point, as much for t, the way to its place (24 roundings), and what the
+  // rounded time moves it by: 2^-24 of 1.25 seconds at speeds up to 12.
+  const double bound = 2 * double{pick.error} + 24 * 0x1p-24 * scale + 2 * 15 * 0x1p-24;
+  return {std::abs(t - pick.t) * length * cosine, bound, cosine};
+}
 
 void expect_hits_of_frozen(const Scene& scene, int moving_kind,
                            std::initializer_list<int> still_kinds) {

@@ -6,7 +6,9 @@
 
 #include <initializer_list>
 
+#include "reference/solver.h"
 #include "scene/scene.h"
+#include "shared/records.h"
 
 namespace caplet::test {
 
@@ -14,5 +16,14 @@ namespace caplet::test {
 /// shutter is open from 0.5 to 2 seconds. `moving`: a kind of shape that the scene has; `still`:
 /// those that it has at each time.
 void expect_hits_of_frozen(const Scene& scene, int moving, std::initializer_list<int> still);
+
+/// OffReference is how far a hit is from the reference's, along the surface's normal, and how far
+/// it may be.
+struct OffReference {
+  double off, bound;
+  double cosine;  // between the ray and the normal
+};
+/// `t`: the reference's, of the scene that stands still.
+OffReference off_reference(const PickRecord& pick, const reference::Ray& ray, double t);
 
 }  // namespace caplet::test

@@ -11,6 +11,7 @@
 #include <glm/geometric.hpp>
 #include <random>
 
+#include "frozen_hits.h"
 #include "lower/identity.h"
 #include "lower/lower.h"
 #include "lower/motion.h"
@@ -192,18 +193,11 @@ TEST(MovingHits, AreTheReferencesOfTheFrozenScene) {
         const bool placed = hit->instance != reference::no_instance;
         const Shape* shape =
             placed ? &frozen.objects[hit->object].shapes[hit->shape] : &frozen.shapes[hit->shape];
-        const double length = glm::length(exact.direction);
-        const dvec3 normal(picks[i].normal[0], picks[i].normal[1], picks[i].normal[2]);
-        const double cosine = std::abs(glm::dot(normal, exact.direction)) / length;
-        const double scale = glm::length(exact.origin) + picks[i].t * length;
-        // The bound of the point, as much for t, the way to its place (24 roundings), and what the
-        // rounded time moves it by: 2^-24 of 1.25 seconds at speeds up to 12.
-        const double bound = 2 * double{picks[i].error} + 24 * 0x1p-24 * scale + 2 * 15 * 0x1p-24;
-        const double off = std::abs(hit->t - picks[i].t) * length * cosine;
-        if (identity.shape != shape || off > bound) {
+        const OffReference is = off_reference(picks[i], exact, hit->t);
+        if (identity.shape != shape || is.off > is.bound) {
           ++apart;  // a nearer surface may be touched by one of them alone
-          EXPECT_LT(cosine, 0.1) << "ray " << i << " at " << time << " is off by " << off << " of "
-                                 << bound;
+          EXPECT_LT(is.cosine, 0.1)
+              << "ray " << i << " at " << time << " is off by " << is.off << " of " << is.bound;
         } else {
           ++near;
         }

@@ -13,6 +13,7 @@
 #include <glm/geometric.hpp>
 #include <random>
 
+#include "frozen_hits.h"
 #include "lower/lower.h"
 #include "lower/motion.h"
 #include "reference/scene_reference.h"
@@ -244,17 +245,11 @@ TEST(MovingOperands, AreTheReferencesOfTheFrozenScene) {
         }
         if (!hit) continue;
         ASSERT_LT(picks[i].error, 1e-4);
-        const double length = glm::length(exact.direction);
-        const dvec3 normal(picks[i].normal[0], picks[i].normal[1], picks[i].normal[2]);
-        const double cosine = std::abs(glm::dot(normal, exact.direction)) / length;
-        const double scale = glm::length(exact.origin) + picks[i].t * length;
-        // As of instances that move (hits_test.cpp).
-        const double bound = 2 * double{picks[i].error} + 24 * 0x1p-24 * scale + 2 * 15 * 0x1p-24;
-        const double off = std::abs(hit->t - picks[i].t) * length * cosine;
-        if (off > bound) {
+        const OffReference is = off_reference(picks[i], exact, hit->t);
+        if (is.off > is.bound) {
           ++apart;  // beside an edge another operand's surface may be met
-          EXPECT_LT(cosine, 0.1) << "ray " << i << " at " << time << " is off by " << off << " of "
-                                 << bound;
+          EXPECT_LT(is.cosine, 0.1)
+              << "ray " << i << " at " << time << " is off by " << is.off << " of " << is.bound;
         } else {
           ++near;
         }
