@@ -241,6 +241,7 @@ Statement shape_statement(const Shape& shape, const ShapeReferences& references,
   if (!name.empty()) out.text("name", name);
   if (!materials.empty()) {
     std::vector<std::string> all;
+    all.reserve(materials.size());
     for (const std::uint32_t one : materials) all.push_back(references.names.materials[one]);
     out.texts("materials", all);
   }

@@ -84,6 +84,7 @@ std::optional<std::uint32_t> number_of(const std::string& text) {
 template <class Known>
 [[noreturn]] void unknown_name(const char* what, const std::string& name, const Known& known) {
   std::vector<std::string> names;
+  names.reserve(known.size());
   for (const auto& one : known) names.push_back(one.name);
   throw InputError(names.empty() ? fmt::format("there is no {} '{}'", what, name)
                                  : fmt::format("there is no {} '{}'; the nearest is '{}'", what,
