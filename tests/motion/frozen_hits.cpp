@@ -4,12 +4,15 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <random>
 
+#include "lower/identity.h"
 #include "lower/lower.h"
+#include "reference/scene_reference.h"
 #include "render/query.h"
 #include "render_scene.h"
 #include "scene/frozen.h"
@@ -47,15 +50,57 @@ std::vector<std::uint32_t> seen(const PickRecord& pick) {
 
 }  // namespace
 
-OffReference off_reference(const PickRecord& pick, const reference::Ray& ray, double t) {
-  const double length = glm::length(ray.direction);
-  const dvec3 normal(pick.normal[0], pick.normal[1], pick.normal[2]);
-  const double cosine = std::abs(glm::dot(normal, ray.direction)) / length;
-  const double scale = glm::length(ray.origin) + pick.t * length;
-  // The bound of the point, as much for t, the way to its place (24 roundings), and what the
-  // rounded time moves it by: 2^-24 of 1.25 seconds at speeds up to 12.
-  const double bound = 2 * double{pick.error} + 24 * 0x1p-24 * scale + 2 * 15 * 0x1p-24;
-  return {std::abs(t - pick.t) * length * cosine, bound, cosine};
+BesideReference beside_reference(const Scene& scene, const std::vector<float>& times,
+                                 const std::function<std::vector<RayRecord>(unsigned seed)>& rays) {
+  const FlatScene flat = lower(scene);
+  BesideReference out;
+  for (const Encoding encoding : {Encoding::wide, Encoding::single}) {
+    Query query(flat, test_device(encoding));
+    for (std::size_t k = 0; k < times.size(); ++k) {
+      const FilmSettings& film = scene.view.film;
+      const Scene frozen =
+          frozen_at(scene, film.shutter_open + double{times[k]} * film.exposure_time);
+      EXPECT_FALSE(moves(frozen));
+      const reference::SceneReference reference(frozen);
+      const std::vector<RayRecord> some = rays(100 + static_cast<unsigned>(k));
+      const auto picks = query.closest(some, std::vector<float>(some.size(), times[k]));
+      for (std::size_t i = 0; i < some.size(); ++i) {
+        const RayRecord& ray = some[i];
+        const PickRecord& pick = picks[i];
+        const reference::Ray exact{{ray.ox, ray.oy, ray.oz}, {ray.dx, ray.dy, ray.dz}};
+        const auto hit = reference.closest(exact);
+        out.hits += hit ? 1 : 0;
+        if (hit.has_value() != std::isfinite(pick.t)) {
+          ++out.apart;
+          continue;
+        }
+        if (!hit) continue;
+        const bool placed = hit->instance != reference::no_instance;
+        const Shape* shape =
+            placed ? &frozen.objects[hit->object].shapes[hit->shape] : &frozen.shapes[hit->shape];
+        const double length = glm::length(exact.direction);
+        const dvec3 normal(pick.normal[0], pick.normal[1], pick.normal[2]);
+        const double cosine = std::abs(glm::dot(normal, exact.direction)) / length;
+        const double scale = glm::length(exact.origin) + pick.t * length;
+        // The bound of the point, as much for t, the way to its place (24 roundings), and what the
+        // rounded time moves it by: 2^-24 of 1.25 seconds at speeds up to 12.
+        const double bound = 2 * double{pick.error} + 24 * 0x1p-24 * scale + 2 * 15 * 0x1p-24;
+        const dvec3 at = exact.origin + double{pick.t} * exact.direction;
+        const double off =
+            std::max(std::abs(hit->t - pick.t) * length * cosine,
+                     glm::length(dvec3(pick.point[0], pick.point[1], pick.point[2]) - at));
+        EXPECT_LT(pick.error, 1e-4) << "ray " << i << " at " << times[k];
+        if (identity_of(frozen, pick).shape == shape && off <= bound) {
+          ++out.near;
+        } else {
+          ++out.apart;  // a nearer surface may be touched by one of them alone
+          EXPECT_LT(cosine, 0.1) << "ray " << i << " at " << times[k] << " is off by " << off
+                                 << " of " << bound;
+        }
+      }
+    }
+  }
+  return out;
 }
 
 void expect_hits_of_frozen(const Scene& scene, int moving_kind,

@@ -4,9 +4,10 @@
 // Hits of shapes whose points move, compared with those of the scene that stands still at a time.
 #pragma once
 
+#include <functional>
 #include <initializer_list>
+#include <vector>
 
-#include "reference/solver.h"
 #include "scene/scene.h"
 #include "shared/records.h"
 
@@ -17,13 +18,14 @@ namespace caplet::test {
 /// those that it has at each time.
 void expect_hits_of_frozen(const Scene& scene, int moving, std::initializer_list<int> still);
 
-/// OffReference is how far a hit is from the reference's, along the surface's normal, and how far
-/// it may be.
-struct OffReference {
-  double off, bound;
-  double cosine;  // between the ray and the normal
+/// BesideReference counts the rays that meet something in the reference, those whose hits are
+/// within their bounds of the reference's, and those that meet something else.
+struct BesideReference {
+  int hits = 0, near = 0, apart = 0;
 };
-/// `t`: the reference's, of the scene that stands still.
-OffReference off_reference(const PickRecord& pick, const reference::Ray& ray, double t);
+/// Compares nearest hits, in both encodings, with the reference's in the scene frozen at `times` (0
+/// to 1 of the shutter). Expects hits that are apart to graze. rays(seed): those of a time.
+BesideReference beside_reference(const Scene& scene, const std::vector<float>& times,
+                                 const std::function<std::vector<RayRecord>(unsigned seed)>& rays);
 
 }  // namespace caplet::test

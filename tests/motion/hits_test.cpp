@@ -12,10 +12,8 @@
 #include <random>
 
 #include "frozen_hits.h"
-#include "lower/identity.h"
 #include "lower/lower.h"
 #include "lower/motion.h"
-#include "reference/scene_reference.h"
 #include "render/query.h"
 #include "render_scene.h"
 #include "scene/frozen.h"
@@ -167,46 +165,11 @@ TEST(MovingHits, DependOnTheirRaysTimesAlone) {
 
 // The reference inverts, in double, the matrices that AnimatedTransform gives.
 TEST(MovingHits, AreTheReferencesOfTheFrozenScene) {
-  const Scene scene = moving_scene();
-  const FlatScene flat = lower(scene);
-  const FilmSettings& film = scene.view.film;
-  int near = 0, hits = 0, apart = 0;
-  for (const Encoding encoding : {Encoding::wide, Encoding::single}) {
-    Query query(flat, test_device(encoding));
-    for (unsigned k = 0; k < 16; ++k) {
-      const float time = random_times(16, 4)[k];
-      const Scene frozen = frozen_at(scene, film.shutter_open + double{time} * film.exposure_time);
-      const reference::SceneReference reference(frozen);
-      const std::vector<RayRecord> rays = rays_through(250, 100 + k);
-      const auto picks = query.closest(rays, std::vector<float>(rays.size(), time));
-      for (std::size_t i = 0; i < rays.size(); ++i) {
-        const RayRecord& ray = rays[i];
-        const reference::Ray exact{{ray.ox, ray.oy, ray.oz}, {ray.dx, ray.dy, ray.dz}};
-        const auto hit = reference.closest(exact);
-        hits += hit ? 1 : 0;
-        if (hit.has_value() != std::isfinite(picks[i].t)) {
-          ++apart;
-          continue;
-        }
-        if (!hit) continue;
-        const Identity identity = identity_of(frozen, picks[i]);
-        const bool placed = hit->instance != reference::no_instance;
-        const Shape* shape =
-            placed ? &frozen.objects[hit->object].shapes[hit->shape] : &frozen.shapes[hit->shape];
-        const OffReference is = off_reference(picks[i], exact, hit->t);
-        if (identity.shape != shape || is.off > is.bound) {
-          ++apart;  // a nearer surface may be touched by one of them alone
-          EXPECT_LT(is.cosine, 0.1)
-              << "ray " << i << " at " << time << " is off by " << is.off << " of " << is.bound;
-        } else {
-          ++near;
-        }
-      }
-    }
-  }
-  EXPECT_GT(hits, 4000);
-  EXPECT_GT(near, hits - 40);
-  EXPECT_LT(apart, 40);
+  const BesideReference found = beside_reference(
+      moving_scene(), random_times(16, 4), [](unsigned seed) { return rays_through(250, seed); });
+  EXPECT_GT(found.hits, 4000);
+  EXPECT_GT(found.near, found.hits - 40);
+  EXPECT_LT(found.apart, 40);
 }
 
 }  // namespace

@@ -16,7 +16,6 @@
 #include "frozen_hits.h"
 #include "lower/lower.h"
 #include "lower/motion.h"
-#include "reference/scene_reference.h"
 #include "render/query.h"
 #include "render_scene.h"
 #include "scene/frozen.h"
@@ -221,44 +220,13 @@ TEST(MovingOperands, AreThoseOfTheShapeThatIsStopped) {
 }
 
 TEST(MovingOperands, AreTheReferencesOfTheFrozenScene) {
-  const Scene scene = machines();
-  const FlatScene flat = lower(scene);
-  const FilmSettings& film = scene.view.film;
-  int near = 0, hits = 0, apart = 0;
-  for (const Encoding encoding : {Encoding::wide, Encoding::single}) {
-    Query query(flat, test_device(encoding));
-    for (unsigned k = 0; k < 16; ++k) {
-      const float time = static_cast<float>(k) / 15;
-      const Scene frozen = frozen_at(scene, film.shutter_open + double{time} * film.exposure_time);
-      ASSERT_FALSE(moves(frozen));
-      const reference::SceneReference reference(frozen);
-      const std::vector<RayRecord> rays = rays_at_machines(300, 100 + k);
-      const auto picks = query.closest(rays, std::vector<float>(rays.size(), time));
-      for (std::size_t i = 0; i < rays.size(); ++i) {
-        const RayRecord& ray = rays[i];
-        const reference::Ray exact{{ray.ox, ray.oy, ray.oz}, {ray.dx, ray.dy, ray.dz}};
-        const auto hit = reference.closest(exact);
-        hits += hit ? 1 : 0;
-        if (hit.has_value() != std::isfinite(picks[i].t)) {
-          ++apart;
-          continue;
-        }
-        if (!hit) continue;
-        ASSERT_LT(picks[i].error, 1e-4);
-        const OffReference is = off_reference(picks[i], exact, hit->t);
-        if (is.off > is.bound) {
-          ++apart;  // beside an edge another operand's surface may be met
-          EXPECT_LT(is.cosine, 0.1)
-              << "ray " << i << " at " << time << " is off by " << is.off << " of " << is.bound;
-        } else {
-          ++near;
-        }
-      }
-    }
-  }
-  EXPECT_GT(hits, 3000);
-  EXPECT_GT(near, hits - 30);
-  EXPECT_LT(apart, 30);
+  std::vector<float> times;
+  for (int k = 0; k < 16; ++k) times.push_back(static_cast<float>(k) / 15);
+  const BesideReference found = beside_reference(
+      machines(), times, [](unsigned seed) { return rays_at_machines(300, seed); });
+  EXPECT_GT(found.hits, 3000);
+  EXPECT_GT(found.near, found.hits - 30);
+  EXPECT_LT(found.apart, 30);
 }
 
 TEST(MovingOperands, LieWithinTheBoundsOfTheScene) {
