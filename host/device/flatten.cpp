@@ -75,7 +75,7 @@ std::string_view entry_of(std::string_view line) {
 }
 
 bool begins_row(std::string_view entry) {
-  return !entry.empty() && entry != "FIELD" && !entry.ends_with("_END");
+  return !entry.empty() && entry != "FIELD" && entry != "KEPT" && !entry.ends_with("_END");
 }
 
 /// Returns the name of an include guard around the whole file; empty where there is none.

@@ -39,7 +39,7 @@ static inline Bsdf bsdf_make(const Materials* materials, const Spectra* spectra,
   b.flags = record->flags;
   b.random = 0u;
   b.reflectance = b.transmittance = b.eta = b.k = (float4)(0.0f);
-  b.alpha_u = b.alpha_v = b.tilt = 0.0f;
+  b.alpha_u = b.alpha_v = 0.0f;
   switch (b.kind) {
 #define MATERIAL(name, traits) \
   case material_##name:        \

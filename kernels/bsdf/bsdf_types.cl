@@ -53,23 +53,19 @@ typedef struct {
   int max_depth, samples;
 } BsdfCoat;
 
-// BsdfPrincipled holds what principled.cl keeps besides the fields below. `transmission` is a share
-// of the whole, so the rest lies over a diffuse base.
-typedef struct {
-  float4 normal_tinted;  // what a tinted interface reflects at normal incidence
-  float metallic, transmission, roughness, tint, coat;
-} BsdfPrincipled;
-
 // Bsdf is a BSDF at four wavelengths, which <name>_make reads from a material's data. One or
 // several materials use each field; eta is relative to the outside (whose index is 1). random: the
 // key of the random numbers for estimates (trait_stochastic), which the caller sets after _make.
+// What one material alone keeps is listed in materials.def.
 typedef struct {
   uint kind, flags, random;
   float4 reflectance, transmittance, eta, k;
   float alpha_u, alpha_v;
-  float tilt;  // of hair's scales, radians
   BsdfCoat coat;
-  BsdfPrincipled principled;
+#define MATERIAL(name, traits)
+#define KEPT(material, name, type) type material##_##name;
+#include "rows/materials.def"
+#undef MATERIAL
 } Bsdf;
 
 // weight = f |cos wi| / pdf at each wavelength. pdf: solid angle; the probability itself where

@@ -22,7 +22,7 @@ static inline void hair_make(const MaterialPoint* m, Bsdf* b) {
   b->eta = (float4)(clamp(material_number(m, hair_at_eta), 1.0f, 10.0f));
   b->alpha_u = clamp(material_number(m, hair_at_beta_m), HAIR_ROUGHNESS_MIN, 1.0f);
   b->alpha_v = clamp(material_number(m, hair_at_beta_n), HAIR_ROUGHNESS_MIN, 1.0f);
-  b->tilt = material_signed(m, hair_at_alpha) * (CAPLET_PI / 180.0f);
+  b->hair_tilt = material_signed(m, hair_at_alpha) * (CAPLET_PI / 180.0f);
   if (hair_is_color(m->data) != 0.0f) {
     // The absorption gives this colour after many fibres: it is the fit of Chiang et al. 2016,
     // equation 9.
@@ -82,7 +82,7 @@ static inline HairLobes hair_lobes(const Bsdf* b, float3 wo) {
   lobes.share[3] = lobes.share[2] * through * fresnel / fmax(1.0f - through * fresnel, 1e-6f);
   const float sum = mean4(lobes.share[0] + lobes.share[1] + lobes.share[2] + lobes.share[3]);
 
-  const float turns[HAIR_LOBES] = {2.0f * b->tilt, -b->tilt, -4.0f * b->tilt, 0.0f};
+  const float turns[HAIR_LOBES] = {2.0f * b->hair_tilt, -b->hair_tilt, -4.0f * b->hair_tilt, 0.0f};
   for (int p = 0; p < HAIR_LOBES; ++p) {
     const float s = sin(turns[p]), c = cos(turns[p]);
     lobes.sin_o[p] = sin_o * c - cos_o * s;

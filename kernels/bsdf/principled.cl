@@ -29,38 +29,39 @@ static inline float principled_schlick(float cosine) {
 }
 
 static inline void principled_make(const MaterialPoint* m, Bsdf* b) {
-  BsdfPrincipled* p = &b->principled;
   const float4 base = material_albedo(m, principled_at_base_color);
   b->reflectance = base;
-  p->metallic = fmin(material_number(m, principled_at_metallic), 1.0f);
-  p->transmission = (1.0f - p->metallic) * fmin(material_number(m, principled_at_spec_trans), 1.0f);
-  b->transmittance = (float4)(p->transmission);
-  p->roughness = fmin(material_number(m, principled_at_roughness), 1.0f);
+  b->principled_metallic = fmin(material_number(m, principled_at_metallic), 1.0f);
+  b->principled_transmission =
+      (1.0f - b->principled_metallic) * fmin(material_number(m, principled_at_spec_trans), 1.0f);
+  b->transmittance = (float4)(b->principled_transmission);
+  b->principled_roughness = fmin(material_number(m, principled_at_roughness), 1.0f);
   // Burley 2012 squares the roughness and stretches it by the aspect.
   const float aspect =
       sqrt(1.0f - 0.9f * fmin(material_number(m, principled_at_anisotropic), 1.0f));
-  b->alpha_u = fmax(sqr(p->roughness) / aspect, CAPLET_ALPHA_SMOOTH);
-  b->alpha_v = fmax(sqr(p->roughness) * aspect, CAPLET_ALPHA_SMOOTH);
+  b->alpha_u = fmax(sqr(b->principled_roughness) / aspect, CAPLET_ALPHA_SMOOTH);
+  b->alpha_v = fmax(sqr(b->principled_roughness) * aspect, CAPLET_ALPHA_SMOOTH);
   // An interface of index 1 does not bend light and has no half vector.
   const float eta = clamp(material_number(m, principled_at_eta), 1.001f, 100.0f);
   b->eta = (float4)(eta);
 
   const float sheen = fmin(material_number(m, principled_at_sheen), 1.0f);
   const float sheen_tint = fmin(material_number(m, principled_at_sheen_tint), 1.0f);
-  p->tint = fmin(material_number(m, principled_at_spec_tint), 1.0f);
+  b->principled_tint = fmin(material_number(m, principled_at_spec_tint), 1.0f);
   float4 hue = (float4)(1.0f);
-  if (p->tint > 0.0f || (sheen > 0.0f && sheen_tint > 0.0f)) {
+  if (b->principled_tint > 0.0f || (sheen > 0.0f && sheen_tint > 0.0f)) {
     const float luminance = principled_luminance(m, principled_at_base_color);
     if (luminance > 0.0f) hue = base / luminance;
   }
-  p->normal_tinted = fmin(hue * sqr((eta - 1.0f) / (eta + 1.0f)), 1.0f);
+  b->principled_normal_tinted = fmin(hue * sqr((eta - 1.0f) / (eta + 1.0f)), 1.0f);
   b->k = sheen * mix((float4)(1.0f), hue, sheen_tint);
 
-  p->coat = fmin(material_number(m, principled_at_coat), 1.0f);
+  b->principled_coat = fmin(material_number(m, principled_at_coat), 1.0f);
   b->coat.alpha_u =
       fmax(sqr(fmin(material_number(m, principled_at_coat_roughness), 1.0f)), CAPLET_ALPHA_SMOOTH);
   b->coat.eta = clamp(material_number(m, principled_at_coat_eta), 1.0f, 100.0f);
-  b->coat.albedo = mix((float4)(1.0f), material_albedo(m, principled_at_coat_color), p->coat);
+  b->coat.albedo =
+      mix((float4)(1.0f), material_albedo(m, principled_at_coat_color), b->principled_coat);
 }
 
 static inline int principled_is_specular(const Bsdf* b) {
@@ -105,14 +106,15 @@ static inline float principled_sheen_albedo(float c) {
 // incidence.)
 static inline float4 principled_interface(const Bsdf* b, float cosine) {
   float cos_t;
-  const BsdfPrincipled* p = &b->principled;
-  const float4 tinted = p->normal_tinted + (1.0f - p->normal_tinted) * principled_schlick(cosine);
-  return (1.0f - p->tint) * fresnel_dielectric(cosine, b->eta.x, &cos_t) + p->tint * tinted;
+  const float4 tinted = b->principled_normal_tinted +
+                        (1.0f - b->principled_normal_tinted) * principled_schlick(cosine);
+  return (1.0f - b->principled_tint) * fresnel_dielectric(cosine, b->eta.x, &cos_t) +
+         b->principled_tint * tinted;
 }
 
 // Returns the albedo of the diffuse lobe and the sheen.
 static inline float4 principled_soft_albedo(const Bsdf* b, float cosine) {
-  return b->reflectance * principled_diffuse_albedo(cosine, b->principled.roughness) +
+  return b->reflectance * principled_diffuse_albedo(cosine, b->principled_roughness) +
          b->k * principled_sheen_albedo(cosine);
 }
 
@@ -127,7 +129,7 @@ static inline float4 principled_soft_room(const Bsdf* b, float cosine) {
 // Returns the transmittance of the coat at a cosine.
 static inline float principled_through_coat(const Bsdf* b, float cosine) {
   return 1.0f -
-         b->principled.coat * principled_interface_albedo(cosine, b->coat.eta, b->coat.alpha_u);
+         b->principled_coat * principled_interface_albedo(cosine, b->coat.eta, b->coat.alpha_u);
 }
 
 // --- Values ---
@@ -140,21 +142,20 @@ typedef struct {
 
 // Returns the share of light that a facet reflects, of metal and over the diffuse base.
 static inline float4 principled_facet(const Bsdf* b, float cosine) {
-  const BsdfPrincipled* p = &b->principled;
   const float4 metal = b->reflectance + (1.0f - b->reflectance) * principled_schlick(cosine);
-  return p->metallic * metal +
-         (1.0f - p->metallic - p->transmission) * principled_interface(b, cosine);
+  return b->principled_metallic * metal +
+         (1.0f - b->principled_metallic - b->principled_transmission) *
+             principled_interface(b, cosine);
 }
 
 static inline PrincipledShares principled_shares(const Bsdf* b, int inside, float3 wo) {
-  const BsdfPrincipled* p = &b->principled;
-  const float soft = 1.0f - p->metallic - p->transmission,
+  const float soft = 1.0f - b->principled_metallic - b->principled_transmission,
               through = principled_through_coat(b, wo.z);
   float cos_t;
   const float fresnel = fresnel_dielectric(wo.z, inside ? 1.0f / b->eta.x : b->eta.x, &cos_t);
   PrincipledShares s;
-  s.coat = (1.0f - through) * (inside ? 1.0f - p->transmission : 1.0f);
-  s.glass = p->transmission * (fresnel + (1.0f - fresnel) * sqrt(mean4(b->reflectance)));
+  s.coat = (1.0f - through) * (inside ? 1.0f - b->principled_transmission : 1.0f);
+  s.glass = b->principled_transmission * (fresnel + (1.0f - fresnel) * sqrt(mean4(b->reflectance)));
   s.interface = through * mean4(principled_facet(b, wo.z));
   s.soft = through * soft * mean4(principled_soft_room(b, wo.z) * principled_soft_albedo(b, wo.z));
   const float sum = s.coat + s.glass + s.interface + s.soft;
@@ -170,7 +171,6 @@ static inline PrincipledShares principled_shares(const Bsdf* b, int inside, floa
 // as from outside.
 static inline float4 principled_value(const Bsdf* b, int inside, const PrincipledShares* shares,
                                       float3 wo, float3 wi, float* pdf) {
-  const BsdfPrincipled* p = &b->principled;
   const int reflected = wi.z > 0.0f;
   const float eta = inside ? 1.0f / b->eta.x : b->eta.x;
   float3 m = reflected ? wo + wi : wo + eta * wi;
@@ -192,24 +192,25 @@ static inline float4 principled_value(const Bsdf* b, int inside, const Principle
     const float lobe = (1.0f - fresnel) * visible * cos_o * -cos_i / (denominator * denominator);
     *pdf = shares->glass * lobe;
     return sqrt(b->reflectance * b->coat.albedo) *
-           (p->transmission * (inside ? through_i : through_o) * lobe * masking / (eta * eta));
+           (b->principled_transmission * (inside ? through_i : through_o) * lobe * masking /
+            (eta * eta));
   }
   const float lobe = 0.25f * visible;
   float4 below = principled_facet(b, cos_o) * (lobe * masking);
   float4 value = (float4)(0.0f);
   *pdf = (shares->interface + shares->glass * fresnel) * lobe + shares->soft * wi.z * CAPLET_INV_PI;
-  if (p->transmission > 0.0f) {
-    const float4 glass = (float4)(p->transmission * fresnel * lobe * masking);
+  if (b->principled_transmission > 0.0f) {
+    const float4 glass = (float4)(b->principled_transmission * fresnel * lobe * masking);
     if (inside)
       value = glass;
     else
       below += glass;
   }
-  const float soft = 1.0f - p->metallic - p->transmission;
+  const float soft = 1.0f - b->principled_metallic - b->principled_transmission;
   if (soft > 0.0f) {
     // The diffuse lobe and the sheen are those of Burley 2012, 5.3 and 5.4.
     const float fo = principled_schlick(wo.z), fi = principled_schlick(wi.z),
-                back = p->roughness * (1.0f + dot(wo, wi));
+                back = b->principled_roughness * (1.0f + dot(wo, wi));
     const float diffuse =
         (1.0f - 0.5f * fo) * (1.0f - 0.5f * fi) + back * (fo + fi + fo * fi * (back - 1.0f));
     const float4 room = fmin(principled_soft_room(b, wo.z), principled_soft_room(b, wi.z));
@@ -218,11 +219,11 @@ static inline float4 principled_value(const Bsdf* b, int inside, const Principle
              (soft * wi.z);
   }
   value += below * b->coat.albedo * fmin(through_o, through_i);
-  if (p->coat > 0.0f) {
+  if (b->principled_coat > 0.0f) {
     const float alpha = b->coat.alpha_u,
                 coat_lobe = 0.25f * ggx_visible_over_cos(wo, m, alpha, alpha);
     *pdf += shares->coat * coat_lobe;
-    value += p->coat * (inside ? 1.0f - p->transmission : 1.0f) *
+    value += b->principled_coat * (inside ? 1.0f - b->principled_transmission : 1.0f) *
              fresnel_dielectric(cos_o, b->coat.eta, &cos_t) * coat_lobe *
              ggx_masking(wo, wi, alpha, alpha);
   }
@@ -270,12 +271,12 @@ static inline int principled_sample(const Bsdf* b, int inside, int smooth, float
 }
 
 static inline float4 principled_directional_albedo(const Bsdf* b, float3 wo) {
-  const BsdfPrincipled* p = &b->principled;
-  const float cosine = fabs(wo.z), soft = 1.0f - p->metallic - p->transmission,
+  const float cosine = fabs(wo.z),
+              soft = 1.0f - b->principled_metallic - b->principled_transmission,
               through = principled_through_coat(b, cosine);
   const float4 below = principled_facet(b, cosine) +
                        soft * principled_soft_room(b, cosine) * principled_soft_albedo(b, cosine) +
-                       (float4)(p->transmission);
+                       (float4)(b->principled_transmission);
   return fmin(below * b->coat.albedo * through + (1.0f - through), 1.0f);
 }
 

@@ -16,6 +16,14 @@ const char* const kernels = R"CL(
 #include "bsdf/bsdf.cl"
 #include "math/rng.cl"
 
+// The places of what single materials keep, in the parameters from 14 on.
+enum {
+#define MATERIAL(name, traits)
+#define KEPT(material, name, type) kept_##material##_##name,
+#include "shared/materials.def"
+#undef MATERIAL
+};
+
 #define BSDF uint kind, uint flags, uint key, __global const float* p
 
 // The same value at all four wavelengths. Numbers of estimates differ from call to call.
@@ -38,13 +46,10 @@ static Bsdf given_bsdf(uint kind, uint flags, uint random, __global const float*
   b.coat.g = p[11];
   b.coat.max_depth = (int)p[12];
   b.coat.samples = (int)p[13];
-  b.tilt = p[14];
-  b.principled.metallic = p[15];
-  b.principled.transmission = p[16];
-  b.principled.roughness = p[17];
-  b.principled.tint = p[18];
-  b.principled.normal_tinted = (float4)(p[19]);
-  b.principled.coat = p[20];
+#define MATERIAL(name, traits)
+#define KEPT(material, name, type) b.material##_##name = (type)(p[14 + kept_##material##_##name]);
+#include "rows/materials.def"
+#undef MATERIAL
   return b;
 }
 #define MAKE_BSDF Bsdf b = given_bsdf(kind, flags, hash_combine(hash_mix(key), i), p);
@@ -114,12 +119,14 @@ std::vector<float> flat(const std::vector<Direction>& directions) {
 }  // namespace
 
 std::vector<float> BsdfParameters::values() const {
-  return {reflectance,  eta,           k,        alpha_u,
-          alpha_v,      transmittance, coat_eta, coat_alpha_u,
-          coat_alpha_v, thickness,     albedo,   g,
-          max_depth,    samples,       tilt,     metallic,
-          transmission, roughness,     tint,     normal_tinted,
-          coat};
+  return {
+      reflectance,  eta,          k,         alpha_u, alpha_v, transmittance, coat_eta,
+      coat_alpha_u, coat_alpha_v, thickness, albedo,  g,       max_depth,     samples,
+#define MATERIAL(name, traits)
+#define KEPT(material, name, type) material##_##name,
+#include "shared/materials.def"
+#undef MATERIAL
+  };
 }
 
 Direction direction(double theta, double phi) {

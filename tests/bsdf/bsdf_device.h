@@ -22,10 +22,12 @@ struct BsdfParameters {
   float transmittance = 0;
   float coat_eta = 1.5f, coat_alpha_u = 0, coat_alpha_v = 0, thickness = 0.01f, albedo = 0, g = 0,
         max_depth = 100, samples = 1;
-  float tilt = 0;  // radians
   // Principled uses reflectance as base colour, k as sheen, albedo as the coat's colour,
   // coat_alpha_u as the coat's roughness.
-  float metallic = 0, transmission = 0, roughness = 0, tint = 0, normal_tinted = 0, coat = 0;
+#define MATERIAL(name, traits)
+#define KEPT(material, name, type) float material##_##name = 0;
+#include "shared/materials.def"
+#undef MATERIAL
 
   /// All of them in the order in which kernels take them.
   std::vector<float> values() const;

@@ -20,7 +20,7 @@ BsdfParameters fibre(const char* name, float beta_m, float beta_n, float absorpt
           .k = absorption,
           .alpha_u = beta_m,
           .alpha_v = beta_n,
-          .tilt = tilt};
+          .hair_tilt = tilt};
 }
 
 /// The published formulas (Chiang et al. 2016; d'Eon et al. 2011) in double, in their own terms:
@@ -47,7 +47,7 @@ double hair(const BsdfParameters& bsdf, const Direction& o, const Direction& i) 
   const double tilts[4] = {2.0, -1.0, -4.0, 0.0};
   double sum = 0;
   for (int p = 0; p < 4; ++p) {
-    const double variance = variances[p], tilted = theta_o - tilts[p] * double{bsdf.tilt};
+    const double variance = variances[p], tilted = theta_o - tilts[p] * double{bsdf.hair_tilt};
     const double a = std::cos(theta_i) * std::abs(std::cos(tilted)) / variance,
                  b = std::sin(theta_i) * std::sin(tilted) / variance;
     const double along =

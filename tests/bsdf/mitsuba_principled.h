@@ -23,15 +23,15 @@ inline BsdfParameters principled(const std::string& name, float base, float roug
   out.name = name;
   out.kind = material_principled;
   out.reflectance = base;
-  out.roughness = roughness;
+  out.principled_roughness = roughness;
   const float aspect = std::sqrt(1 - 0.9f * anisotropic);
   out.alpha_u = std::max(roughness * roughness / aspect, CAPLET_ALPHA_SMOOTH);
   out.alpha_v = std::max(roughness * roughness * aspect, CAPLET_ALPHA_SMOOTH);
   out.eta = eta;
-  out.metallic = metallic;
-  out.transmission = (1 - metallic) * spec_trans;
-  out.tint = spec_tint;
-  out.normal_tinted = (eta - 1) * (eta - 1) / ((eta + 1) * (eta + 1));
+  out.principled_metallic = metallic;
+  out.principled_transmission = (1 - metallic) * spec_trans;
+  out.principled_tint = spec_tint;
+  out.principled_normal_tinted = (eta - 1) * (eta - 1) / ((eta + 1) * (eta + 1));
   out.k = sheen;
   out.albedo = 1;
   out.coat_alpha_u = CAPLET_ALPHA_SMOOTH;
@@ -49,7 +49,7 @@ struct PrincipledRow {
 /// Fresnel's and the tinted reflectance.
 inline double facets_of_mitsuba(const PrincipledRow& row) {
   const BsdfParameters& b = row.bsdf;
-  const double metallic = double{b.metallic}, glass = double{b.transmission},
+  const double metallic = double{b.principled_metallic}, glass = double{b.principled_transmission},
                rest = 1 - metallic - glass;
   if (rest == 0 || row.wi[2] * row.wo[2] < 0) return row.value;
   double length = 0, cos_m = 0;
@@ -57,10 +57,11 @@ inline double facets_of_mitsuba(const PrincipledRow& row) {
   for (std::size_t c = 0; c < 3; ++c)
     cos_m += (double{row.wo[c]} + double{row.wi[c]}) / std::sqrt(length) * double{row.wo[c]};
   const double schlick = std::pow(1 - cos_m, 5), fresnel = metal_reflectance(cos_m, double{b.eta});
-  const double tinted = double{b.normal_tinted} + (1 - double{b.normal_tinted}) * schlick;
+  const double tinted =
+      double{b.principled_normal_tinted} + (1 - double{b.principled_normal_tinted}) * schlick;
   const double reflectance =
       metallic * (double{b.reflectance} + (1 - double{b.reflectance}) * schlick) + glass * fresnel +
-      rest * ((1 - double{b.tint}) * fresnel + double{b.tint} * tinted);
+      rest * ((1 - double{b.principled_tint}) * fresnel + double{b.principled_tint} * tinted);
   // The microfacets of a metal that reflects all, without the masking that they have.
   const double lobe = microfacets(row.wo, row.wi, double{b.alpha_u}, double{b.alpha_v}, {0, 1e9});
   return reflectance * lobe /

@@ -26,7 +26,7 @@ TEST(Principled, MetalAndGlassAreConductorAndDielectric) {
   for (const float roughness : {0.3f, 0.7f}) {
     BsdfParameters metal = principled("metal", 1, roughness),
                    glass = principled("glass", 1, roughness);
-    metal.metallic = glass.transmission = 1;
+    metal.principled_metallic = glass.principled_transmission = 1;
     BsdfParameters conductor{.name = "conductor", .kind = material_conductor},
         dielectric{.name = "dielectric", .kind = material_dielectric};
     conductor.eta = 0;
@@ -92,7 +92,7 @@ TEST(Principled, AWhiteOneLosesNoMoreThanIsStated) {
                                                        {0.8f, 1, 1.2, 0.9062},
                                                        {0.5f, 1, 0.7, 0.9232}}) {
     BsdfParameters white = principled("white", 1, row.roughness);
-    white.coat = row.coat;
+    white.principled_coat = row.coat;
     white.coat_alpha_u = 0.04f;
     EXPECT_NEAR(albedo_of(white, row.theta, 60), row.albedo, 4e-3)
         << row.roughness << ' ' << row.coat << ' ' << row.theta;

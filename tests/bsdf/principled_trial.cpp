@@ -21,25 +21,25 @@ BsdfTrial principled_trial() {
                  cloth = principled("principled cloth", 0.6f, 0.8f),
                  coated = principled("principled coated", 0.5f, 0.7f),
                  all = principled("principled all", 0.6f, 0.6f, 0.5f);
-  metal.metallic = 1;
-  glass.transmission = 1;
+  metal.principled_metallic = 1;
+  glass.principled_transmission = 1;
   cloth.k = 1;
-  cloth.tint = 0.5f;
-  cloth.normal_tinted = 0.06f;
-  coated.coat = 1;
+  cloth.principled_tint = 0.5f;
+  cloth.principled_normal_tinted = 0.06f;
+  coated.principled_coat = 1;
   coated.coat_alpha_u = 0.1f;
-  all.metallic = 0.3f;
-  all.transmission = 0.3f;
+  all.principled_metallic = 0.3f;
+  all.principled_transmission = 0.3f;
   all.k = 0.5f;
-  all.coat = 0.5f;
+  all.principled_coat = 0.5f;
   all.coat_alpha_u = 0.3f;
   all.albedo = 0.8f;
   for (const BsdfParameters& one : {plastic, white, metal, glass, cloth, coated, all})
     trial.cases.push_back({one, both_sides});
   BsdfParameters other = all;
-  other.metallic = 0.4f;
+  other.principled_metallic = 0.4f;
   BsdfParameters rougher = principled("principled rougher metal", 0.7f, 0.55f, 0.8f);
-  rougher.metallic = 1;
+  rougher.principled_metallic = 1;
   trial.unlike = {{all, other}, {metal, rougher}};
   for (const PrincipledRow& row : principled_rows) {
     const double more = correlated_over_separable(row.wo, row.wi, double{row.bsdf.alpha_u},
@@ -50,7 +50,7 @@ BsdfTrial principled_trial() {
   }
   trial.model.model = PrincipledMaterial{};
   trial.most = [](const BsdfParameters& bsdf, bool inside) {
-    return inside && bsdf.transmission > 0 ? double{bsdf.eta} * double{bsdf.eta} : 1.0;
+    return inside && bsdf.principled_transmission > 0 ? double{bsdf.eta} * double{bsdf.eta} : 1.0;
   };
   trial.heaviest = 4;  // shares of samples go by what smooth facets reflect
   trial.steps = [](const BsdfParameters&, double cos_theta) {

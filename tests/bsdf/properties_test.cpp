@@ -229,7 +229,7 @@ TEST(BsdfRobustness, FiniteAndBoundedForAnyInput) {
     if (bsdf.kind == material_hair) {  // as hair_make
       bsdf.alpha_u = std::max(bsdf.alpha_u, 0.01f);
       bsdf.alpha_v = std::max(bsdf.alpha_v, 0.01f);
-      bsdf.tilt = 0.03f;
+      bsdf.hair_tilt = 0.03f;
     }
     bsdf.reflectance = bsdf.transmittance = 0.5f;
     bsdf.coat_eta = etas[random() % 8];
@@ -247,12 +247,13 @@ TEST(BsdfRobustness, FiniteAndBoundedForAnyInput) {
       bsdf.k = std::min(bsdf.k, 1.0f);
       for (float* alpha : {&bsdf.alpha_u, &bsdf.alpha_v, &bsdf.coat_alpha_u})
         *alpha = std::max(*alpha, CAPLET_ALPHA_SMOOTH);
-      bsdf.roughness = std::sqrt(bsdf.alpha_u);
-      bsdf.metallic = std::array{0.0f, 0.5f, 1.0f}[random() % 3];
-      bsdf.transmission = (1 - bsdf.metallic) * std::array{0.0f, 0.5f, 1.0f}[random() % 3];
-      bsdf.coat = std::array{0.0f, 0.5f, 1.0f}[random() % 3];
-      bsdf.tint = std::array{0.0f, 0.5f, 1.0f}[random() % 3];
-      bsdf.normal_tinted = std::array{0.0f, 0.04f, 1.0f}[random() % 3];
+      bsdf.principled_roughness = std::sqrt(bsdf.alpha_u);
+      bsdf.principled_metallic = std::array{0.0f, 0.5f, 1.0f}[random() % 3];
+      bsdf.principled_transmission =
+          (1 - bsdf.principled_metallic) * std::array{0.0f, 0.5f, 1.0f}[random() % 3];
+      bsdf.principled_coat = std::array{0.0f, 0.5f, 1.0f}[random() % 3];
+      bsdf.principled_tint = std::array{0.0f, 0.5f, 1.0f}[random() % 3];
+      bsdf.principled_normal_tinted = std::array{0.0f, 0.04f, 1.0f}[random() % 3];
     }
     // A sample of the lobe that makes up for losses weighs the loss over its mean at the most: 60
     // for indices next to 1, 12 for glass, 6 for metals.

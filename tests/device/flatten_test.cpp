@@ -83,7 +83,7 @@ TEST(Flatten, AGuardedFileUnderAConditionDoesNotCount) {
 const Files list_of_three = {{"shared/pets.def",
                               "// PET(name)\n#ifndef FIELD\n#endif\nPET(cat, 1)\nFIELD(cat, "
                               "x)\nPET_END(cat)\nPET(dog, 2)  // barks\n"
-                              "FIELD(dog, y)\nCOMPOUND(herd)\n#undef FIELD\n"},
+                              "FIELD(dog, y)\nKEPT(dog, z)\nCOMPOUND(herd)\n#undef FIELD\n"},
                              {"pets/a_cat.cl", "meow\n"},
                              {"pets/a_dog.cl", "wuff\n"}};
 
@@ -106,7 +106,7 @@ TEST(Flatten, PutsInTheRowsThatThereAre) {
   EXPECT_EQ(flattened("#include \"rows/pets.def\"\nend\n", list_of_three, {{"pets", 2}}),
             "#line 1 \"text\"\n#line 1 \"kernels/shared/pets.def\"\n\n#ifndef "
             "FIELD\n#endif\n\n\n\nPET(dog, 2)  // "
-            "barks\nFIELD(dog, y)\n\n#undef "
+            "barks\nFIELD(dog, y)\nKEPT(dog, z)\n\n#undef "
             "FIELD\n#line 2 \"text\"\nend\n");
   const std::string all = flattened("#include \"rows/pets.def\"\n", list_of_three, {{"others", 0}});
   for (const char* row :

@@ -26,9 +26,9 @@ using FileReader = std::function<std::optional<std::string>(const std::string& p
 ///   "shapes/{shapes}.cl"   for every row of shared/shapes.def the file with its name in place of
 ///                          {shapes}: shapes/capsule.cl. Rows that begin with COMPOUND have none
 ///   "rows/shapes.def"      shared/shapes.def itself without the other rows
-/// A row is a line that begins with a name in capitals and a bracket; FIELD and names that end in
-/// _END continue it. For each list of `rows` that the text names (CAPLET_SHAPES), its mask is
-/// defined above everything else.
+/// A row is a line that begins with a name in capitals and a bracket; FIELD, KEPT and names that
+/// end in _END continue it. For each list of `rows` that the text names (CAPLET_SHAPES), its mask
+/// is defined above everything else.
 ///
 /// Throws std::logic_error with the place for a file that does not exist, a malformed include, a
 /// list of more than 64 rows, and files that include each other in a circle.
