@@ -140,10 +140,10 @@ struct Split {
 
 class Builder {
  public:
-  Builder(BinaryTree& tree, std::uint32_t single_group, Effort effort)
+  Builder(BinaryTree& tree, std::uint64_t single_groups, Effort effort)
       : tree_(tree),
         scratch_(std::make_unique_for_overwrite<Reference[]>(tree.count)),
-        single_group_(single_group),
+        single_groups_(single_groups),
         cell_size_(cells_of(effort)) {}
 
   void run(std::span<const Reference> references) {
@@ -304,7 +304,7 @@ class Builder {
     const Box box = b.box.box();
     node = {box.min, box.max, 0, 0, first, count};
     const std::uint32_t group = tree_.items[first].group;
-    if (count == 1 || (count <= width && !b.mixed && group != single_group_)) return;
+    if (count == 1 || (count <= width && !b.mixed && (single_groups_ >> group & 1) == 0)) return;
 
     std::uint32_t left = 0;
     std::array<Bounds, 2> sides;
@@ -489,7 +489,7 @@ class Builder {
 
   BinaryTree& tree_;
   std::unique_ptr<Reference[]> scratch_;
-  std::uint32_t single_group_;
+  std::uint64_t single_groups_;
   Cells cell_size_;
   std::vector<Cell> cells_;
   std::vector<std::uint32_t> cell_order_;
@@ -499,13 +499,13 @@ class Builder {
 
 }  // namespace
 
-BinaryTree build_binary(std::span<const Reference> references, std::uint32_t single_group,
+BinaryTree build_binary(std::span<const Reference> references, std::uint64_t single_groups,
                         Effort effort) {
   BinaryTree tree;
   tree.count = static_cast<std::uint32_t>(references.size());
   tree.items = std::make_unique_for_overwrite<Reference[]>(tree.count);
   tree.nodes = std::make_unique_for_overwrite<BinaryNode[]>(2 * references.size());
-  Builder(tree, single_group, effort).run(references);
+  Builder(tree, single_groups, effort).run(references);
   return tree;
 }
 

@@ -57,9 +57,10 @@ inline constexpr int max_depth = 40;
 /// area (1 M boxes). Fewer references give the same tree.
 enum class Effort { full, quick };
 
-/// Builds the same tree for any number of threads. Boxes are finite with min <= max. References of
-/// group `single_group` get a leaf each. Without references the tree is a root without children.
-Tree build(std::span<const Reference> references, std::uint32_t single_group = 0xffffffffu,
+/// Builds the same tree for any number of threads. Boxes are finite with min <= max, groups less
+/// than 64. References of the groups in `single_groups` (bit k: group k) get a leaf each. Without
+/// references the tree is a root without children.
+Tree build(std::span<const Reference> references, std::uint64_t single_groups = 0,
            Effort effort = Effort::full);
 
 }  // namespace caplet::bvh

@@ -189,10 +189,10 @@ Tree childless_root() {
 
 Tree collapse(const BinaryTree& binary) { return Collapser(binary).run(); }
 
-Tree build(std::span<const Reference> references, std::uint32_t single_group, Effort effort) {
+Tree build(std::span<const Reference> references, std::uint64_t single_groups, Effort effort) {
   CHECK_LT_(references.size(), std::size_t(1) << 31);
   if (references.empty()) return childless_root();
-  return collapse(build_binary(references, single_group, effort));
+  return collapse(build_binary(references, single_groups, effort));
 }
 
 }  // namespace caplet::bvh

@@ -16,6 +16,7 @@
 #include "bvh/bvh.h"
 #include "lower/detail/floats.h"
 #include "lower/detail/shapes.h"
+#include "lower/linking.h"
 
 namespace caplet {
 namespace {
@@ -49,15 +50,50 @@ ExactBox exact_box(const FlatPrimitive& p) {
   return kept_box(p);
 }
 
-bvh::Reference reference_of(const FlatPrimitive& p, std::uint32_t index) {
-  const ReferenceBox box = reference_box(p);
-  bvh::Reference r{};
-  std::copy_n(box.min, 3, r.min);
-  std::copy_n(box.max, 3, r.max);
-  r.primitive = index;
-  r.group = p.shape;
-  return r;
-}
+/// LeafItems are what the tree is built over: primitives, and leaf blocks of linked capsules, which
+/// are several of them in a row.
+class LeafItems {
+ public:
+  LeafItems(std::span<const FlatPrimitive> primitives, bool any_linked) : primitives_(primitives) {
+    if (!any_linked) return;
+    for (std::size_t first = 0, end = 0; first < primitives.size(); first = end) {
+      end = first + 1;
+      while (end < primitives.size() && are_linked(primitives[end - 1], primitives[end])) ++end;
+      // Blocks of equal length have smaller boxes than full ones and a rest.
+      const std::size_t blocks = (end - first + CAPLET_WIDTH - 1) / CAPLET_WIDTH;
+      for (std::size_t b = 0; b < blocks; ++b)
+        begins_.push_back(narrow<std::uint32_t>(first + (end - first) * b / blocks));
+    }
+    begins_.push_back(narrow<std::uint32_t>(primitives.size()));
+  }
+
+  std::size_t size() const { return begins_.empty() ? primitives_.size() : begins_.size() - 1; }
+  std::size_t begin(std::size_t item) const { return begins_.empty() ? item : begins_[item]; }
+  std::span<const FlatPrimitive> operator[](std::size_t item) const {
+    return primitives_.subspan(begin(item), begin(item + 1) - begin(item));
+  }
+
+  bvh::Reference reference(std::size_t item) const {
+    const std::span<const FlatPrimitive> of = (*this)[item];
+    bvh::Reference r{};
+    std::fill_n(r.min, 3, inf);
+    std::fill_n(r.max, 3, -inf);
+    for (const FlatPrimitive& p : of) {
+      const ReferenceBox box = reference_box(p);
+      for (int k = 0; k < 3; ++k) {
+        r.min[k] = std::min(r.min[k], box.min[k]);
+        r.max[k] = std::max(r.max[k], box.max[k]);
+      }
+    }
+    r.primitive = narrow<std::uint32_t>(item);
+    r.group = of[0].shape;
+    return r;
+  }
+
+ private:
+  std::span<const FlatPrimitive> primitives_;
+  std::vector<std::uint32_t> begins_;  // of each item, and the end; empty: each is a primitive
+};
 
 }  // namespace
 
@@ -124,18 +160,23 @@ EncodedTree encode_tree(std::span<const FlatPrimitive> primitives, std::vector<f
   }
   check_tree_limits(row_base + least_rows(counts), node_base + 1, kind_bits);
 
-  std::vector<bvh::Reference> references(primitives.size());
-  tbb::parallel_for(std::size_t(0), primitives.size(), [&](std::size_t i) {
-    references[i] = reference_of(primitives[i], static_cast<std::uint32_t>(i));
-  });
-  const bvh::Tree tree = bvh::build(references, shape_instance);
+  const LeafItems items(primitives, counts[shape_linked_capsule] > 0);
+  bvh::Tree tree;
+  {
+    std::vector<bvh::Reference> references(items.size());
+    tbb::parallel_for(std::size_t(0), items.size(),
+                      [&](std::size_t i) { references[i] = items.reference(i); });
+    tree = bvh::build(references, shape_bit(shape_instance) | shape_bit(shape_linked_capsule));
+  }
   CHECK_LE_(tree.depth, bvh::max_depth);
 
   std::vector<std::uint32_t> row_of(tree.leaves.size());
   std::uint64_t rows = row_base;
   for (std::size_t i = 0; i < tree.leaves.size(); i++) {
     row_of[i] = static_cast<std::uint32_t>(std::min(rows, max_rows(kind_bits)));
-    rows += rows_of(tree.leaves[i].group);
+    rows += tree.leaves[i].group == shape_linked_capsule
+                ? link_rows(items[tree.order[tree.leaves[i].first]][0])
+                : rows_of(tree.leaves[i].group);
   }
   check_tree_limits(rows, node_base + tree.nodes.size(), kind_bits);
 
@@ -177,10 +218,19 @@ EncodedTree encode_tree(std::span<const FlatPrimitive> primitives, std::vector<f
   tbb::parallel_for(std::size_t(0), tree.leaves.size(), [&](std::size_t l) {
     const bvh::Leaf& leaf = tree.leaves[l];
     float* block = &leaves[std::size_t(row_of[l]) * 8];
+    if (leaf.group == shape_linked_capsule) {
+      const std::size_t item = tree.order[leaf.first];
+      write_links(items[item], block);
+      for (std::size_t i = 0; i < items[item].size(); ++i)
+        out.slots[items.begin(item) + i] =
+            CAPLET_SLOT_LINKED | (row_of[l] * 8 + static_cast<std::uint32_t>(i));
+      return;
+    }
     const std::uint32_t data_rows = data_of[leaf.group];
     for (std::uint32_t lane = 0; lane < 8; lane++) {
       // Empty lanes repeat the first primitive, so that no arithmetic meets odd values there.
-      const std::uint32_t index = tree.order[leaf.first + (lane < leaf.count ? lane : 0)];
+      const std::size_t index =
+          items.begin(tree.order[leaf.first + (lane < leaf.count ? lane : 0)]);
       const FlatPrimitive& p = primitives[index];
       block[lane] = std::bit_cast<float>(lane < leaf.count ? p.id : 0xffffffffu);
       for (std::uint32_t j = 0; j < data_rows; j++) block[8 * (j + 1) + lane] = p.data[j];

@@ -15,7 +15,7 @@ namespace caplet {
 
 struct EncodedTree {
   std::uint32_t root = 0;            // node index
-  std::vector<std::uint32_t> slots;  // of each primitive given
+  std::vector<std::uint32_t> slots;  // of each primitive given: HitRecord.slot
   float min[3] = {0, 0, 0}, max[3] = {0, 0, 0};
   std::uint64_t nodes = 0;
   int depth = 0;

@@ -15,6 +15,7 @@
 #include "lower/detail/flat_shapes.h"
 #include "lower/detail/shapes.h"
 #include "lower/detail/textures.h"
+#include "lower/geometry_pages.h"
 #include "scene/matte_names.h"
 
 namespace caplet {
@@ -81,8 +82,17 @@ uint unseen_sides(const Shape& shape, const Matrix& m) {
 class GeometryLowering {
  public:
   GeometryLowering(const Scene& scene, const ImageNumbers& images, SpectrumTable& spectra,
-                   FlatScene& out)
-      : scene_(scene), images_(images), spectra_(spectra), out_(out) {}
+                   const Linking& linking, FlatScene& out)
+      : scene_(scene), images_(images), spectra_(spectra), linking_(linking), out_(out) {
+    std::size_t capsules = 0;
+    const auto add = [&](const Shape& shape) {
+      if (const auto* own = std::get_if<CapsulesShape>(&shape.geometry)) capsules += count_of(*own);
+    };
+    for (const Shape& shape : scene_.shapes) add(shape);
+    for (const Object& object : scene_.objects)
+      for (const Shape& shape : object.shapes) add(shape);
+    links_ = capsules >= linking_.least_capsules;
+  }
 
   LoweredGeometry run() {
     check_counts();
@@ -93,6 +103,7 @@ class GeometryLowering {
       lowered.objects.push_back(lower_shapes(object.shapes, object_number, &object));
 
     find_shapes(lowered);
+    out_.primitive_geometry = geometry_pages(geometry_of_);
     std::deque<Subtree>& world = lowered.world.subtrees;
     Subtree& top = world[0];
     for (std::size_t i = 1; i < world.size(); ++i) {
@@ -131,7 +142,7 @@ class GeometryLowering {
   void lower_shape(const Shape& shape, const Matrix& m, std::uint32_t object, uint object_name,
                    Subtree& subtree) {
     const std::size_t first = subtree.primitives.size();
-    const auto primitive_begin = narrow<uint>(out_.primitive_geometry.size());
+    const auto primitive_begin = narrow<uint>(geometry_of_.size());
     GeometryRecord record{};
     record.material = shape.material;
     record.object = object;
@@ -150,6 +161,7 @@ class GeometryLowering {
     if (turns_normals(shape, m)) record.flags |= CAPLET_GEOMETRY_FLIP_NORMAL;
     if (!is_watertight(shape)) record.flags |= CAPLET_GEOMETRY_OPEN;
     reversed_ = shape.reverse_orientation;
+    may_link_ = links_ && !shape.emission && (!linking_.allows || linking_.allows(shape));
     std::visit([&](const auto& geometry) { append(geometry, m, record, subtree); }, shape.geometry);
     const std::size_t count = subtree.primitives.size() - first;
     if (shape.emission && count > 0) {
@@ -207,8 +219,8 @@ class GeometryLowering {
   }
 
   Lengths lengths() const {
-    return {out_.geometries.size(),   out_.primitive_geometry.size(), out_.surface_materials.size(),
-            out_.mesh_indices.size(), out_.mesh_normals.size(),       out_.mesh_uvs.size(),
+    return {out_.geometries.size(),   geometry_of_.size(),      out_.surface_materials.size(),
+            out_.mesh_indices.size(), out_.mesh_normals.size(), out_.mesh_uvs.size(),
             out_.leaves.size()};
   }
 
@@ -302,10 +314,9 @@ class GeometryLowering {
 
   FlatPrimitive& add_primitive(Subtree& subtree, int shape, uint geometry) {
     FlatPrimitive& p = subtree.primitives.emplace_back();
-    p = FlatPrimitive{static_cast<std::uint32_t>(shape),
-                      narrow<std::uint32_t>(out_.primitive_geometry.size()),
-                      {}};
-    out_.primitive_geometry.push_back(geometry);
+    p = FlatPrimitive{
+        static_cast<std::uint32_t>(shape), narrow<std::uint32_t>(geometry_of_.size()), {}};
+    geometry_of_.push_back(geometry);
     return p;
   }
 
@@ -330,48 +341,57 @@ class GeometryLowering {
   void append(const CapsulesShape& capsules, const Matrix& m, const GeometryRecord& record,
               Subtree& subtree) {
     const double scale = similarity_scale(m);
-    std::map<std::pair<int, uint>, uint> geometry_of;  // by kind and material
+    std::map<std::pair<int, uint>, uint> own_geometries;  // by kind and material
     const bool identity = m == Matrix(1);
     GeometryRecord of_all = record;
-    if (!capsules.u.empty()) {
-      of_all.flags |= CAPLET_GEOMETRY_CHAIN;
-      of_all.uv_begin = narrow<uint>(out_.mesh_uvs.size());
-      reserve_more(out_.mesh_uvs, 2 * capsules.u.size());
-      for (const glm::vec2& u : capsules.u) out_.mesh_uvs.insert(out_.mesh_uvs.end(), {u.x, u.y});
-    }
+    if (!capsules.u.empty()) of_all.flags |= CAPLET_GEOMETRY_CHAIN;
     std::optional<CapsuleMotion> motion;
     std::optional<MovingCapsules> moving;
     if (!capsules.times.empty()) {
       const FilmSettings& film = scene_.view.film;
       moving.emplace(motion.emplace(capsules, film.shutter_open, film.open_time()), out_.leaves);
     }
+    const std::size_t first = subtree.primitives.size();
     reserve_more(subtree.primitives, count_of(capsules));
     for (std::size_t i = 0; i < count_of(capsules); ++i) {
-      const FlatPrimitive flat =
-          moving ? moving->primitive(i) : flat_capsule(capsules, i, identity ? nullptr : &m, scale);
-      const int kind = static_cast<int>(flat.shape);
+      FlatPrimitive& p = subtree.primitives.emplace_back(
+          moving ? moving->primitive(i)
+                 : flat_capsule(capsules, i, identity ? nullptr : &m, scale));
+      p.id = narrow<std::uint32_t>(geometry_of_.size() + i);
+    }
+    const bool all_linked =
+        may_link_ && !moving &&
+        link_capsules(std::span(subtree.primitives).subspan(first), capsules.u, linking_.least_run);
+    // Linked ones have their u in their leaf blocks.
+    if (!capsules.u.empty() && !all_linked) {
+      of_all.uv_begin = narrow<uint>(out_.mesh_uvs.size());
+      reserve_more(out_.mesh_uvs, 2 * capsules.u.size());
+      for (const glm::vec2& u : capsules.u) out_.mesh_uvs.insert(out_.mesh_uvs.end(), {u.x, u.y});
+    }
+    reserve_more(geometry_of_, count_of(capsules));
+    for (std::size_t i = 0; i < count_of(capsules); ++i) {
+      const int kind = static_cast<int>(subtree.primitives[first + i].shape);
       const uint material = capsules.materials.empty() ? record.material : capsules.materials[i];
-      const auto [found, fresh] = geometry_of.try_emplace({kind, material}, 0);
+      const auto [found, fresh] = own_geometries.try_emplace({kind, material}, 0);
       if (fresh) {
         GeometryRecord own = of_all;
         own.material = material;
         found->second = add_geometry(own, kind);
       }
-      FlatPrimitive& p = add_primitive(subtree, kind, found->second);
-      std::copy(std::begin(flat.data), std::end(flat.data), std::begin(p.data));
+      geometry_of_.push_back(found->second);
     }
   }
 
   void append(const MolecularSurfaceShape& molecule, const Matrix& m, const GeometryRecord& record,
               Subtree& subtree) {
     const std::vector<FlatPrimitive> patches = flat_patches(molecule, m, out_.leaves);
-    std::map<uint, uint> geometry_of;  // by material
+    std::map<uint, uint> own_geometries;  // by material
     reserve_more(subtree.primitives, patches.size());
     for (std::size_t i = 0; i < patches.size(); ++i) {
       const uint material = molecule.materials.empty()
                                 ? record.material
                                 : molecule.materials[ball_of_patch(molecule, i)];
-      const auto [found, fresh] = geometry_of.try_emplace(material, 0);
+      const auto [found, fresh] = own_geometries.try_emplace(material, 0);
       if (fresh) {
         GeometryRecord own = record;
         own.material = material;
@@ -563,7 +583,11 @@ class GeometryLowering {
   const Scene& scene_;
   const ImageNumbers& images_;
   SpectrumTable& spectra_;
+  const Linking linking_;
   FlatScene& out_;
+  std::vector<std::uint32_t> geometry_of_;  // by primitive id
+  bool links_ = false;                      // the scene has linked capsules
+  bool may_link_ = false;                   // the shape being appended may
   std::map<std::pair<std::uint32_t, double>, uint> alphas_;
   struct {
     std::string file;
@@ -586,15 +610,16 @@ SubtreeKey subtree_key(const Shape& shape, const Matrix& m) {
 }
 
 LoweredGeometry lower_geometry(const Scene& scene, const ImageNumbers& images,
-                               SpectrumTable& spectra, FlatScene& out) {
-  return GeometryLowering(scene, images, spectra, out).run();
+                               SpectrumTable& spectra, const Linking& linking, FlatScene& out) {
+  return GeometryLowering(scene, images, spectra, linking, out).run();
 }
 
 Subtree lower_shape_alone(const Scene& scene, const Shape& shape, const Matrix& baked,
                           std::uint32_t object, const ImageNumbers& images, SpectrumTable& spectra,
                           FlatScene& out) {
   Subtree subtree;
-  GeometryLowering(scene, images, spectra, out).lower_shape(shape, baked, object, 0, subtree);
+  GeometryLowering(scene, images, spectra, Linking::none(), out)
+      .lower_shape(shape, baked, object, 0, subtree);
   return subtree;
 }
 

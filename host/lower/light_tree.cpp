@@ -29,7 +29,6 @@ using glm::dvec3;
 constexpr int width = bvh::width;
 constexpr std::uint32_t ahead =
     24;  // lights that are asked for before they are needed: they lie anywhere
-constexpr std::uint32_t no_group = 0xffffffff;
 constexpr double cells = 65535;  // of the grid, along each axis
 static_assert(CAPLET_LIGHT_NODE == 7 * width);
 
@@ -338,7 +337,7 @@ void lower_light_tree(const TreeLights& all_lights, std::size_t light_count, Fla
   if (lights.empty()) return;
   const auto [boxes, extent] = boxes_of(lights);
   const Grid grid(extent.min, extent.max);
-  const bvh::Tree tree = bvh::build({boxes.get(), lights.size()}, no_group, bvh::Effort::quick);
+  const bvh::Tree tree = bvh::build({boxes.get(), lights.size()}, 0, bvh::Effort::quick);
   LightTreeWriter(all_lights, tree, grid, light_count, out).write();
   for (int k = 0; k < 3; ++k) {
     record.tree_min[k] = static_cast<float>(grid.min[k]);

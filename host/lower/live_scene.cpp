@@ -50,10 +50,10 @@ void add_differences(const std::vector<T>& before, const std::vector<T>& now, Ch
 }  // namespace
 
 struct LiveScene::State {
-  explicit State(Scene of) : scene(std::move(of)) { lower_all(); }
+  State(Scene of, const Linking& links) : scene(std::move(of)), linking(links) { lower_all(); }
 
   void lower_all() {
-    auto fresh = std::make_unique<Lowering>(scene);
+    auto fresh = std::make_unique<Lowering>(scene, linking);
     trees = std::make_unique<TreeEdit>(fresh->flat, fresh->geometry);
     lowering = std::move(fresh);
     changes = {};
@@ -79,6 +79,7 @@ struct LiveScene::State {
     const Matrix baked = subtree_key(shape, shape.world_from_object).baked;
     const std::size_t at = of.first + edit.capsule;
     FlatPrimitive& p = of.subtree->primitives[at];
+    if (p.shape == shape_linked_capsule) return unlink();
     const FlatPrimitive moved =
         flat_capsule(std::get<CapsulesShape>(shape.geometry), edit.capsule,
                      baked == Matrix(1) ? nullptr : &baked, similarity_scale(baked));
@@ -87,6 +88,12 @@ struct LiveScene::State {
     trees->move(*of.subtree, at, changes);
     subtree_has_changed(*of.subtree, &shape);
     return true;
+  }
+
+  /// Has the scene lowered again without linked capsules, which cannot be moved one by one.
+  bool unlink() {
+    linking = Linking::none();
+    return false;
   }
 
   bool follow(const TransformEdit& edit, const TransformEdit& before) {
@@ -111,9 +118,10 @@ struct LiveScene::State {
     const std::size_t count = of.end.primitives - of.begin.primitives;
     if (count > most_moved && count * least_unmoved_share > subtree.primitives.size()) return false;
     for (std::size_t i = 0; i < count; ++i)  // what they have in `leaves` tells where it is
-      if (const auto kind = subtree.primitives[of.first + i].shape;
-          kind == shape_csg || kind == shape_polyhedron || kind == shape_molecular_patch ||
-          shape_has(kind, trait_moves))
+      if (const auto kind = subtree.primitives[of.first + i].shape; kind == shape_linked_capsule)
+        return unlink();
+      else if (kind == shape_csg || kind == shape_polyhedron || kind == shape_molecular_patch ||
+               shape_has(kind, trait_moves))
         return false;
     FlatScene fresh;
     const Subtree own =
@@ -369,6 +377,7 @@ struct LiveScene::State {
   }
 
   Scene scene;
+  Linking linking;
   std::unique_ptr<Lowering> lowering;
   std::unique_ptr<TreeEdit> trees;
   SceneChanges changes;
@@ -376,7 +385,8 @@ struct LiveScene::State {
   bool lights_are_old = false;
 };
 
-LiveScene::LiveScene(Scene scene) : state_(std::make_unique<State>(std::move(scene))) {
+LiveScene::LiveScene(Scene scene, const Linking& linking)
+    : state_(std::make_unique<State>(std::move(scene), linking)) {
   state_->changes = {};
 }
 LiveScene::LiveScene(LiveScene&&) noexcept = default;
@@ -394,7 +404,7 @@ SceneEdit LiveScene::edit(const SceneEdit& edit) {
 SceneEdit LiveScene::put(const SceneEdit& edit) { return state_->put(edit); }
 
 void LiveScene::replace(Scene scene) {
-  auto fresh = std::make_unique<State>(std::move(scene));
+  auto fresh = std::make_unique<State>(std::move(scene), state_->linking);
   fresh->lowerings += state_->lowerings;
   state_ = std::move(fresh);
 }

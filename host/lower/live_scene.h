@@ -10,6 +10,7 @@
 
 #include "lower/changes.h"
 #include "lower/flat_scene.h"
+#include "lower/linking.h"
 #include "scene/edit.h"
 #include "scene/scene.h"
 
@@ -19,7 +20,7 @@ namespace caplet {
 class LiveScene {
  public:
   /// Lowers the scene, which has passed validate(). Throws as lower() does.
-  explicit LiveScene(Scene scene);
+  explicit LiveScene(Scene scene, const Linking& linking = Linking::of_edited());
   LiveScene(LiveScene&&) noexcept;
   LiveScene& operator=(LiveScene&&) noexcept;
   ~LiveScene();
@@ -31,10 +32,10 @@ class LiveScene {
 
   /// Makes a change, and returns the edit that undoes it. A moved capsule changes only the path
   /// from its leaf to the root; boxes along it are the exact unions that a fresh tree would have.
-  /// The whole is lowered again if the arrays cannot hold the change in place (a capsule that
-  /// becomes a sphere, a transform that a shape's form cannot hold), or if edits have doubled the
-  /// cost of a tree since it was built. Throws InputError as check_edit and lower() do, and then
-  /// changes nothing.
+  /// The whole is lowered again if the arrays cannot hold the change in place (a capsule that is
+  /// linked or becomes a sphere, a transform that a shape's form cannot hold), or if edits have
+  /// doubled the cost of a tree since it was built. Throws InputError as check_edit and lower() do,
+  /// and then changes nothing.
   SceneEdit edit(const SceneEdit& edit);
   /// Does the same with an edit that check_edit has already passed.
   SceneEdit put(const SceneEdit& edit);

@@ -17,7 +17,7 @@
 
 namespace caplet {
 
-Lowering::Lowering(const Scene& scene)
+Lowering::Lowering(const Scene& scene, const Linking& linking)
     : images(image_numbers(scene.textures)), spectra(flat, scene.view.film.space) {
   const auto start = std::chrono::steady_clock::now();
   flat.sky_is_unseen = scene.view.film.backdrop.has_value();
@@ -25,7 +25,7 @@ Lowering::Lowering(const Scene& scene)
   for (std::size_t i = 0; i < scene.materials.size(); ++i)
     flat.materials.push_back(lower_material(scene, narrow<uint>(i), images, spectra, flat));
   lower_media(scene, spectra, flat);
-  geometry = lower_geometry(scene, images, spectra, flat);
+  geometry = lower_geometry(scene, images, spectra, linking, flat);
   lower_boundaries(scene, geometry, flat);
   lower_lights(scene, geometry.emitters, spectra, light_images, flat);
   flat.build_seconds =
@@ -58,7 +58,9 @@ void lower_integrator(const IntegratorSettings& integrator, ViewRecord& out) {
 
 }  // namespace
 
-FlatScene lower(const Scene& scene) { return std::move(Lowering(scene).flat); }
+FlatScene lower(const Scene& scene, const Linking& linking) {
+  return std::move(Lowering(scene, linking).flat);
+}
 
 FlatView lower_view(const Scene& scene) {
   FlatView out;

@@ -6,13 +6,14 @@
 #pragma once
 
 #include "lower/flat_scene.h"
+#include "lower/linking.h"
 #include "scene/scene.h"
 
 namespace caplet {
 
 /// Lowers a scene. Throws InputError when a limit of the layout is exceeded (before memory is
 /// allocated).
-FlatScene lower(const Scene& scene);
+FlatScene lower(const Scene& scene, const Linking& linking = {});
 
 /// Lowers the view. It is cheap: it reads only the scene's camera, film, filter, sampler and
 /// integrator.

@@ -214,7 +214,7 @@ void set_emitters(const Subtree& subtree, const Subtree::Emissive& emissive, std
     Emitter& to = out[i];
     to = emitter;
     to.slot = subtree.tree.slots[at];
-    to.geometry = flat.primitive_geometry[p.id];
+    to.geometry = geometry_of(flat.primitive_geometry, p.id);
     to.area = areas[i];
     set_ball(p, placement, to);
     set_reach(p, placement, (flat.geometries[to.geometry].flags & CAPLET_GEOMETRY_FLIP_NORMAL) != 0,

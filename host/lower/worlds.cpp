@@ -125,7 +125,7 @@ struct Worlds::State {
   State(Scene from, std::span<const std::uint32_t> moving_shapes)
       : moving(moving_shapes.size()),
         places(std::move(from), moving_shapes),
-        lowering(places.scene),
+        lowering(places.scene, Linking::none()),
         placed_of(moving) {
     const FlatScene& flat = lowering.flat;
     first_node = flat.nodes.size();

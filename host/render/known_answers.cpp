@@ -94,10 +94,10 @@ std::string difference(const KnownRay& ray, const Seen& seen, std::size_t which)
 Seen seen_of(const FlatScene& flat, const HitRecord& hit) {
   if (hit.slot == CAPLET_NONE) return {};
   Seen out{true, static_cast<double>(hit.t), CAPLET_NONE, (hit.surface & CAPLET_LEAVING) != 0};
-  if (hit.slot >= flat.leaves.size()) return out;
-  const auto primitive = std::bit_cast<std::uint32_t>(flat.leaves[hit.slot]);
-  if (primitive >= flat.primitive_geometry.size()) return out;
-  out.object = flat.geometries[flat.primitive_geometry[primitive]].object;
+  if ((hit.slot & ~CAPLET_SLOT_LINKED) >= flat.leaves.size()) return out;
+  const std::uint32_t primitive = primitive_at(flat.leaves, hit.slot);
+  if (primitive / CAPLET_PAGE_PRIMITIVES >= flat.primitive_geometry.size()) return out;
+  out.object = flat.geometries[geometry_of(flat.primitive_geometry, primitive)].object;
   if (hit.instance < flat.instances.size() && flat.instances[hit.instance].object != CAPLET_NONE)
     out.object = flat.instances[hit.instance].object;
   return out;
@@ -263,7 +263,7 @@ std::vector<std::string> trial_texts(const Device& device, const Trial& trial) {
 
 std::vector<std::string> known_answer_failures(const Device& device, const Trial& trial) {
   const KnownScene known = known_scene(trial.shapes);
-  const FlatScene flat = lower(known.scene);
+  const FlatScene flat = lower(known.scene, links_of_known());
   Tally tally(known.rays);
   if (trial.render) check_render(known, flat, device, tally);
   if (trial.nearest || trial.lists) check_queries(known, flat, device, trial, tally);

@@ -423,6 +423,14 @@ void known(tapered_capsule_kind, Maker& make) {
              hull_of_balls(end0, end1, 0.5, 0.125));
 }
 
+/// Its thin end tells it from the tapered capsule, which is not linked (links_of_known).
+constexpr float linked_thin_end = 0.25f;
+
+void known(linked_capsule_kind, Maker& make) {
+  make.solid(shape_linked_capsule, capsule(end0, end1, 0.5, linked_thin_end),
+             hull_of_balls(end0, end1, 0.5, linked_thin_end));
+}
+
 /// When the shutter opens, where all known rays are seen, it is the tapered capsule.
 void known(moving_capsule_kind, Maker& make) {
   CapsulesShape moving;
@@ -600,6 +608,13 @@ KnownScene known_scene(std::uint64_t shapes) {
 #include "shared/shapes.def"
 #undef SHAPE
   return make.take();
+}
+
+Linking links_of_known() {
+  return {0, 1, [](const Shape& shape) {
+            const auto* capsules = std::get_if<CapsulesShape>(&shape.geometry);
+            return capsules && capsules->radius1 == std::vector{linked_thin_end};
+          }};
 }
 
 const char* shape_name(int kind) {

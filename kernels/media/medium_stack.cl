@@ -9,7 +9,7 @@
 #define CAPLET_MEDIA_MEDIUM_STACK_CL
 
 #include "groups.cl"
-#include "shared/kinds.h"
+#include "slots.cl"
 
 // MediumStack is the state of a ray. inside: for each boundary its number + 1 above a count in bits
 // 0..7, 0 where there is none. around: the medium where no solid is.
@@ -64,7 +64,7 @@ static inline void medium_stack_leave(const Media* media, MediumStack* stack, ui
 // Returns the boundary of a hit, or CAPLET_NONE.
 static inline uint boundary_of(const Tree* tree, const Surfaces* surfaces, const Media* media,
                                const HitRecord* hit) {
-  return media->geometry_boundary[surfaces->primitive_geometry[as_uint(tree->leaves[hit->slot])]];
+  return media->geometry_boundary[geometry_at(tree, surfaces, hit->slot)];
 }
 
 // Returns 1 if a ray that goes through the surface of a hit leaves the boundary.
@@ -72,8 +72,7 @@ static inline int boundary_is_left(const Tree* tree, const Surfaces* surfaces, c
                                    uint boundary, const HitRecord* hit) {
   const int leaving = (hit->surface & CAPLET_LEAVING) != 0;
   if (!(media->boundaries[boundary].flags & CAPLET_BOUNDARY_SHEET)) return leaving;
-  const uint flags =
-      surfaces->geometries[surfaces->primitive_geometry[as_uint(tree->leaves[hit->slot])]].flags;
+  const uint flags = surfaces->geometries[geometry_at(tree, surfaces, hit->slot)].flags;
   return leaving != ((flags & CAPLET_GEOMETRY_FLIP_NORMAL) != 0);
 }
 

@@ -6,7 +6,7 @@
 #define CAPLET_MEDIA_PASSING_CL
 
 #include "groups.cl"
-#include "shared/kinds.h"
+#include "slots.cl"
 
 static inline int material_passes(const Materials* materials, uint material) {
   switch (materials->materials[material].kind) {
@@ -23,9 +23,8 @@ static inline int material_passes(const Materials* materials, uint material) {
 // Returns whether the surface of a hit lets light pass.
 static inline int surface_passes(const Tree* tree, const Surfaces* surfaces,
                                  const Materials* materials, const HitRecord* hit) {
-  const uint primitive = as_uint(tree->leaves[hit->slot]);
-  __global const GeometryRecord* geometry =
-      surfaces->geometries + surfaces->primitive_geometry[primitive];
+  const uint primitive = primitive_at(tree->leaves, hit->slot);
+  __global const GeometryRecord* geometry = surfaces->geometries + geometry_of(surfaces, primitive);
   uint material = geometry->material;
   if (geometry->surface_begin != CAPLET_NONE)
     material =

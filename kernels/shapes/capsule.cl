@@ -80,7 +80,7 @@ static inline real_mask capsule_line(const ShapeRay* ray, RealVector p0, RealVec
   return disc >= 0.0f;
 }
 
-// Returns the lanes that capsule_hit may return for t in [t_min, t_max], and few others: those
+// Returns the lanes that capsule_hit_of may return for t in [t_min, t_max], and few others: those
 // whose axis, seen along the ray, is nearer to it than r.
 //
 // In the frame (u, v, w) the ends are a and b relative to the ray's origin, each component off by
@@ -90,10 +90,8 @@ static inline real_mask capsule_line(const ShapeRay* ray, RealVector p0, RealVec
 // eps (|o - p0| + L + r) of the surface, L <= 2 D with D the greater of |a| and |b|; a t in lengths
 // is off by 16 eps of it. Together 82 eps D + 16 eps r; 96 eps (D + r) are allowed, with D as a sum
 // of components, and 1e-18 for segments seen end-on, whose direction has no digits.
-#define CAPLET_CAPSULE_NEAR 1
-static inline real_mask capsule_near(const NearRay* ray, __global const float* block, uint lane,
-                                     float t_min, float t_max) {
-  const RealVector p0 = capsule_p0_lanes(block, lane), p1 = capsule_p1_lanes(block, lane);
+static inline real_mask capsule_near_of(const NearRay* ray, RealVector p0, RealVector p1, real r,
+                                        float t_min, float t_max) {
   const real ax = p0.x - ray->ox, ay = p0.y - ray->oy, az = p0.z - ray->oz;
   const real bx = p1.x - ray->ox, by = p1.y - ray->oy, bz = p1.z - ray->oz;
   const real au = real_dot(ax, ay, az, ray->ux, ray->uy, ray->uz),
@@ -108,10 +106,16 @@ static inline real_mask capsule_near(const NearRay* ray, __global const float* b
   const real qu = au + at * eu, qv = av + at * ev;
   const real reach =
       real_max(fabs(au), fabs(bu)) + real_max(fabs(av), fabs(bv)) + real_max(fabs(aw), fabs(bw));
-  const real r = capsule_r_lanes(block, lane), outer = r + (0x1.8p-18f * (reach + r) + 1e-18f);
+  const real outer = r + (0x1.8p-18f * (reach + r) + 1e-18f);
   const real begin = real_min(aw, bw) - outer, end = real_max(aw, bw) + outer;
   return (qu * qu + qv * qv <= outer * outer) & (begin <= t_max * ray->length) &
          (end >= t_min * ray->length);
+}
+
+static inline real_mask capsule_near(const NearRay* ray, __global const float* block, uint lane,
+                                     float t_min, float t_max) {
+  return capsule_near_of(ray, capsule_p0_lanes(block, lane), capsule_p1_lanes(block, lane),
+                         capsule_r_lanes(block, lane), t_min, t_max);
 }
 
 static inline real_mask capsule_hit_of(const ShapeRay* ray, RealVector p0, RealVector p1, real r,

@@ -6,22 +6,13 @@
 #ifndef CAPLET_SHAPES_MOVING_CAPSULE_CL
 #define CAPLET_SHAPES_MOVING_CAPSULE_CL
 
-#include "shapes/capsule.cl"
+#include "shapes/capsule_lanes.cl"
 #include "shapes/moving_ends.cl"
-#include "shapes/sphere.cl"
-#include "shapes/tapered_capsule.cl"
 
-// MovingCapsules are the capsules of some lanes at the ray's time. The masks say which of them are
-// spheres, capsules and tapered capsules (flat_capsule, host/lower/shapes/capsule.cpp).
-typedef struct {
-  RealVector p0, p1;
-  real r0, r1;
-  real_mask is_sphere, is_capsule, is_tapered;
-} MovingCapsules;
-
-static inline MovingCapsules moving_capsules(const ShapeRay* ray, __global const float* block,
-                                             uint lane) {
-  MovingCapsules c;
+// Returns the capsules of some lanes at the ray's time.
+static inline CapsuleLanes moving_capsules(const ShapeRay* ray, __global const float* block,
+                                           uint lane) {
+  CapsuleLanes c;
 #if CAPLET_REAL_WIDTH == 8
   float data[8][8];
   for (uint i = 0; i < 8u; i++) {
@@ -62,48 +53,14 @@ static inline MovingCapsules moving_capsules(const ShapeRay* ray, __global const
 
 static inline Span moving_capsule_span(const ShapeRay* ray, __global const float* block,
                                        uint lane) {
-  const MovingCapsules c = moving_capsules(ray, block, lane);
-  Span out = span_of(int_of(0), real_of(0.0f), real_of(0.0f));
-  if (mask_bits(c.is_capsule) != 0) out = capsule_span_of(ray, c.p0, c.p1, c.r0);
-  if (mask_bits(c.is_tapered) != 0) {
-    const Span own = tapered_capsule_span_of(ray, c.p0, c.p1, c.r0, c.r1);
-    out.t_enter = c.is_tapered ? own.t_enter : out.t_enter;
-    out.t_exit = c.is_tapered ? own.t_exit : out.t_exit;
-    out.enter = c.is_tapered ? own.enter : out.enter;
-    out.exit = c.is_tapered ? own.exit : out.exit;
-  }
-  if (mask_bits(c.is_sphere) != 0) {
-    const Span own = sphere_span_of(ray, c.p0, real_max(c.r0, c.r1));
-    out.t_enter = c.is_sphere ? own.t_enter : out.t_enter;
-    out.t_exit = c.is_sphere ? own.t_exit : out.t_exit;
-    out.enter = c.is_sphere ? own.enter : out.enter;
-    out.exit = c.is_sphere ? own.exit : out.exit;
-  }
-  return out;
+  const CapsuleLanes c = moving_capsules(ray, block, lane);
+  return capsule_lanes_span(ray, &c);
 }
 
 static inline real_mask moving_capsule_hit(const ShapeRay* ray, __global const float* block,
                                            uint lane, real* t, real_mask* side) {
-  const MovingCapsules c = moving_capsules(ray, block, lane);
-  real_mask hit = int_of(0), own_side;
-  real own_t;
-  *t = real_of(0.0f);
-  *side = int_of(0);
-  if (mask_bits(c.is_capsule) != 0)
-    hit = capsule_hit_of(ray, c.p0, c.p1, c.r0, t, side) & c.is_capsule;
-  if (mask_bits(c.is_tapered) != 0) {
-    const Span span = tapered_capsule_span_of(ray, c.p0, c.p1, c.r0, c.r1);
-    hit |= span_nearest(ray, &span, &own_t, &own_side) & c.is_tapered;
-    *t = c.is_tapered ? own_t : *t;
-    *side = c.is_tapered ? own_side : *side;
-  }
-  if (mask_bits(c.is_sphere) != 0) {
-    const Span span = sphere_span_of(ray, c.p0, real_max(c.r0, c.r1));
-    hit |= span_nearest(ray, &span, &own_t, &own_side) & c.is_sphere;
-    *t = c.is_sphere ? own_t : *t;
-    *side = c.is_sphere ? own_side : *side;
-  }
-  return hit;
+  const CapsuleLanes c = moving_capsules(ray, block, lane);
+  return capsule_lanes_hit(ray, &c, t, side);
 }
 
 #endif

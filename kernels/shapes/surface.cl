@@ -7,6 +7,7 @@
 #define CAPLET_SHAPES_SURFACE_CL
 
 #include "groups.cl"
+#include "slots.cl"
 #include "shapes/surface_csg.cl"
 #include "shapes/surface_shapes.cl"
 
@@ -51,8 +52,8 @@ static inline Surface surface_at(const Tree* tree, const Surfaces* surfaces, con
     o = affine_point(&to_object, o);
     d = affine_vector(&to_object, d);
   }
-  const uint primitive = as_uint(tree->leaves[hit->slot]);
-  const uint index = surfaces->primitive_geometry[primitive];
+  const uint primitive = primitive_at(tree->leaves, hit->slot);
+  const uint index = geometry_of(surfaces, primitive);
   const GeometryRecord geometry = surfaces->geometries[index];
   const int leaving = (hit->surface & CAPLET_LEAVING) != 0;
   const float3 backward = unit_or(leaving ? d : -d, (float3)(0.0f, 0.0f, 1.0f));
@@ -60,14 +61,16 @@ static inline Surface surface_at(const Tree* tree, const Surfaces* surfaces, con
   // chain_u is u at both ends of a capsule of a chain.
   __global const float* chain_u = 0;
   if (any_chain && (geometry.flags & CAPLET_GEOMETRY_CHAIN))
-    chain_u = surfaces->mesh_uvs + geometry.uv_begin + 2u * (primitive - geometry.primitive_begin);
+    chain_u = kind_is_linked(geometry.shape) ? linked_u(tree->leaves, hit->slot)
+                                             : surfaces->mesh_uvs + geometry.uv_begin +
+                                                   2u * (primitive - geometry.primitive_begin);
   const SurfaceQuery query = {
       surfaces,
       tree->leaves,
       &geometry,
       primitive,
       surface,
-      lane_data(tree->leaves, hit->slot),
+      slot_data(tree->leaves, hit->slot),
       o + hit->t * d,
       backward,
       geometry.uv_space != CAPLET_NONE ? tree->leaves + geometry.uv_space : 0,

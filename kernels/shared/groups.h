@@ -33,7 +33,8 @@
 #define GROUP_SURFACES                                                                             \
   GROUP_BEGIN(Surfaces, surfaces)                                                                  \
   BUFFER(geometries, GeometryRecord, IN)                                                           \
-  BUFFER(primitive_geometry, uint, IN) /* by primitive id */                                       \
+  /* which geometry a primitive is of (geometry_of, shapes.h): pages, then tables of mixed ones */ \
+  BUFFER(primitive_geometry, uint, IN)                                                             \
   /* by GeometryRecord.surface_begin + surface: a material, and CAPLET_SURFACE_DARK */             \
   BUFFER(surface_materials, uint, IN)                                                              \
   BUFFER(mesh_indices, uint, IN) /* vertex numbers within the mesh */                              \

@@ -30,7 +30,8 @@ enum {
   trait_stands_straight = 64,  // its data do not hold a rotation: turned it is placed by an instance
   trait_rare = 128,  // its test takes many registers: done apart where rays are traced one at a time
                      // (trace/single.cl)
-  trait_moves = 256  // its data change with time: programs for scenes at rest have no code of it
+  trait_moves = 256,  // its data change with time: programs for scenes at rest have no code of it
+  trait_linked = 512  // its leaf blocks hold points that neighbours share (shapes.h); never a light
 };
 
 enum {

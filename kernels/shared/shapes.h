@@ -11,6 +11,7 @@
 #ifdef __cplusplus
 #include <bit>
 #include <cstdint>
+#include <span>
 namespace caplet {
 #endif
 
@@ -52,10 +53,35 @@ enum {
 #undef SHAPE
 };
 
+enum {
+  // any_linked_shape says whether some leaf blocks may be those of linked capsules.
+  any_linked_shape = 0
+#define SHAPE(name, traits) || (CAPLET_HAS_SHAPE(shape_##name) && ((traits)&trait_linked) != 0)
+#include "shared/shapes.def"
+#undef SHAPE
+};
+
+// A leaf block of linked capsules is CAPLET_LINK_ROWS rows of 8 floats: the id of the first capsule
+// and the number of capsules (by their bits; the ids are consecutive), then the x of nine points,
+// their y, their z and their radii. The capsule in lane i goes from point i to point i + 1. Those of
+// a chain (CAPLET_GEOMETRY_CHAIN) have another row, and the points' u.
+#define CAPLET_LINK_ROWS 5
+#define CAPLET_LINK_X 2
+#define CAPLET_LINK_Y 11
+#define CAPLET_LINK_Z 20
+#define CAPLET_LINK_R 29
+#define CAPLET_LINK_U 38
+// HitRecord.slot has this bit, besides the place that shapes.def states, for linked capsules.
+#define CAPLET_SLOT_LINKED 0x80000000u
+
+// A page says of which geometry CAPLET_PAGE_PRIMITIVES primitives in a row are: twice its number; or,
+// where they are of several, twice the place of a table of their geometries, and 1.
+#define CAPLET_PAGE_PRIMITIVES 64
+
 #ifdef __cplusplus
 
 // These are the traits of each kind. A kind is exactly one of solid, sheet and compound; it is a
-// light by itself, by its ball, or (instances) not at all.
+// light by itself, by its ball, or (instances, linked capsules) not at all.
 constexpr std::uint32_t traits_of[] = {
 #define SHAPE(name, traits) traits,
 #include "shared/shapes.def"
@@ -63,7 +89,7 @@ constexpr std::uint32_t traits_of[] = {
 };
 #define SHAPE(name, traits)                                                                                                        \
   static_assert(std::has_single_bit(std::uint32_t((traits) & (trait_solid | trait_sheet | trait_compound))), #name);               \
-  static_assert(((traits) & (trait_own_light | trait_ball_light)) != 0, #name ": sampled by itself, by its ball, or by either");
+  static_assert(((traits) & (trait_own_light | trait_ball_light | trait_linked)) != 0, #name ": sampled by itself, by its ball, or by either");
 #define COMPOUND(name, traits) \
   static_assert(std::has_single_bit(std::uint32_t((traits) & (trait_solid | trait_sheet | trait_compound))), #name);
 #include "shared/shapes.def"
@@ -74,11 +100,23 @@ constexpr std::uint32_t data_of[] = {
 #include "shared/shapes.def"
 #undef SHAPE
 };
-/// Returns the rows of 8 floats of a leaf block: the ids, then the data.
-constexpr std::uint32_t rows_of(std::uint32_t shape) { return 1 + data_of[shape]; }
-
 constexpr std::uint64_t shape_bit(std::uint32_t shape) { return std::uint64_t{1} << shape; }
 constexpr bool shape_has(std::uint32_t shape, std::uint32_t trait) { return (traits_of[shape] & trait) != 0; }
+/// Returns the rows of 8 floats of a leaf block: the ids, then the data.
+constexpr std::uint32_t rows_of(std::uint32_t shape) {
+  return shape_has(shape, trait_linked) ? CAPLET_LINK_ROWS : 1 + data_of[shape];
+}
+/// Returns the id of the primitive at a slot of the leaves (HitRecord.slot).
+inline std::uint32_t primitive_at(std::span<const float> leaves, std::uint32_t slot) {
+  if ((slot & CAPLET_SLOT_LINKED) == 0) return std::bit_cast<std::uint32_t>(leaves[slot]);
+  const std::uint32_t place = slot & ~CAPLET_SLOT_LINKED;
+  return std::bit_cast<std::uint32_t>(leaves[place & ~7u]) + (place & 7u);
+}
+/// Returns the number of the geometry of a primitive; `pages`: the buffer primitive_geometry.
+inline std::uint32_t geometry_of(std::span<const std::uint32_t> pages, std::uint32_t primitive) {
+  const std::uint32_t page = pages[primitive / CAPLET_PAGE_PRIMITIVES];
+  return (page & 1u) == 0 ? page >> 1 : pages[(page >> 1) + primitive % CAPLET_PAGE_PRIMITIVES];
+}
 /// Returns the kinds that have a trait.
 constexpr std::uint64_t shapes_with(std::uint32_t trait) {
   std::uint64_t out = 0;

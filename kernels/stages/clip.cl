@@ -19,7 +19,7 @@ typedef struct {
 } ClipSolid;
 
 static inline uint clip_geometry(const Tree* tree, const Surfaces* surfaces, const HitRecord* hit) {
-  return surfaces->primitive_geometry[as_uint(tree->leaves[hit->slot])];
+  return geometry_at(tree, surfaces, hit->slot);
 }
 
 // Returns whether a crossing is one with the same edge or corner of a mesh as the one before.

@@ -62,7 +62,7 @@ static inline float crossings_apart(const RayRecord* ray, float t) {
 static inline int crossing_repeats(const Tree* tree, const Surfaces* surfaces, const Media* media,
                                    const RayCrossings* c) {
   const HitRecord hit = c->hits[c->at - 1u];
-  const uint geometry = surfaces->primitive_geometry[as_uint(tree->leaves[hit.slot])];
+  const uint geometry = geometry_at(tree, surfaces, hit.slot);
   if ((media->boundaries[media->geometry_boundary[geometry]].flags & CAPLET_BOUNDARY_SHEET) == 0)
     return 0;
   const float first = hit.t - crossings_apart(&c->ray, hit.t);
@@ -70,7 +70,7 @@ static inline int crossing_repeats(const Tree* tree, const Surfaces* surfaces, c
     const HitRecord before = c->hits[i - 1u];
     if (before.instance == hit.instance &&
         ((before.surface ^ hit.surface) & CAPLET_LEAVING) == 0u &&
-        surfaces->primitive_geometry[as_uint(tree->leaves[before.slot])] == geometry)
+        geometry_at(tree, surfaces, before.slot) == geometry)
       return 1;
   }
   return 0;

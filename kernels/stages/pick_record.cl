@@ -26,9 +26,8 @@ static inline PickRecord pick_identity(const Tree* tree, const Surfaces* surface
   PickRecord out = {INFINITY, 0.0f, 0.0f, 0.0f, CAPLET_NONE,        CAPLET_NONE,
                     0,        0,    0,    0,    {0.0f, 0.0f, 0.0f}, {0.0f, 0.0f, 0.0f}};
   if (hit->slot == CAPLET_NONE) return out;
-  const uint primitive = as_uint(tree->leaves[hit->slot]);
-  __global const GeometryRecord* geometry =
-      surfaces->geometries + surfaces->primitive_geometry[primitive];
+  const uint primitive = primitive_at(tree->leaves, hit->slot);
+  __global const GeometryRecord* geometry = surfaces->geometries + geometry_of(surfaces, primitive);
   out.t = hit->t;
   out.object = out.shape = geometry->object;
   if (CAPLET_HAS_SHAPE(shape_instance) && hit->instance != CAPLET_NONE &&

@@ -43,7 +43,7 @@ static void stage_item(const Stage* g, uint item) {
     if (boundary != CAPLET_NONE) near = CAPLET_NEAR;
     if (!passes || other.t != hit.t) continue;
     // The nearest hit may hide, at the same t, a surface that stops light.
-    const uint geometry = g->surfaces.primitive_geometry[as_uint(g->tree.leaves[other.slot])];
+    const uint geometry = geometry_at(&g->tree, &g->surfaces, other.slot);
     passes = g->surfaces.geometries[geometry].alpha != CAPLET_NONE ||
              surface_passes(&g->tree, &g->surfaces, &g->materials, &other);
     if (passes) continue;

@@ -20,9 +20,8 @@ typedef struct {
 } AlphaScene;
 
 static inline int alpha_stops(const AlphaScene* scene, const RayRecord* ray, const HitRecord* hit) {
-  const uint primitive = as_uint(scene->tree.leaves[hit->slot]);
-  const uint alpha =
-      scene->surfaces.geometries[scene->surfaces.primitive_geometry[primitive]].alpha;
+  const uint primitive = primitive_at(scene->tree.leaves, hit->slot);
+  const uint alpha = scene->surfaces.geometries[geometry_of(&scene->surfaces, primitive)].alpha;
   if (alpha == CAPLET_NONE) return 1;
   const Surface s = surface_at(&scene->tree, &scene->surfaces, ray, hit);
   const float chance = alpha_chance(&scene->materials, &scene->spectra, alpha, s.uv, s.p, s.ng);

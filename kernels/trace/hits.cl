@@ -9,6 +9,7 @@
 #include "math/vector.cl"
 #include "shapes/placed.cl"
 #include "shapes/shapes.cl"
+#include "slots.cl"
 
 // With zero, infinite and NaN rays traversal would follow children that do not exist.
 static inline int line_is_valid(float3 o, float3 d) {
@@ -28,8 +29,8 @@ static inline int tie_is_before(const Tree* tree, uint slot, uint instance, uint
         other_instance == CAPLET_NONE ? 0u : tree->instances[other_instance].object + 1u;
     if (object != other) return object < other;
   }
-  const uint primitive = as_uint(tree->leaves[slot]),
-             other_primitive = as_uint(tree->leaves[other_slot]);
+  const uint primitive = primitive_at(tree->leaves, slot),
+             other_primitive = primitive_at(tree->leaves, other_slot);
   if (primitive != other_primitive) return primitive < other_primitive;
   return instance < other_instance;
 }
@@ -58,12 +59,36 @@ static inline HitRecord hit_record(const NearestHit* nearest) {
   return hit;
 }
 
-// Keeps the nearest of the ray's hits with the primitives from `first` on, a slot of a leaf block.
-// `instance`: that the ray is in.
+// Returns the lanes of a leaf block that hold a primitive: they are filled from the first on.
+static inline real_mask leaf_lanes_filled(uint kind, __global const float* block, uint lane) {
+#ifdef CAPLET_SHAPES_LINKED_CAPSULE_CL
+  if (kind_is_linked(kind)) return links_filled(block, lane);
+#endif
+  (void)kind;
+  return lanes_filled(block, lane);
+}
+
+#ifdef CAPLET_SHAPES_CAPSULE_CL
+// Returns 0 where the ray hits none of a leaf block's primitives in [t_min, t_max], as far as their
+// kind can tell at less cost than its test.
+static inline int leaf_may_hit(uint kind, const NearRay* ray, __global const float* block,
+                               float t_min, float t_max) {
+  if (CAPLET_HAS_SHAPE(shape_capsule) && kind == shape_capsule)
+    return mask_bits(capsule_near(ray, block, 0, t_min, t_max) & lanes_filled(block, 0)) != 0;
+#ifdef CAPLET_SHAPES_LINKED_CAPSULE_CL
+  if (kind_is_linked(kind))
+    return mask_bits(linked_capsule_near(ray, block, 0, t_min, t_max) & links_filled(block, 0)) !=
+           0;
+#endif
+  return 1;
+}
+#endif
+
+// Keeps the nearest of the ray's hits with the primitives from slot `first` on. `ok`: the lanes
+// that are hit and filled; `instance`: that the ray is in.
 static inline void keep_hits(const Tree* tree, uint first, const ShapeRay* shape, uint instance,
                              real_mask ok, real t, real_mask side, NearestHit* nearest) {
-  const uint lane = first % 8u;
-  ok &= lanes_filled(tree->leaves + (first - lane), lane) & (t > shape->t_min) & (t <= nearest->t);
+  ok &= (t > shape->t_min) & (t <= nearest->t);
   // These are tested one by one: PoCL 6.0 aborts where the two are chosen between by the side
   // (docs/drivers.md).
   if (shape->sees_entering == 0) ok &= (side & int_of(CAPLET_LEAVING)) != 0;
@@ -96,8 +121,10 @@ static inline void test_leaf(const Tree* tree, uint kind, uint row, uint lane,
                              const ShapeRay* shape, uint instance, NearestHit* nearest) {
   real t;
   real_mask side;
-  const real_mask ok = shape_hit(kind, shape, tree->leaves + (size_t)row * 8, lane, &t, &side);
-  keep_hits(tree, row * 8 + lane, shape, instance, ok, t, side, nearest);
+  __global const float* block = tree->leaves + (size_t)row * 8;
+  const real_mask ok =
+      shape_hit(kind, shape, block, lane, &t, &side) & leaf_lanes_filled(kind, block, lane);
+  keep_hits(tree, leaf_slot(kind, row, lane), shape, instance, ok, t, side, nearest);
 }
 
 #endif

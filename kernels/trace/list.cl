@@ -57,7 +57,7 @@ static inline void list_add(HitList* list, float t, uint slot, uint instance, ui
 // Adds crossings of the primitives in lanes lane .. lane + CAPLET_REAL_WIDTH - 1.
 static inline void list_add_span(HitList* list, uint kind, const ShapeRay* ray, Span span,
                                  __global const float* block, uint lane, uint slot, uint instance) {
-  const real_mask filled = lanes_filled(block, lane);
+  const real_mask filled = leaf_lanes_filled(kind, block, lane);
   const uint enter_bits = mask_bits(span.enter & filled), exit_bits = mask_bits(span.exit & filled);
   if ((enter_bits | exit_bits) == 0) return;
   float enter[CAPLET_REAL_WIDTH], exit[CAPLET_REAL_WIDTH];
@@ -100,7 +100,7 @@ static inline void list_add_leaf(HitList* list, const ShapeRay* ray, uint kind, 
     list_add_csg(list, ray, block, row * 8, instance);
   } else {
     for (uint lane = 0; lane < CAPLET_WIDTH; lane += CAPLET_REAL_WIDTH) {
-      const uint slot = row * 8 + lane;
+      const uint slot = leaf_slot(kind, row, lane);
       list_add_span(list, kind, ray, shape_span(kind, ray, block, lane), block, lane, slot,
                     instance);
 #ifdef CAPLET_SHAPES_MOLECULAR_PATCH_CL

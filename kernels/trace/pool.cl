@@ -165,17 +165,14 @@ static void trace_pool(const Stage* g, uint next, const uint end) {
       pool_visit(&pool[at_node[i]], tree->nodes);
       going_on[count++] = at_node[i];
     }
-#ifdef CAPLET_CAPSULE_NEAR
+#ifdef CAPLET_SHAPES_CAPSULE_CL
     int near = 0;
     for (int i = 0; i < leaves; i++) {
       const uchar place = at_leaf[i];
       const PooledRay* r = &pool[place];
-      int may = 1;
-      if (CAPLET_LEAF_KIND(r->current) == shape_capsule) {
-        __global const float* block = tree->leaves + (size_t)CAPLET_LEAF_ROW(r->current) * 8;
-        may = mask_bits(capsule_near(&r->near, block, 0, r->t_min, r->nearest.t) &
-                        lanes_filled(block, 0)) != 0;
-      }
+      const int may = leaf_may_hit(CAPLET_LEAF_KIND(r->current), &r->near,
+                                   tree->leaves + (size_t)CAPLET_LEAF_ROW(r->current) * 8, r->t_min,
+                                   r->nearest.t);
       at_leaf[near] = place;
       going_on[count] = place;
       near += may;

@@ -62,13 +62,12 @@ static inline HitRecord trace_ray_at(const Tree* tree, uint root,
     if (leaf == CAPLET_WALK_ENDS) return hit_record(&nearest);
     const uint kind = CAPLET_LEAF_KIND(leaf), row = CAPLET_LEAF_ROW(leaf);
     __global const float* block = tree->leaves + (size_t)row * 8;
-    // Lanes are filled from the first on.
     if (has_rare_shape && shape_is_rare(kind)) {
       walk_forget(&walk, stack);
       rare_leaf(tree, ray, kind, row, &walk, &nearest);
     } else {
 #pragma unroll 1
-      for (uint lane = 0; lane < CAPLET_WIDTH && lanes_filled(block, lane) != 0; lane++)
+      for (uint lane = 0; lane < CAPLET_WIDTH && leaf_lanes_filled(kind, block, lane) != 0; lane++)
         test_leaf(tree, kind, row, lane, &shape, walk.instance, &nearest);
     }
     if (nearest.found && nearest.t < enough) return hit_record(&nearest);

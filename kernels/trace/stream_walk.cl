@@ -81,11 +81,9 @@ static void STREAM_WALK(const Stage* g, uint first, const Tree* tree, uint root,
     for (int i = 0; i < n; i++) {
       const uchar id = l->ids[at + i];
       l->near[nears] = id;
-#ifdef CAPLET_CAPSULE_NEAR
-      if (kind == shape_capsule &&
-          mask_bits(capsule_near(&space->near[id], block, 0, space->slabs[id].t_min,
-                                 space->slabs[id].t_best) &
-                    lanes_filled(block, 0)) == 0)
+#ifdef CAPLET_SHAPES_CAPSULE_CL
+      if (!leaf_may_hit(kind, &space->near[id], block, space->slabs[id].t_min,
+                        space->slabs[id].t_best))
         continue;
 #endif
       nears++;

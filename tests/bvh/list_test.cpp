@@ -18,6 +18,7 @@
 #include <set>
 
 #include "list_tracer.h"
+#include "lower/geometry_pages.h"
 #include "random_scene.h"
 #include "reference/solver.h"
 
@@ -74,6 +75,7 @@ struct ListScene {
   explicit ListScene(std::vector<FlatPrimitive> list, const std::vector<dmat4>& placements = {},
                      uint flags = 0)
       : primitives(std::move(list)) {
+    std::vector<std::uint32_t> geometry_of;
     for (FlatPrimitive& p : primitives) {
       p.id = static_cast<std::uint32_t>(references.size());
       references.push_back(reference_of(p));
@@ -84,9 +86,10 @@ struct ListScene {
           geometry.uv_space = CAPLET_NONE;
       geometry.index_begin = 3 * p.id;
       flat.geometries.push_back(geometry);
-      flat.primitive_geometry.push_back(p.id);
+      geometry_of.push_back(p.id);
       for (int k = 0; k < 3; ++k) flat.mesh_indices.push_back(0);
     }
+    flat.primitive_geometry = geometry_pages(geometry_of);
     const EncodedTree tree = encode_tree(primitives, flat.nodes, flat.leaves);
     slots = tree.slots;
     flat.world.root = tree.root;

@@ -52,8 +52,7 @@ inline bool before(const FlatScene& scene, const HitRecord& a, const HitRecord& 
   const auto key = [&](const HitRecord& hit) {
     const std::uint32_t object =
         hit.instance == CAPLET_NONE ? 0 : scene.instances[hit.instance].object + 1;
-    return std::tuple(object, std::bit_cast<std::uint32_t>(scene.leaves[hit.slot]), hit.instance,
-                      hit.surface);
+    return std::tuple(object, primitive_at(scene.leaves, hit.slot), hit.instance, hit.surface);
   };
   return key(a) < key(b);
 }
@@ -115,9 +114,9 @@ class Checker {
  private:
   void crossing(const RayRecord& ray, const HitRecord& hit) {
     require(std::isfinite(hit.t) && hit.t > ray.t_min && hit.t > 0 && hit.t < ray.t_max);
-    require(hit.slot < scene_.leaves.size());
-    const auto primitive = std::bit_cast<std::uint32_t>(scene_.leaves[hit.slot]);
-    require(primitive < scene_.primitive_geometry.size());
+    require((hit.slot & ~CAPLET_SLOT_LINKED) < scene_.leaves.size());
+    const std::uint32_t primitive = primitive_at(scene_.leaves, hit.slot);
+    require(primitive / CAPLET_PAGE_PRIMITIVES < scene_.primitive_geometry.size());
     require(hit.instance == CAPLET_NONE || hit.instance < scene_.instances.size());
 
     const HostGroups* g = arrays_.groups();

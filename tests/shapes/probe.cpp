@@ -13,6 +13,7 @@
 #include <stdexcept>
 
 #include "faced.h"
+#include "lower/geometry_pages.h"
 #include "lower/packed_nodes.h"
 #include "shared/kinds.h"
 #include "support/scene_buffers.h"
@@ -365,7 +366,7 @@ std::vector<Probed> Probe::trace(const std::vector<std::uint32_t>& which,
              leaves = upload(device_, leaves_), uvs = upload(device_, mesh_uvs);
   const auto instances = upload(device_, instances_);
   const auto geometry_buffer = upload(device_, geometries);
-  const auto primitive_geometry = upload(device_, primitive_geometry_),
+  const auto primitive_geometry = upload(device_, geometry_pages(primitive_geometry_)),
              indices = upload(device_, mesh_indices_), root_buffer = upload(device_, roots);
   const auto ray_buffer = upload(device_, rays);
   const Buffer<HitRecord> hits(device_, rays.size());

@@ -47,18 +47,20 @@ struct ShapeKind {
 };
 inline void PrintTo(const ShapeKind& kind, std::ostream* out) { *out << kind.name; }
 
-inline constexpr std::size_t hit_count = shape_count - 1 - std::popcount(shapes_with(trait_moves));
+inline constexpr std::size_t hit_count =
+    shape_count - 1 - std::popcount(shapes_with(trait_moves | trait_linked));
 inline constexpr std::array<ShapeKind, hit_count> shapes_to_hit = [] {
   std::array<ShapeKind, hit_count> out{};
   std::size_t count = 0;
   for (const Kind& kind : all_shapes)
     if (kind.number != shape_instance &&
-        !shape_has(static_cast<std::uint32_t>(kind.number), trait_moves))
+        !shape_has(static_cast<std::uint32_t>(kind.number), trait_moves | trait_linked))
       out[count++] = {kind.number, kind.name};
   return out;
 }();
-/// The shapes that a ray can hit: all but instances, which hold others, and those that move, which
-/// tests/motion compares with what they are at one time.
+/// The shapes that a ray can hit: all but instances, which hold others, those that move, which
+/// tests/motion compares with what they are at one time, and linked capsules, which tests/links
+/// compares with the same unlinked.
 inline std::span<const ShapeKind> shape_kinds() { return shapes_to_hit; }
 
 /// As the name of a test that has a kind for its parameter.

@@ -53,7 +53,7 @@ struct BinaryTree {
 
 /// Builds the tree. Node 0 is the root. Numbers of the other nodes depend on timing; the tree's
 /// shape does not.
-BinaryTree build_binary(std::span<const Reference> references, std::uint32_t single_group,
+BinaryTree build_binary(std::span<const Reference> references, std::uint64_t single_groups,
                         Effort effort);
 
 /// Returns the wide nodes of least cost over the binary tree.

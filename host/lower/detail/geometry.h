@@ -7,6 +7,7 @@
 #include "lower/detail/images.h"
 #include "lower/detail/subtrees.h"
 #include "lower/flat_scene.h"
+#include "lower/linking.h"
 #include "lower/spectrum.h"
 #include "scene/scene.h"
 
@@ -17,6 +18,6 @@ namespace caplet {
 /// hold (an ellipsoid, a sheared capsule) becomes an instance of its own tree, shared by all shapes
 /// under the same transform.
 LoweredGeometry lower_geometry(const Scene& scene, const ImageNumbers& images,
-                               SpectrumTable& spectra, FlatScene& out);
+                               SpectrumTable& spectra, const Linking& linking, FlatScene& out);
 
 }  // namespace caplet

@@ -8,6 +8,7 @@
 #include "lower/detail/light_images.h"
 #include "lower/detail/lights.h"
 #include "lower/flat_scene.h"
+#include "lower/linking.h"
 #include "lower/spectrum.h"
 #include "scene/scene.h"
 
@@ -17,7 +18,7 @@ namespace caplet {
 /// other, so it stays where it is.
 struct Lowering {
   /// Lowers the scene. Throws as lower() does.
-  explicit Lowering(const Scene& scene);
+  explicit Lowering(const Scene& scene, const Linking& linking = {});
   Lowering(const Lowering&) = delete;
   Lowering& operator=(const Lowering&) = delete;
 

@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "lower/linking.h"
 #include "scene/scene.h"
 #include "shared/kinds.h"
 #include "shared/records.h"
@@ -46,6 +47,9 @@ struct KnownScene {
 /// instances, some stretched, mirrored or one-sided. They are far enough from each other that no
 /// ray meets two of them.
 KnownScene known_scene(std::uint64_t shapes);
+
+/// Returns which capsules of known scenes are linked: those of that kind.
+Linking links_of_known();
 
 /// Returns "sphere" for shape_sphere.
 const char* shape_name(int kind);

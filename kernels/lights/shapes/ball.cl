@@ -37,8 +37,7 @@ static inline float3 ball_sample(__global const float* ball, float3 p, float2 u)
 static inline int primitive_crossing(const Tree* tree, const Surfaces* surfaces, uint slot,
                                      uint instance, float3 p, float3 wi, float t_min,
                                      HitRecord* hit) {
-  const GeometryRecord geometry =
-      surfaces->geometries[surfaces->primitive_geometry[as_uint(tree->leaves[slot])]];
+  const GeometryRecord geometry = surfaces->geometries[geometry_at(tree, surfaces, slot)];
   float3 o = p, d = wi;
   if (instance != CAPLET_NONE) {
     const Affine to_object = object_from_world(tree, instance);
