@@ -117,12 +117,14 @@ struct LiveScene::State {
     Subtree& subtree = *of.subtree;
     const std::size_t count = of.end.primitives - of.begin.primitives;
     if (count > most_moved && count * least_unmoved_share > subtree.primitives.size()) return false;
-    for (std::size_t i = 0; i < count; ++i)  // what they have in `leaves` tells where it is
-      if (const auto kind = subtree.primitives[of.first + i].shape; kind == shape_linked_capsule)
-        return unlink();
-      else if (kind == shape_csg || kind == shape_polyhedron || kind == shape_molecular_patch ||
-               shape_has(kind, trait_moves))
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::uint32_t kind = subtree.primitives[of.first + i].shape;
+      if (kind == shape_linked_capsule) return unlink();
+      // What these have in `leaves` tells where they are.
+      if (kind == shape_csg || kind == shape_polyhedron || kind == shape_molecular_patch ||
+          shape_has(kind, trait_moves))
         return false;
+    }
     FlatScene fresh;
     const Subtree own =
         lower_shape_alone(scene, shape, baked, 0, lowering->images, lowering->spectra, fresh);

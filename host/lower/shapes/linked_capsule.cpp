@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 #include <algorithm>
+#include <array>
 #include <bit>
 
 #include "base/check.h"
