@@ -120,7 +120,7 @@ struct LiveScene::State {
     for (std::size_t i = 0; i < count; ++i) {
       const std::uint32_t kind = subtree.primitives[of.first + i].shape;
       if (kind == shape_linked_capsule) return unlink();
-      // What these have in `leaves` tells where they are.
+      // These kinds keep data in `leaves` that depend on the matrix.
       if (kind == shape_csg || kind == shape_polyhedron || kind == shape_molecular_patch ||
           shape_has(kind, trait_moves))
         return false;

@@ -56,7 +56,7 @@ typedef struct {
 // Bsdf is a BSDF at four wavelengths, which <name>_make reads from a material's data. One or
 // several materials use each field; eta is relative to the outside (whose index is 1). random: the
 // key of the random numbers for estimates (trait_stochastic), which the caller sets after _make.
-// What one material alone keeps is listed in materials.def.
+// materials.def lists the members that one material alone uses.
 typedef struct {
   uint kind, flags, random;
   float4 reflectance, transmittance, eta, k;
