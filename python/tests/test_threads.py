@@ -226,7 +226,7 @@ signal.signal(signal.SIGINT, signal.default_int_handler)
 session = caplet.Session(scene, size=(320, 240))
 session.render(1)
 done = []
-other = threading.Thread(target=lambda: done.append(session._native.render(256, None, None)))
+other = threading.Thread(target=lambda: done.append(session._native.render(64, None, None)))
 other.start()
 while session._native is None:
     pass
@@ -239,7 +239,7 @@ except KeyboardInterrupt:
 else:
     raise AssertionError("no interrupt")
 other.join()
-assert done == [256] and session.spp == 257, (done, session.spp)
+assert done == [64] and session.spp == 65, (done, session.spp)
 """)
 
 

@@ -83,13 +83,29 @@ Clock::time_point deadline_in(double seconds) {
 
 Running::Running(const std::vector<std::string>& arguments, const fs::path& folder,
                  const std::map<std::string, std::string>& environment,
-                 const std::function<void()>& in_child)
+                 const std::function<void()>& in_child, Stderr stderr_is)
     : streams_(temporary_folder()) {
+  int its_end = -1;
+  winsize size{30, 100, 0, 0};
+  if (stderr_is == Stderr::terminal &&
+      ::openpty(&terminal_, &its_end, nullptr, nullptr, &size) != 0)
+    throw std::runtime_error("openpty failed");
   process_ = ::fork();
   if (process_ < 0) throw std::runtime_error("fork failed");
-  if (process_ > 0) return;
+  if (process_ > 0) {
+    if (its_end >= 0) ::close(its_end);
+    if (terminal_ >= 0) reader_ = std::thread([this] { read_terminal(); });
+    return;
+  }
   redirect(streams_ / "out", STDOUT_FILENO);
-  redirect(streams_ / "err", STDERR_FILENO);
+  if (its_end < 0) {
+    redirect(streams_ / "err", STDERR_FILENO);
+  } else {
+    if (::dup2(its_end, STDERR_FILENO) < 0) ::_exit(126);
+    ::close(its_end);
+    ::close(terminal_);
+    ::setenv("TERM", "xterm", 1);
+  }
   // What this process may have been told to ignore.
   for (const int number : {SIGHUP, SIGINT, SIGTERM, SIGPIPE}) ::signal(number, SIG_DFL);
   if (in_child) in_child();
@@ -101,6 +117,16 @@ Running::~Running() {
     ::kill(process_, SIGKILL);
     ::waitpid(process_, &status_, 0);
   }
+  if (reader_.joinable()) reader_.join();
+  if (terminal_ >= 0) ::close(terminal_);
+}
+
+/// Writes what comes into the file that stderr would be, until the program has ended.
+void Running::read_terminal() {
+  std::ofstream to(streams_ / "err", std::ios::binary);
+  char buffer[4096];
+  for (ssize_t count; (count = ::read(terminal_, buffer, sizeof buffer)) > 0;)
+    to.write(buffer, count).flush();
 }
 
 bool Running::ended() {
@@ -126,6 +152,7 @@ Result Running::wait(double seconds) {
     if (Clock::now() > deadline) ::kill(process_, SIGKILL);
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
   }
+  if (reader_.joinable()) reader_.join();
   Result result;
   set_exit(result, status_);
   result.out = read_file(streams_ / "out");

@@ -11,6 +11,7 @@
 #include <functional>
 #include <map>
 #include <string>
+#include <thread>
 #include <vector>
 
 namespace caplet::test {
@@ -26,10 +27,12 @@ struct Result {
 /// their `--device`, unless the test says which device or which drivers they are to see.
 class Running {
  public:
-  /// `in_child`: called in the process before it becomes the program.
+  /// `in_child`: called in the process before it becomes the program. On a terminal (its stderr
+  /// alone) the first progress is shown at once, elsewhere after five seconds.
+  enum class Stderr { file, terminal };
   Running(const std::vector<std::string>& arguments, const std::filesystem::path& folder,
           const std::map<std::string, std::string>& environment = {},
-          const std::function<void()>& in_child = {});
+          const std::function<void()>& in_child = {}, Stderr stderr_is = Stderr::file);
   ~Running();
   Running(const Running&) = delete;
   Running& operator=(const Running&) = delete;
@@ -42,6 +45,9 @@ class Running {
 
  private:
   bool ended();
+  void read_terminal();
+  int terminal_ = -1;
+  std::thread reader_;
   pid_t process_ = -1;
   int status_ = 0;
   bool ended_ = false;

@@ -27,7 +27,8 @@ INSTANTIATE_TEST_SUITE_P(All, Signals, testing::Values(SIGINT, SIGTERM, SIGHUP),
 
 TEST_P(Signals, WriteTheFinishedPasses) {
   const fs::path folder = test::folder_with_scene();
-  test::Running running({"render", "scene.pbrt", "-o", "out.exr", "--spp", endless}, folder);
+  test::Running running({"render", "scene.pbrt", "-o", "out.exr", "--spp", endless}, folder, {}, {},
+                        test::Running::Stderr::terminal);
   ASSERT_TRUE(running.wait_for_stderr("paths/s"));
   running.send(GetParam());
   if (GetParam() == SIGHUP) running.send(SIGHUP);  // as when a terminal and its shell go
@@ -39,8 +40,9 @@ TEST_P(Signals, WriteTheFinishedPasses) {
 
 TEST(Signals, NohupIsHeard) {
   const fs::path folder = test::folder_with_scene();
-  test::Running running({"render", "scene.pbrt", "-o", "out.exr", "--spp", endless, "--time", "8"},
-                        folder, {}, [] { ::signal(SIGHUP, SIG_IGN); });
+  test::Running running(
+      {"render", "scene.pbrt", "-o", "out.exr", "--spp", endless, "--time", "3"}, folder, {},
+      [] { ::signal(SIGHUP, SIG_IGN); }, test::Running::Stderr::terminal);
   ASSERT_TRUE(running.wait_for_stderr("paths/s"));
   running.send(SIGHUP);
   ASSERT_EQ(running.wait().code, 0);

@@ -171,7 +171,7 @@ TEST(Verify, WrongUsage) {
 TEST(Verify, CtrlCSaysWhatWasAsked) {
   const auto folder = folder_with_scene();
   test::Running running({"verify", "scene.pbrt", "--rays", "1000000000", "--heatmap", "heat.exr"},
-                        folder);
+                        folder, {}, {}, test::Running::Stderr::terminal);
   ASSERT_TRUE(running.wait_for_stderr("Mrays/s"));
   running.send(SIGINT);
   const Result result = running.wait();
