@@ -12,6 +12,7 @@
 #include <span>
 
 #include "base/check.h"
+#include "lower/all_rows.h"
 #include "lower/detail/flat_shapes.h"
 #include "lower/detail/shapes.h"
 #include "lower/detail/textures.h"
@@ -215,7 +216,8 @@ class GeometryLowering {
       out_.shapes |= shape_bit(shape_instance);
     // Kernels have at least one kind.
     if (out_.shapes == 0) out_.shapes = shape_bit(shape_sphere);
-    kind_bits_ = out_.leaf_kind_bits = leaf_kind_bits(out_.shapes);
+    kind_bits_ = out_.leaf_kind_bits =
+        leaf_kind_bits(for_all_rows() ? shape_bit(shape_count - 1) : out_.shapes);
   }
 
   Lengths lengths() const {

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cstdlib>
 #include <iterator>
 #include <map>
 #include <string_view>
@@ -15,6 +14,7 @@
 #include "base/clock.h"
 #include "base/error.h"
 #include "device/cl_error.h"
+#include "lower/all_rows.h"
 #include "render/detail/known_rays.h"
 #include "render/detail/launch_policy.h"
 #include "shared/shapes.h"
@@ -139,20 +139,6 @@ std::string options_of(std::string_view source, std::string_view options) {
   }
   return out;
 }
-
-namespace {
-
-/// Returns whether kernels are for all rows of the lists, not for those of the scene.
-bool for_all_rows() {
-  constexpr const char* variable = "CAPLET_ROWS";
-  const char* const named = std::getenv(variable);
-  const std::string_view text = named ? named : "";
-  if (!text.empty() && text != "all" && text != "scene")
-    throw InputError(SourceLocation{variable}, fmt::format("'{}' is not all or scene", text));
-  return text == "all";
-}
-
-}  // namespace
 
 StageOptions stage_options(const FlatScene& scene, const Device& device) {
   const bool all = for_all_rows();

@@ -60,9 +60,8 @@ struct StageOptions {
 /// differ in nothing that a stage knows share its program.
 std::string options_of(std::string_view source, std::string_view options);
 
-/// Returns the options for a scene. With the variable CAPLET_ROWS=all the kernels are for all rows
-/// of the lists, so that tests of other scenes find them compiled; pictures are the same. Throws
-/// InputError if the variable says anything else but `scene`.
+/// Returns the options for a scene, or those for all rows of the lists (for_all_rows): pictures are
+/// the same. Throws InputError as for_all_rows does.
 StageOptions stage_options(const FlatScene& scene, const Device& device);
 
 /// Returns the OpenCL C of a stage, without `#include`s.
