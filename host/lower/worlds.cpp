@@ -7,6 +7,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <iterator>
@@ -103,17 +104,76 @@ bool stands_in_tree(const Shape& shape) {
          primitive_under(shape, 0, shape.world_from_object).has_value();
 }
 
+// A capsule whose ends change may be of any of these kinds in a world. Its shape is lowered with
+// each capsule once of every kind, all those of the first kind first, so that kernels and geometry
+// records know them.
+constexpr std::array end_kinds{shape_capsule, shape_tapered_capsule, shape_sphere};
+
+/// Returns a shape with such capsules in the place of its own.
+CapsulesShape of_each_kind(const CapsulesShape& of) {
+  CapsulesShape out;
+  for (const auto kind : end_kinds)
+    for (std::size_t i = 0; i < count_of(of); ++i) {
+      out.p0.emplace_back(0, 0, 0);
+      out.p1.emplace_back(kind == shape_sphere ? 0 : 1, 0, 0);
+      out.radius0.push_back(1);
+      out.radius1.push_back(kind == shape_tapered_capsule ? 0.5F : 1);
+      if (!of.materials.empty()) out.materials.push_back(of.materials[i]);
+      if (!of.u.empty()) out.u.push_back(of.u[i]);
+    }
+  return out;
+}
+
+std::size_t index_of_kind(const FlatPrimitive& p) {
+  const auto found = std::ranges::find(end_kinds, static_cast<int>(p.shape));
+  CHECK_EQ_(found != end_kinds.end(), true);
+  return static_cast<std::size_t>(found - end_kinds.begin());
+}
+
+bool is_capsule(const Capsule& c) {
+  const auto is_finite = [](const glm::vec3& v) { return std::isfinite(v.x + v.y + v.z); };
+  return is_finite(c.p0) && is_finite(c.p1) && std::isfinite(c.radius0 + c.radius1) &&
+         c.radius0 >= 0 && c.radius1 >= 0;
+}
+
+/// Marks which of `count` shapes are in a list, by their index in it; CAPLET_NONE: not.
+std::vector<std::uint32_t> places_in(std::span<const std::uint32_t> list, std::size_t count) {
+  std::vector<std::uint32_t> out(count, CAPLET_NONE);
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    CHECK_LT_(std::size_t{list[i]}, count);
+    CHECK_EQ_(out[list[i]], std::uint32_t{CAPLET_NONE});
+    out[list[i]] = narrow<std::uint32_t>(i);
+  }
+  return out;
+}
+
 }  // namespace
 
 struct Worlds::State {
+  /// A shape whose capsules have other ends in each world.
+  struct Deforming {
+    std::uint32_t in_tree = CAPLET_NONE;  // index into Places::in_tree
+    std::uint32_t moving = CAPLET_NONE;   // index into the moving shapes; CAPLET_NONE: it rests
+    glm::dmat4 world_from_object{1};      // where it rests
+    std::size_t first = 0, count = 0;     // its capsules, of those of all deforming shapes
+  };
+
   /// Places is a scene in which everything that moves is an object with an instance. Its shapes of
   /// the world are those that stand in the worlds' trees themselves: simple moving ones, again, and
   /// the resting ones where they are few.
   struct Places {
-    Places(Scene from, std::span<const std::uint32_t> moving);
+    Places(Scene from, std::span<const std::uint32_t> moving,
+           std::span<const std::uint32_t> deforming);
+    /// Returns how many capsules the deforming shapes have in all.
+    std::size_t ends() const {
+      return deforming.empty() ? 0 : deforming.back().first + deforming.back().count;
+    }
 
     Scene scene;
-    std::vector<std::uint32_t> in_tree;         // numbers of the shapes of the world
+    std::vector<Deforming> deforming;
+    std::vector<std::uint32_t> in_tree;  // numbers of the shapes of the world
+    std::vector<std::size_t>
+        capsules_in_tree;  // by them: of one that deforms, their number; else 0
     std::vector<std::uint32_t> moving_in_tree;  // by moving shape: index into those, or CAPLET_NONE
     std::size_t resting_in_tree = 0;            // of them, from here on, rest
     // By instance of `scene`:
@@ -122,9 +182,10 @@ struct Worlds::State {
     std::vector<std::vector<std::uint32_t>> shapes_of;  // numbers of the object's shapes
   };
 
-  State(Scene from, std::span<const std::uint32_t> moving_shapes)
+  State(Scene from, std::span<const std::uint32_t> moving_shapes,
+        std::span<const std::uint32_t> deforming_shapes)
       : moving(moving_shapes.size()),
-        places(std::move(from), moving_shapes),
+        places(std::move(from), moving_shapes, deforming_shapes),
         lowering(places.scene, Linking::none()),
         placed_of(moving) {
     const FlatScene& flat = lowering.flat;
@@ -157,8 +218,52 @@ struct Worlds::State {
         .subspan(extent.first, extent.end.primitives - extent.begin.primitives);
   }
 
+  /// Returns where a deforming shape is in world `w`.
+  const glm::dmat4& transform_of(const Deforming& shape, std::size_t w,
+                                 std::span<const glm::dmat4> transforms) const {
+    return shape.moving == CAPLET_NONE ? shape.world_from_object
+                                       : transforms[w * moving + shape.moving];
+  }
+
+  /// Throws InputError unless a world's deforming shapes can be what is asked.
+  void check_ends(std::size_t w, std::size_t number, std::span<const glm::dmat4> transforms,
+                  std::span<const Capsule> ends) const {
+    for (const Deforming& shape : places.deforming) {
+      const std::uint32_t which = places.in_tree[shape.in_tree];
+      if (similarity_scale(transform_of(shape, w, transforms)) <= 0)
+        throw InputError(fmt::format(
+            "world {}: the transform of shape {}, whose ends change, is not a similarity (of one "
+            "scale in all directions)",
+            number, which));
+      for (std::size_t i = 0; i < shape.count; ++i)
+        if (!is_capsule(ends[w * places.ends() + shape.first + i]))
+          throw InputError(
+              fmt::format("world {}: capsule {} of shape {} is not finite or has a negative radius",
+                          number, i, which));
+    }
+  }
+
+  /// Appends the capsules of a deforming shape of a world.
+  void append(const Deforming& shape, const glm::dmat4& m, std::span<const Capsule> ends,
+              std::vector<FlatPrimitive>& out) const {
+    CapsulesShape capsules;
+    for (const Capsule& c : ends) {
+      capsules.p0.push_back(c.p0);
+      capsules.p1.push_back(c.p1);
+      capsules.radius0.push_back(c.radius0);
+      capsules.radius1.push_back(c.radius1);
+    }
+    const std::span<const FlatPrimitive> of = lowered(shape.in_tree);
+    const double scale = similarity_scale(m);
+    for (std::size_t i = 0; i < shape.count; ++i) {
+      out.push_back(flat_capsule(capsules, i, m == glm::dmat4(1) ? nullptr : &m, scale));
+      out.back().id = of[index_of_kind(out.back()) * shape.count + i].id;
+    }
+  }
+
   /// Writes the instances of world `w`, and returns its tree.
-  WorldTree place(std::size_t w, std::span<const glm::dmat4> transforms) {
+  WorldTree place(std::size_t w, std::span<const glm::dmat4> transforms,
+                  std::span<const Capsule> ends) {
     FlatScene& flat = lowering.flat;
     const auto& placed = lowering.geometry.placed;
     std::vector<FlatPrimitive> primitives = resting;
@@ -178,6 +283,9 @@ struct Worlds::State {
         set_instance_box(*placed[i].subtree, m, nullptr, box);
       }
     }
+    for (const Deforming& shape : places.deforming)
+      append(shape, transform_of(shape, w, transforms),
+             ends.subspan(w * places.ends() + shape.first, shape.count), primitives);
     WorldTree out;
     encode_tree(primitives, out.nodes, out.leaves, flat.leaf_kind_bits);
     return out;
@@ -193,13 +301,23 @@ struct Worlds::State {
   SceneChanges changes;
 };
 
-Worlds::State::Places::Places(Scene from, std::span<const std::uint32_t> moving)
+Worlds::State::Places::Places(Scene from, std::span<const std::uint32_t> moving,
+                              std::span<const std::uint32_t> deforming_shapes)
     : scene(std::move(from)), moving_in_tree(moving.size(), CAPLET_NONE) {
-  std::vector<std::uint32_t> moved(scene.shapes.size(), CAPLET_NONE);
-  for (std::size_t i = 0; i < moving.size(); ++i) {
-    CHECK_LT_(std::size_t{moving[i]}, moved.size());
-    CHECK_EQ_(moved[moving[i]], std::uint32_t{CAPLET_NONE});
-    moved[moving[i]] = narrow<std::uint32_t>(i);
+  const std::vector<std::uint32_t> moved = places_in(moving, scene.shapes.size());
+  const std::vector<std::uint32_t> deforms = places_in(deforming_shapes, scene.shapes.size());
+  deforming.resize(deforming_shapes.size());
+  for (std::size_t k = 0; k < deforming.size(); ++k) {
+    const Shape& shape = scene.shapes[deforming_shapes[k]];
+    const auto* capsules = std::get_if<CapsulesShape>(&shape.geometry);
+    if (!capsules)
+      throw InputError(shape.where, fmt::format("worlds: shape {} has no capsules whose ends could "
+                                                "change",
+                                                deforming_shapes[k]));
+    deforming[k].moving = moved[deforming_shapes[k]];
+    deforming[k].world_from_object = shape.world_from_object;
+    deforming[k].first = k > 0 ? deforming[k - 1].first + deforming[k - 1].count : 0;
+    deforming[k].count = count_of(*capsules);
   }
   scene.lights.clear();
   scene.textures.clear();
@@ -235,6 +353,21 @@ Worlds::State::Places::Places(Scene from, std::span<const std::uint32_t> moving)
     Shape& shape = scene.shapes[i];
     keep_geometry_alone(shape);
     const auto own = narrow<std::uint32_t>(i);
+    if (deforms[i] != CAPLET_NONE) {
+      auto& capsules = std::get<CapsulesShape>(shape.geometry);
+      capsules = of_each_kind(capsules);
+      shape.world_from_object = glm::dmat4(1);
+      if (!subtree_key(shape, shape.world_from_object).is_common())
+        throw InputError(shape.where, fmt::format("worlds: shape {} shows one side alone, and its "
+                                                  "ends cannot change",
+                                                  i));
+      deforming[deforms[i]].in_tree = narrow<std::uint32_t>(shapes.size());
+      capsules_in_tree.resize(shapes.size());
+      capsules_in_tree.push_back(deforming[deforms[i]].count);
+      in_tree.push_back(own);
+      shapes.push_back(std::move(shape));
+      continue;
+    }
     if (moved[i] == CAPLET_NONE) {
       resting_primitives += primitive_count(shape);
       resting.shapes.push_back(std::move(shape));
@@ -259,21 +392,24 @@ Worlds::State::Places::Places(Scene from, std::span<const std::uint32_t> moving)
     in_tree.insert(in_tree.end(), resting_numbers.begin(), resting_numbers.end());
   }
   scene.shapes = std::move(shapes);
+  capsules_in_tree.resize(scene.shapes.size());
 }
 
-Worlds::Worlds(Scene scene, std::span<const std::uint32_t> moving) {
+Worlds::Worlds(Scene scene, std::span<const std::uint32_t> moving,
+               std::span<const std::uint32_t> deforming) {
   if (moves(scene))
     throw InputError("worlds: the scene moves while its shutter is open, and worlds stand still");
-  state_ = std::make_unique<State>(std::move(scene), moving);
+  state_ = std::make_unique<State>(std::move(scene), moving, deforming);
 }
 Worlds::Worlds(Worlds&&) noexcept = default;
 Worlds& Worlds::operator=(Worlds&&) noexcept = default;
 Worlds::~Worlds() = default;
 
 void Worlds::place(std::size_t worlds, std::span<const glm::dmat4> transforms,
-                   std::size_t first_world) {
+                   std::span<const Capsule> ends, std::size_t first_world) {
   State& s = *state_;
   CHECK_EQ_(transforms.size(), worlds * s.moving);
+  CHECK_EQ_(ends.size(), worlds * s.places.ends());
   s.roots.clear();
   for (std::size_t i = 0; i < transforms.size(); ++i)
     if (!is_placement(transforms[i]))
@@ -281,6 +417,7 @@ void Worlds::place(std::size_t worlds, std::span<const glm::dmat4> transforms,
           fmt::format("world {}: the transform of moving shape {} is not affine, not "
                       "finite, or singular (it flattens the shape)",
                       first_world + i / s.moving, i % s.moving));
+  for (std::size_t w = 0; w < worlds; ++w) s.check_ends(w, first_world + w, transforms, ends);
   FlatScene& flat = s.lowering.flat;
   const std::size_t placed = s.lowering.geometry.placed.size();
   flat.instances.resize(s.first_instance + worlds * placed);
@@ -288,7 +425,7 @@ void Worlds::place(std::size_t worlds, std::span<const glm::dmat4> transforms,
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, worlds),
                     [&](const tbb::blocked_range<std::size_t>& range) {
                       for (std::size_t w = range.begin(); w < range.end(); ++w)
-                        trees[w] = s.place(w, transforms);
+                        trees[w] = s.place(w, transforms, ends);
                     });
   std::vector<std::uint64_t> nodes(worlds + 1), rows(worlds + 1);
   nodes[0] = s.first_node / CAPLET_NODE_FLOATS;
@@ -310,6 +447,7 @@ void Worlds::place(std::size_t worlds, std::span<const glm::dmat4> transforms,
 }
 
 std::size_t Worlds::moving() const { return state_->moving; }
+std::size_t Worlds::ends() const { return state_->places.ends(); }
 const FlatScene& Worlds::flat() const { return state_->lowering.flat; }
 std::span<const uint> Worlds::roots() const { return state_->roots; }
 SceneChanges Worlds::take_changes() { return std::exchange(state_->changes, {}); }
@@ -317,12 +455,16 @@ SceneChanges Worlds::take_changes() { return std::exchange(state_->changes, {});
 WorldsIdentity Worlds::identity_of(const PickRecord& pick) const {
   const State::Places& places = state_->places;
   const std::size_t in_tree = places.in_tree.size();
-  if (pick.object < in_tree) return {places.in_tree[pick.object], CAPLET_NONE};
+  if (pick.object < in_tree) {
+    const std::size_t capsules = places.capsules_in_tree[pick.object];
+    return {places.in_tree[pick.object], CAPLET_NONE,
+            capsules == 0 ? pick.primitive : narrow<std::uint32_t>(pick.primitive % capsules)};
+  }
   const std::size_t instance = pick.object - in_tree;
   CHECK_LT_(instance, places.shapes_of.size());
   const std::vector<std::uint32_t>& shapes = places.shapes_of[instance];
   CHECK_LT_(pick.shape - in_tree, shapes.size());
-  return {shapes[pick.shape - in_tree], places.instance_of[instance]};
+  return {shapes[pick.shape - in_tree], places.instance_of[instance], pick.primitive};
 }
 
 }  // namespace caplet

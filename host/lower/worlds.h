@@ -13,6 +13,7 @@
 
 #include "lower/changes.h"
 #include "lower/flat_scene.h"
+#include "scene/edit.h"
 #include "scene/scene.h"
 
 namespace caplet {
@@ -21,6 +22,7 @@ namespace caplet {
 struct WorldsIdentity {
   std::uint32_t shape = CAPLET_NONE;     // by the order of the world's shapes, then each object's
   std::uint32_t instance = CAPLET_NONE;  // index into Scene::instances; CAPLET_NONE: of no instance
+  std::uint32_t primitive = CAPLET_NONE;  // of the shape
 };
 
 /// Worlds have shapes and the numbers of materials, and nothing else that shading needs: rays find
@@ -28,20 +30,27 @@ struct WorldsIdentity {
 class Worlds {
  public:
   /// Takes a scene that passed validate(). `moving` has indices into Scene::shapes, each at most
-  /// once; other shapes and the instances are where the scene has them. Throws InputError for a
-  /// scene that moves while its shutter is open, and as lower() does.
-  Worlds(Scene scene, std::span<const std::uint32_t> moving);
+  /// once; other shapes and the instances are where the scene has them. `deforming` has indices of
+  /// shapes of capsules, each at most once, whose ends and radii are other ones in each world; they
+  /// may move as well. Throws InputError for a scene that moves while its shutter is open, for a
+  /// deforming shape that is not of capsules or shows one side alone, and as lower() does.
+  Worlds(Scene scene, std::span<const std::uint32_t> moving,
+         std::span<const std::uint32_t> deforming = {});
   Worlds(Worlds&&) noexcept;
   Worlds& operator=(Worlds&&) noexcept;
   ~Worlds();
 
   /// Makes the trees of so many worlds, in place of those before: the moving shapes of world w have
-  /// world_from_object transforms[w * moving() + i]. Throws InputError for a matrix that is not
-  /// affine or has no inverse, with the shape's index and that of the world, counted from
+  /// world_from_object transforms[w * moving() + i], and its deforming shapes have the capsules
+  /// ends[w * ends() ...], one shape after the other. Throws InputError for a matrix that is not
+  /// affine or has no inverse (a deforming shape's must be a similarity), for a capsule that is not
+  /// finite or has a negative radius, with the shape's index and that of the world, counted from
   /// `first_world`, and when the trees exceed a limit of the layout; then no world is left.
   void place(std::size_t worlds, std::span<const glm::dmat4> transforms,
-             std::size_t first_world = 0);
+             std::span<const Capsule> ends = {}, std::size_t first_world = 0);
   std::size_t moving() const;
+  /// Returns how many capsules the deforming shapes have in all.
+  std::size_t ends() const;
 
   const FlatScene& flat() const;
   /// Returns the first node of each world's tree.

@@ -95,8 +95,8 @@ void WorldQuery::launch(std::span<const uint> roots, std::span<const RayRecord> 
 }
 
 void WorldQuery::place(std::size_t worlds, std::span<const glm::dmat4> transforms,
-                       std::size_t first_world) {
-  worlds_.place(worlds, transforms, first_world);
+                       std::span<const Capsule> ends, std::size_t first_world) {
+  worlds_.place(worlds, transforms, ends, first_world);
   scene_.update(worlds_.flat(), worlds_.take_changes());
 }
 
@@ -134,7 +134,8 @@ void WorldQuery::keep(const WorldHits& out) const {
     number(out.shape, [&](const PickRecord& pick) { return worlds_.identity_of(pick).shape; });
     number(out.instance,
            [&](const PickRecord& pick) { return worlds_.identity_of(pick).instance; });
-    number(out.primitive, [](const PickRecord& pick) { return pick.primitive; });
+    number(out.primitive,
+           [&](const PickRecord& pick) { return worlds_.identity_of(pick).primitive; });
     number(out.material_id, [](const PickRecord& pick) { return pick.material; });
     put(out.normal, [](const PickRecord& pick) { return std::to_array(pick.normal); });
     put(out.point, [](const PickRecord& pick) { return std::to_array(pick.point); });
@@ -142,8 +143,8 @@ void WorldQuery::keep(const WorldHits& out) const {
 }
 
 void WorldQuery::look(std::size_t worlds, std::span<const glm::dmat4> transforms,
-                      std::span<const glm::dmat4> cameras, std::span<const Vector3> directions,
-                      const WorldHits& out) {
+                      std::span<const Capsule> ends, std::span<const glm::dmat4> cameras,
+                      std::span<const Vector3> directions, const WorldHits& out) {
   if (worlds == 0 || cameras.empty() || directions.empty()) return;
   CHECK_EQ_(cameras.size() % worlds, std::size_t{0});
   const std::size_t moving = worlds_.moving(), views = cameras.size() / worlds;
@@ -151,7 +152,8 @@ void WorldQuery::look(std::size_t worlds, std::span<const glm::dmat4> transforms
   const std::size_t at_once = std::max<std::size_t>(1, batch_rays_ / each);
   for (std::size_t w = 0; w < worlds; w += at_once) {
     const std::size_t now = std::min(at_once, worlds - w);
-    place(now, transforms.subspan(w * moving, now * moving), w);
+    place(now, transforms.subspan(w * moving, now * moving),
+          ends.subspan(w * worlds_.ends(), now * worlds_.ends()), w);
     set_rays(cameras.subspan(w * views, now * views), directions);
     picks_.resize(rays_.size());
     closest(rays_, !out.normal.empty() || !out.point.empty(), picks_);

@@ -23,9 +23,9 @@ using Vector3 = std::array<float, 3>;
 /// What is empty is left out. Numbers are CAPLET_NONE, and vectors 0, where a ray misses.
 struct WorldHits {
   std::span<float> t;  // in lengths of the direction; INFINITY where the ray misses
-  std::span<std::uint32_t> shape, instance;         // WorldsIdentity
-  std::span<std::uint32_t> primitive, material_id;  // as in PickRecord
-  std::span<Vector3> normal, point;                 // as in PickRecord
+  std::span<std::uint32_t> shape, instance, primitive;  // WorldsIdentity
+  std::span<std::uint32_t> material_id;                 // as in PickRecord
+  std::span<Vector3> normal, point;                     // as in PickRecord
   /// Returns hits [first, first + count).
   WorldHits part(std::size_t first, std::size_t count) const;
 };
@@ -39,14 +39,14 @@ class WorldQuery {
 
   /// Traces `directions` (in the camera's space, of any length) from each of `cameras`
   /// (world_from_camera, equally many for each world, one world after the other) through worlds
-  /// with these transforms (Worlds::place). Throws InputError as Worlds::place does.
+  /// with these transforms and ends (Worlds::place). Throws InputError as Worlds::place does.
   void look(std::size_t worlds, std::span<const glm::dmat4> transforms,
-            std::span<const glm::dmat4> cameras, std::span<const Vector3> directions,
-            const WorldHits& out);
+            std::span<const Capsule> ends, std::span<const glm::dmat4> cameras,
+            std::span<const Vector3> directions, const WorldHits& out);
 
   /// These are the parts of that. Places worlds as Worlds::place does, and sends them.
   void place(std::size_t worlds, std::span<const glm::dmat4> transforms,
-             std::size_t first_world = 0);
+             std::span<const Capsule> ends = {}, std::size_t first_world = 0);
   /// Writes the nearest crossing of each ray, as many rays for each world that is placed, one world
   /// after the other. Without `points` their points, normals, uv and errors are 0.
   void closest(std::span<const RayRecord> rays, bool points, std::span<PickRecord> out);

@@ -19,6 +19,7 @@ namespace caplet_python {
 namespace {
 
 using caplet::BatchHits;
+using caplet::Capsule;
 using caplet::Transform;
 
 /// A batch, and whose turn it is.
@@ -30,10 +31,12 @@ struct HeldBatch {
 
 using Numbers = nb::ndarray<nb::ro, nb::device::cpu, nb::c_contig, double, nb::shape<-1, 12>>;
 using Directions = nb::ndarray<nb::ro, nb::device::cpu, nb::c_contig, float, nb::shape<-1, 3>>;
+using Ends = nb::ndarray<nb::ro, nb::device::cpu, nb::c_contig, float, nb::shape<-1, 8>>;
 template <class T>
 using Room = std::optional<nb::ndarray<T, nb::device::cpu, nb::c_contig>>;
 
 static_assert(sizeof(Transform) == 12 * sizeof(double));
+static_assert(sizeof(Capsule) == 8 * sizeof(float));
 
 std::span<const Transform> transforms_in(const Numbers& rows) {
   return {reinterpret_cast<const Transform*>(rows.data()), rows.shape(0)};
@@ -47,10 +50,10 @@ std::span<To> part(const Room<T>& room, std::size_t first, std::size_t count) {
 }
 
 void nearest(HeldBatch& held, std::size_t worlds, const Numbers& transforms, const Numbers& cameras,
-             const Directions& directions, const Room<float>& t, const Room<std::uint32_t>& shape,
-             const Room<std::uint32_t>& instance, const Room<std::uint32_t>& primitive,
-             const Room<std::uint32_t>& material_id, const Room<float>& normal,
-             const Room<float>& point) {
+             const Directions& directions, const Ends& capsules, const Room<float>& t,
+             const Room<std::uint32_t>& shape, const Room<std::uint32_t>& instance,
+             const Room<std::uint32_t>& primitive, const Room<std::uint32_t>& material_id,
+             const Room<float>& normal, const Room<float>& point) {
   using Vector = std::array<float, 3>;
   const std::size_t rays = cameras.shape(0) * directions.shape(0);
   const auto check = [&](const auto& room, std::size_t numbers) {
@@ -64,14 +67,18 @@ void nearest(HeldBatch& held, std::size_t worlds, const Numbers& transforms, con
   check(normal, 3);
   check(point, 3);
   if (worlds == 0) return;
-  if (cameras.shape(0) % worlds != 0 || transforms.shape(0) % worlds != 0)
-    throw nb::value_error("as many cameras and transforms for each world are needed");
+  if (cameras.shape(0) % worlds != 0 || transforms.shape(0) % worlds != 0 ||
+      capsules.shape(0) % worlds != 0)
+    throw nb::value_error("as many cameras, transforms and capsules for each world are needed");
   const std::size_t views = cameras.shape(0) / worlds, moving = transforms.shape(0) / worlds;
   const std::size_t each = views * directions.shape(0);
   const std::span<const Transform> places = transforms_in(transforms),
                                    eyes = transforms_in(cameras);
   const std::span<const Vector> ways{reinterpret_cast<const Vector*>(directions.data()),
                                      directions.shape(0)};
+  const std::size_t deforming = capsules.shape(0) / worlds;
+  const std::span<const Capsule> ends{reinterpret_cast<const Capsule*>(capsules.data()),
+                                      capsules.shape(0)};
   Released released;
   const auto turn = turn_of(held);
   // Signals are heard between these parts.
@@ -85,7 +92,8 @@ void nearest(HeldBatch& held, std::size_t worlds, const Numbers& transforms, con
         {part<float>(t, first, count), part<std::uint32_t>(shape, first, count),
          part<std::uint32_t>(instance, first, count), part<std::uint32_t>(primitive, first, count),
          part<std::uint32_t>(material_id, first, count), part<Vector>(normal, first, count),
-         part<Vector>(point, first, count)});
+         part<Vector>(point, first, count)},
+        ends.subspan(w * deforming, now * deforming));
   }
 }
 
@@ -95,15 +103,17 @@ void bind_batch(nb::module_& m) {
   nb::class_<HeldBatch>(m, "Batch")
       .def("__init__",
            [](HeldBatch* self, HeldScene& of, const std::vector<std::uint32_t>& moving,
-              const caplet::Device& device) {
+              const caplet::Device& device, const std::vector<std::uint32_t>& deforming) {
              const caplet::Scene scene = of.now();
              std::optional<caplet::Batch> batch;
-             run_interruptibly([&] { batch.emplace(scene, moving, device); }, [] {}, [] {});
+             run_interruptibly([&] { batch.emplace(scene, moving, device, deforming); }, [] {},
+                               [] {});
              new (self) HeldBatch(*std::move(batch));
            })
-      .def("nearest", &nearest, nb::arg(), nb::arg(), nb::arg(), nb::arg(), nb::arg("t").none(),
-           nb::arg("shape").none(), nb::arg("instance").none(), nb::arg("primitive").none(),
-           nb::arg("material_id").none(), nb::arg("normal").none(), nb::arg("point").none());
+      .def("nearest", &nearest, nb::arg(), nb::arg(), nb::arg(), nb::arg(), nb::arg(),
+           nb::arg("t").none(), nb::arg("shape").none(), nb::arg("instance").none(),
+           nb::arg("primitive").none(), nb::arg("material_id").none(), nb::arg("normal").none(),
+           nb::arg("point").none());
 }
 
 }  // namespace caplet_python

@@ -194,6 +194,90 @@ def test_worlds_have_materials_of_their_own():
     assert np.array_equal(before, caplet.render_batch(scene, worlds[:1], CAMERA, placed(0, 0, -5), "ball", "paths", spp=4, seed=3)["rgb"])
 
 
+@pytest.fixture
+def limbs():
+    """Capsules of two colours, a chain with u, and a wall."""
+    scene = caplet.Scene()
+    scene.add_light(caplet.lights.infinite(L=0.7))
+    scene.add_capsules([[-1, 0, 0], [0, 0, 0]], [[0, 0, 0], [1, 0, 0]], [0.2, 0.1], color=[(1, 0, 0), (0, 1, 0)], name="arm")
+    scene.add("box", p0=(-4, -4, 5), p1=(4, 4, 5.5), name="wall")
+    checks = caplet.textures.checkerboard(tex1=0.1, tex2=0.9, uscale=4)
+    scene.add_capsules([[0, -1, 0], [0, -0.5, 0]], [[0, -0.5, 0], [0, 0.5, 0]], 0.15, u=[[0, 0.5], [0.5, 1.5]], name="tail",
+                       material=caplet.materials.diffuse(reflectance=checks))
+    return scene
+
+
+def test_capsules_have_other_ends_in_each_world(limbs):
+    rng = np.random.default_rng(6)
+    count = 8
+    p0, p1 = rng.uniform(-1.5, 1.5, (2, count, 2, 3))
+    p1[::3, 0] = p0[::3, 0]  # balls
+    radius = rng.uniform(0.1, 0.5, (count, 2, 2))
+    tail = rng.uniform(-1.5, 1.5, (2, count, 2, 3))
+    places = np.stack([[placed(*rng.uniform(-1, 1, 3))] for _ in range(count)])
+    places[:, 0, :3, :3] = 0.8 * np.stack([turned(rng) for _ in range(count)])
+    ends = {"arm": (p0, p1, radius), 2: (tail[0], tail[1])}
+    layers = ("depth", "shape", "primitive", "material_id", "normal", "point")
+    batch = caplet.Batch(limbs, "tail", deforming=["tail", "arm"])
+    assert batch.deforming == [2, 0] and batch.moving == [2]
+    pose = placed(0, 0, -5)
+    seen = batch.look(places, CAMERA, pose, layers, kind="range", ends=ends)
+    lit = caplet.render_batch(limbs, places, CAMERA, pose, "tail", "paths", spp=2, seed=5, ends=ends)["rgb"]
+    rays = caplet.render_batch(limbs, places, CAMERA, pose, "tail", ends=ends)
+    assert np.array_equal(rays["shape"], seen["shape"])
+    ways = CAMERA.unproject(CAMERA.pixels())
+    ways /= np.linalg.norm(ways, axis=1)[:, None]
+    of_capsules = 0
+    for w in range(count):
+        limbs.shape("arm").set(p0[w], p1[w], radius[w])
+        limbs.shape("tail").set(tail[0, w], tail[1, w])
+        limbs.shape("tail").transform = places[w, 0]
+        hits = caplet.trace(limbs, pose[:3, 3], ways)
+        own = {layer: seen[layer][w].reshape(1200, -1).squeeze() for layer in layers}
+        ours = (hits["shape"] == 0) | (hits["shape"] == 2)
+        of_capsules += ours.sum()
+        for layer in layers:  # capsules stand in the world's tree as in the scene of that world
+            expected = hits["t" if layer == "depth" else layer]
+            assert np.array_equal(own[layer][ours], expected[ours]), layer
+        assert (own["shape"] == hits["shape"]).all()
+        alone = caplet.render_batch(limbs, places[w:w + 1], CAMERA, pose, "tail", "paths", spp=2, seed=5)["rgb"]
+        assert np.array_equal(alone[0], lit[w])
+    assert of_capsules > 800 and {0, 1} == set(np.unique(seen["primitive"][seen["shape"] == 0]))
+    # What is not given is as it was when the batch was made; the scene has changed since.
+    some = batch.look(places[:1], CAMERA, pose, ends={"arm": (p0[:1], p1[:1])})
+    none = batch.look(places[:1], CAMERA, pose)
+    assert not np.array_equal(some["depth"], none["depth"], equal_nan=True)
+    radii = batch.look(places[:2], CAMERA, pose, ends={"arm": (p0[:2], p1[:2], np.array([0.2, 0.1]))})
+    assert np.array_equal(radii["depth"][0], some["depth"][0], equal_nan=True)
+
+
+LIMBS = {"worlds": np.zeros((2, 0, 4, 4)), "camera": CAMERA, "poses": np.eye(4), "moving": []}
+
+
+@pytest.mark.parametrize("ends, said", [
+    ({"wall": (np.zeros((2, 1, 3)),) * 2}, "deforming: shape 1 is not one of capsules"), ({"leg": 0}, "leg"), ({9: 0}, "names of shapes, or numbers below 3"),
+    ({"arm": np.zeros((2, 2, 3))}, "(p0, p1) or (p0, p1, radius) are needed of shape 'arm'"), ({"arm": (np.zeros((2, 3)),) * 2}, "p0 of 'arm': shape (2, 2, 3) is needed, not (2, 3)"),
+    ({"arm": (np.zeros((2, 2, 3)), np.zeros((1, 2, 3)))}, "p1 of 'arm': shape (2, 2, 3) is needed"), ({"arm": (*np.zeros((2, 2, 2, 3)), np.zeros(3))}, "radius of 'arm': one, shape (2,)"),
+    ({"arm": (*np.zeros((2, 2, 2, 3)), -1)}, "world 0: capsule 0 of shape 0 is not finite or has a negative radius"),
+    ({"arm": (np.zeros((2, 2, 3)), np.full((2, 2, 3), np.nan))}, "world 0: capsule 0 of shape 0 is not finite")])
+@pytest.mark.parametrize("mode", ["rays", "direct"])
+def test_ends_that_are_wrong_are_told(limbs, ends, said, mode):
+    with pytest.raises(caplet.InputError) as problem:
+        caplet.render_batch(limbs, **LIMBS, ends=ends, mode=mode, spp=1)
+    assert (said if mode == "rays" or "world 0" not in said else "capsule 0") in str(problem.value)
+
+
+def test_shapes_that_do_not_deform_are_told(limbs):
+    batch = caplet.Batch(limbs, [], deforming="arm")
+    with pytest.raises(caplet.InputError, match="shape 'tail' is not among those that deform"):
+        batch.look(LIMBS["worlds"], CAMERA, np.eye(4), ends={"tail": (np.zeros((2, 2, 3)),) * 2})
+    with pytest.raises(caplet.InputError, match="shape 0 is there twice"):
+        caplet.Batch(limbs, [], deforming=["arm", 0])
+    stretched = np.tile(np.diag([1.0, 2, 1, 1]), (2, 1, 1, 1))
+    with pytest.raises(caplet.InputError, match="world 0: the transform of shape 0, whose ends change, is not a similarity"):
+        caplet.Batch(limbs, "arm", deforming="arm").look(stretched, CAMERA, np.eye(4))
+
+
 @pytest.mark.parametrize("change, said", [
     ({"moving": ["rod", "rod"]}, "shape 1 is there twice"), ({"moving": [6]}, "there is no shape 6 in the world, which has 6"), ({"moving": [-1]}, "numbers below 7"),
     ({"moving": ["wheel"]}, "wheel"), ({"worlds": np.zeros((2, 2, 4, 4))}, "the last row of an affine transform is 0 0 0 1"),

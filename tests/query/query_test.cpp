@@ -3,6 +3,7 @@
 //
 // Queries against the reference: which crossing, where, of what; batches, capacities and camera
 // rays.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -189,6 +190,7 @@ PickRecord as_of(const Scene& scene, const Worlds& worlds, PickRecord pick) {
   const WorldsIdentity identity = worlds.identity_of(pick);
   const auto in_world = static_cast<std::uint32_t>(scene.shapes.size());
   pick.object = pick.shape = identity.shape;
+  pick.primitive = identity.primitive;
   if (identity.instance == CAPLET_NONE) return pick;
   pick.object = in_world + identity.instance;
   for (std::size_t k = 0; k < scene.instances[identity.instance].object; ++k)
@@ -252,6 +254,168 @@ TEST_P(QueryOfScene, ManyWorldsAreTheReferences) {
     }
 }
 
+/// Capsules of one radius, tapered ones and balls, of two materials, on a ground; the second shape
+/// of capsules rests where it is placed, and a brick moves.
+const std::string limbs =
+    "WorldBegin\nShape \"box\" \"point3 p0\" [-5 -5 -2] \"point3 p1\" [5 5 -1.5]\n"
+    "Shape \"capsules\" \"point3 p0\" [0 0 0 1 0 0 2 0 0] \"point3 p1\" [1 0 0 2 0 0 2 0 0]\n"
+    "  \"float radius\" [0.3 0.2 0.4] \"float radius1\" [0.3 0.1 0.4]\n"
+    "Shape \"box\" \"point3 p0\" [-0.5 -0.4 -0.3] \"point3 p1\" [0.5 0.4 0.3]\n"
+    "Material \"conductor\"\nTranslate 0 1 0\nRotate 90 0 0 1\nScale 0.5 0.5 0.5\n"
+    "Shape \"capsule\" \"point3 p0\" [0 0 0] \"point3 p1\" [1 0 1] \"float radius\" 0.2\n";
+
+/// Returns a random capsule: with one radius, two, or as a ball.
+Capsule random_capsule(std::mt19937_64& random) {
+  std::uniform_real_distribution<float> unit(-1, 1);
+  const auto point = [&] { return glm::vec3(unit(random), unit(random), unit(random)) * 1.5F; };
+  Capsule out{point(), point(), 0.1F + 0.2F * std::abs(unit(random)), 0};
+  out.radius1 = out.radius0;
+  if (random() % 3 == 0) out.p1 = out.p0;
+  if (random() % 2 == 0) out.radius1 *= 0.5F;
+  return out;
+}
+
+void set_capsules(Shape& shape, std::span<const Capsule> to) {
+  auto& capsules = std::get<CapsulesShape>(shape.geometry);
+  capsules.radius1 = capsules.radius0;
+  for (std::size_t i = 0; i < to.size(); ++i) {
+    capsules.p0[i] = to[i].p0;
+    capsules.p1[i] = to[i].p1;
+    capsules.radius0[i] = to[i].radius0;
+    capsules.radius1[i] = to[i].radius1;
+  }
+}
+
+TEST(Worlds, CapsulesHaveOtherEndsInEachAsTheReferenceHas) {
+  constexpr std::size_t count = 12, rays_each = 400;
+  const Scene scene = test::scene_of_text(limbs);
+  const std::vector<std::uint32_t> moving = {2, 1}, deforming = {3, 1};
+  std::mt19937_64 random(9);
+  std::uniform_real_distribution<double> unit(-1, 1);
+  std::vector<Scene> poses(count, scene);
+  std::vector<glm::dmat4> transforms;
+  std::vector<Capsule> ends;
+  std::vector<RayRecord> rays;
+  for (std::size_t w = 0; w < count; ++w) {
+    for (const std::uint32_t i : moving) {
+      glm::dmat4& m = poses[w].shapes[i].world_from_object;
+      const dvec3 axis = glm::normalize(dvec3(unit(random), unit(random), unit(random)));
+      if (w > 1)  // two worlds are where the scene is
+        m = glm::translate(glm::dmat4(1), dvec3(unit(random), unit(random), unit(random))) *
+            glm::rotate(glm::scale(glm::dmat4(1), dvec3(0.7)), 3 * unit(random), axis);
+      transforms.push_back(m);
+    }
+    for (int i = 0; i < 4; ++i) ends.push_back(random_capsule(random));
+    set_capsules(poses[w].shapes[3], std::span(ends).subspan(4 * w, 1));
+    set_capsules(poses[w].shapes[1], std::span(ends).subspan(4 * w + 1, 3));
+    const auto own = random_rays(poses[w], rays_each, static_cast<unsigned>(20 + w));
+    rays.insert(rays.end(), own.begin(), own.end());
+  }
+  std::vector<std::size_t> hits_of(4);
+  for (const Encoding encoding : {Encoding::wide, Encoding::single}) {
+    WorldQuery query(Worlds(scene, moving, deforming), test::test_device(encoding),
+                     3 * rays_each / 2);
+    EXPECT_EQ(query.worlds().ends(), 4u);
+    query.place(count, transforms, ends);
+    std::vector<PickRecord> picks(rays.size());
+    query.closest(rays, true, picks);
+    Tally tally;
+    for (std::size_t w = 0; w < count; ++w) {
+      SCOPED_TRACE(testing::Message() << "world " << w);
+      std::vector<PickRecord> own;
+      for (std::size_t i = 0; i < rays_each; ++i)
+        own.push_back(as_of(poses[w], query.worlds(), picks[w * rays_each + i]));
+      const auto rays_of_it = std::span(rays).subspan(w * rays_each, rays_each);
+      expect_nearest(poses[w], reference::SceneReference(poses[w]), rays_of_it, own, tally);
+      // Capsules are stored in the world as they are, so that they are hit to the bit as in a
+      // scene of that world alone.
+      Query alone(lower(poses[w]), test::test_device(encoding));
+      std::vector<PickRecord> expected = alone.closest(rays_of_it);
+      for (std::size_t i = 0; i < rays_each; ++i) {
+        if (expected[i].object != 1 && expected[i].object != 3) continue;
+        expected[i].u = own[i].u;  // worlds do not know how a shape was turned, and tell none
+        expected[i].v = own[i].v;
+        EXPECT_EQ(0, std::memcmp(&own[i], &expected[i], sizeof(PickRecord))) << i;
+        ++hits_of[expected[i].object];
+      }
+    }
+    EXPECT_GT(tally.hits, 1500);
+  }
+  EXPECT_GT(hits_of[1], 300u);
+  EXPECT_GT(hits_of[3], 40u);
+}
+
+// Of 9 worlds with 200 rays each, at most 2 are in a launch.
+TEST(Worlds, LaunchesHaveTheirOwnEnds) {
+  const Scene scene = test::scene_of_text(limbs);
+  const std::vector<std::uint32_t> deforming = {1};
+  std::mt19937_64 random(10);
+  std::vector<Capsule> ends(27);
+  std::ranges::generate(ends, [&] { return random_capsule(random); });
+  std::vector<Vector3> directions(200);
+  std::uniform_real_distribution<float> unit(-0.3F, 0.3F);
+  std::ranges::generate(directions, [&] { return Vector3{unit(random), unit(random), -1}; });
+  const std::vector<glm::dmat4> cameras(9, glm::translate(glm::dmat4(1), dvec3(0, 0, 6)));
+  std::vector<float> whole(1800), parts(1800), one(200);
+  const auto look = [&](std::size_t batch_rays, std::span<const Capsule> of, std::span<float> t) {
+    WorldQuery query(Worlds(scene, {}, deforming), test::test_device(), batch_rays);
+    const std::size_t worlds = of.size() / 3;
+    WorldHits out;
+    out.t = t;
+    query.look(worlds, {}, of, std::span(cameras).first(worlds), directions, out);
+  };
+  look(0, ends, whole);
+  look(450, ends, parts);
+  EXPECT_EQ(whole, parts);
+  look(0, std::span(ends).last(3), one);
+  EXPECT_TRUE(std::ranges::equal(one, std::span(whole).last(200)));
+  EXPECT_FALSE(std::ranges::equal(one, std::span(whole).first(200)));
+}
+
+TEST(Worlds, RefuseEndsThatAreNone) {
+  const Scene scene = test::scene_of_text(limbs);
+  const std::vector<std::uint32_t> moving = {1}, deforming = {1, 3};
+  Worlds worlds(scene, moving, deforming);
+  std::vector<glm::dmat4> transforms(2, glm::dmat4(1));
+  const Capsule good{{0, 0, 0}, {1, 0, 0}, 0.5F, 0};
+  std::vector<Capsule> ends(8, good);
+  const auto message = [&]() -> std::string {
+    try {
+      worlds.place(2, transforms, ends, 50);
+    } catch (const InputError& error) {
+      EXPECT_TRUE(worlds.roots().empty());
+      return error.what();
+    }
+    return "placed";
+  };
+  EXPECT_EQ(message(), "placed");
+  const std::string said = "world 51: capsule 0 of shape 3 is not finite or has a negative radius";
+  for (const Capsule& wrong :
+       {Capsule{{0, NAN, 0}, {}, 1, 1}, Capsule{{}, {0, 0, INFINITY}, 1, 1}, Capsule{{}, {}, -1, 1},
+        Capsule{{}, {}, 1, -1}, Capsule{{}, {}, NAN, 1}}) {
+    ends[7] = wrong;
+    EXPECT_EQ(message(), said);
+  }
+  ends[7] = good;
+  transforms[1] = glm::scale(glm::dmat4(1), dvec3(1, 2, 1));
+  EXPECT_EQ(message(),
+            "world 51: the transform of shape 1, whose ends change, is not a similarity (of one "
+            "scale in all directions)");
+  const auto refused = [&](const std::string& text, std::uint32_t shape) -> std::string {
+    try {
+      Worlds(test::scene_of_text(text), {}, std::vector{shape});
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "made";
+  };
+  EXPECT_THAT(refused(limbs, 2), testing::HasSubstr("shape 2 has no capsules whose ends"));
+  const std::string one_sided =
+      "WorldBegin\nShape \"capsule\" \"bool onesided\" true \"point3 p0\" [0 0 0] "
+      "\"point3 p1\" [1 0 0] \"float radius\" 0.2\n";
+  EXPECT_THAT(refused(one_sided, 0), testing::HasSubstr("shape 0 shows one side alone"));
+}
+
 TEST(Worlds, RefuseWhatHasNoPlace) {
   const Scene scene = scene_file("scenes/capsules.pbrt");
   const std::vector<std::uint32_t> moving = {0, 1};
@@ -262,7 +426,7 @@ TEST(Worlds, RefuseWhatHasNoPlace) {
   const auto message = [&](const glm::dmat4& wrong) -> std::string {
     transforms[3] = wrong;
     try {
-      worlds.place(3, transforms, 100);
+      worlds.place(3, transforms, {}, 100);
     } catch (const InputError& error) {
       EXPECT_TRUE(worlds.roots().empty());
       return error.what();
