@@ -28,7 +28,8 @@ Film render(const Scene& scene, const Device& device, const RenderOptions& optio
     runs.render_to(session, *noise, options);
   else
     runs.render(session, samples, options);
-  return runs.film(session, model, flat, view);
+  SceneFingerprint fingerprint;
+  return runs.film(session, model, flat, view, fingerprint);
 }
 
 }  // namespace caplet::v0

@@ -66,6 +66,11 @@ void check_noise(const NoiseTarget& target, const SamplerSettings& sampler) {
 }
 
 Layers layers_with(const ExtraLayers& extra) {
+  if (extra.none) {
+    if (extra.cryptomatte || extra.deep)
+      throw InputError("layers: none, and cryptomatte or deep, do not go together");
+    return Layers::none();
+  }
   Layers out = Layers::all();
   if (extra.cryptomatte) out = Layers::of_bits(out.bits() | Layers::mattes().bits());
   return extra.deep ? out.with(Layer::deep) : out;
@@ -73,6 +78,8 @@ Layers layers_with(const ExtraLayers& extra) {
 
 double SessionRuns::render_to(caplet::Session& session, const NoiseTarget& target,
                               const RenderOptions& options) {
+  if (!session.layout().layers.has(Layer::variance))
+    throw InputError("noise: a picture without layers does not tell it");
   caplet::RenderOptions inner;
   inner.noise = {
       target.noise,
@@ -92,9 +99,9 @@ double SessionRuns::render_to(caplet::Session& session, const NoiseTarget& targe
 }
 
 FilmOrigin SessionRuns::origin(const caplet::Session& session, const FlatScene& flat,
-                               const FlatView& view) {
+                               const FlatView& view, SceneFingerprint& known) {
   if (scene_hash_.empty()) {
-    scene_hash_ = fingerprint(flat);
+    scene_hash_ = known.of(flat);
     view_hash_ = fingerprint(view);
   }
   return {session.layout(), scene_hash_, view_hash_};
@@ -103,11 +110,11 @@ FilmOrigin SessionRuns::origin(const caplet::Session& session, const FlatScene& 
 void SessionRuns::resume(const SavedFilm& film) { before_ = film.notes; }
 
 Film SessionRuns::film(caplet::Session& session, const caplet::Scene& scene, const FlatScene& flat,
-                       const FlatView& view) {
+                       const FlatView& view, SceneFingerprint& known) {
   if (!sight_) sight_ = std::make_shared<const post::Sight>(scene);
   SavedFilm saved;
   saved.film = session.film();
-  const FilmOrigin of = origin(session, flat, view);
+  const FilmOrigin of = origin(session, flat, view, known);
   saved.scene = of.scene;
   saved.view = of.view;
   saved.settings = scene.view.film;
@@ -133,7 +140,9 @@ struct Session::Data {
   void send() {
     if (live.flat().shapes != tried_shapes) tried(devices, live.flat());
     tried_shapes = live.flat().shapes;
-    session.update(live.flat(), live.take_changes(), live.view());
+    const SceneChanges changes = live.take_changes();
+    fingerprint.note(changes);
+    session.update(live.flat(), changes, live.view());
     runs = {};
   }
 
@@ -152,6 +161,7 @@ struct Session::Data {
   std::shared_ptr<DeviceScene> asked;
   std::optional<Query> query;
   std::uint64_t at;  // the state of the scene in the session
+  SceneFingerprint fingerprint;
   SessionRuns runs;
   std::uint64_t tried_shapes = live.flat().shapes;  // the shapes that the devices were tested with
 };
@@ -202,7 +212,7 @@ void Session::cancel() { data_->session.cancel(); }
 
 Film Session::film() const {
   Data& d = *data_;
-  return d.runs.film(d.session, d.live.scene(), d.live.flat(), d.live.view());
+  return d.runs.film(d.session, d.live.scene(), d.live.flat(), d.live.view(), d.fingerprint);
 }
 
 void Session::begin_at(std::uint32_t sample) {
@@ -213,8 +223,8 @@ void Session::begin_at(std::uint32_t sample) {
 void Session::resume(const Film& film) {
   Data& d = *data_;
   const SavedFilm& saved = Inside::film(film);
-  const std::string why =
-      difference(saved.origin(), d.runs.origin(d.session, d.live.flat(), d.live.view()));
+  const std::string why = difference(
+      saved.origin(), d.runs.origin(d.session, d.live.flat(), d.live.view(), d.fingerprint));
   if (!why.empty()) throw InputError("the film cannot be continued: " + why);
   d.session.resume(saved.film);
   d.runs.resume(saved);

@@ -28,6 +28,7 @@ struct SampleRange {
 struct ExtraLayers {
   bool cryptomatte = false;  // by object, material and file
   bool deep = false;
+  bool none = false;  // the picture and its alpha alone, which is quicker; without the two above
 };
 
 /// What a matte tells apart.

@@ -45,8 +45,9 @@ class CAPLET_API Session {
   int render(int samples, const RenderOptions& options = {});
   /// Gives each pixel of the film the samples that it still needs for a noise (options.noise does
   /// not count), and returns the noise that the film has. Blocks. Throws InputError when the target
-  /// is out of range, when the film was resumed with gaps between its samples, and with samplers
-  /// whose points are even at one number of samples alone (zsobol, stratified).
+  /// is out of range, when the film was resumed with gaps between its samples, with samplers whose
+  /// points are even at one number of samples alone (zsobol, stratified), and without layers
+  /// (ExtraLayers::none).
   double render_to(const NoiseTarget& target, const RenderOptions& options = {});
   /// May be called from any thread: the render in progress, or else the next one, finishes its
   /// passes and starts no more.

@@ -227,7 +227,7 @@ def _pictures(scene, moving, views, camera, mode, spp, seed, device, materials, 
                 native.set_camera("opencv", lens, arrays.transform(pose_4))
                 shown = pose
             if session is None:
-                session = _caplet.Session(native, _devices(device), False, False)
+                session = _caplet.Session(native, _devices(device), none=True)
             else:
                 session.update(native)
             session.render(spp, None, None)

@@ -244,18 +244,18 @@ void bind_session(nb::module_& m) {
       .def(
           "__init__",
           [](HeldSession* self, HeldScene& of, const std::vector<caplet::Device>& devices,
-             bool cryptomatte, bool deep) {
+             bool cryptomatte, bool deep, bool none) {
             const caplet::Scene scene = of.now();
             std::optional<caplet::Session> session;
             run_interruptibly(
                 [&] {
-                  session.emplace(scene, devices, caplet::ExtraLayers{cryptomatte, deep});
+                  session.emplace(scene, devices, caplet::ExtraLayers{cryptomatte, deep, none});
                 },
                 [] {}, [] {});
             new (self) HeldSession(*std::move(session));
           },
           nb::arg("scene"), nb::arg("devices"), nb::arg("cryptomatte") = false,
-          nb::arg("deep") = false)
+          nb::arg("deep") = false, nb::arg("none") = false)
       .def("update",
            [](HeldSession& held, HeldScene& of) {
              const caplet::Scene scene = of.now();

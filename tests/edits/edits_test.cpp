@@ -14,6 +14,7 @@
 #include <random>
 #include <string>
 
+#include "lower/fingerprint.h"
 #include "lower/live_scene.h"
 #include "lower/lower.h"
 #include "render/query.h"
@@ -149,7 +150,12 @@ class Edited {
 
   void edit(const SceneEdit& edit) { live.edit(edit); }
 
-  void send() { device.update(live.flat(), live.take_changes()); }
+  void send() {
+    const SceneChanges changes = live.take_changes();
+    device.update(live.flat(), changes);
+    fingerprint_.note(changes);
+    EXPECT_EQ(fingerprint_.of(live.flat()), fingerprint(live.flat()));
+  }
 
   void expect_fresh(const std::string& after) {
     send();
@@ -180,6 +186,8 @@ class Edited {
   std::unique_ptr<Renderer> fresh_renderer;
 
  private:
+  SceneFingerprint fingerprint_;
+
   static Film film(Renderer& renderer, const FlatView& view) {
     renderer.reset(view);
     renderer.pass(renderer.film().layout.window, 0, 4);

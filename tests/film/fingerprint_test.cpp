@@ -72,6 +72,31 @@ TEST(Fingerprint, DiffersForAnyOtherScene) {
   EXPECT_EQ(std::set<std::string>(long_ones.begin(), long_ones.end()).size(), 4u);
 }
 
+// A buffer that is not noted keeps its hash, so that what is read again can be told.
+TEST(Fingerprint, ReadsWhatHasChangedAgain) {
+  FlatScene flat = lower(scene_of(1));
+  flat.texture_data.assign(600'001, 0.0f);
+  SceneFingerprint kept;
+  const std::string first = kept.of(flat);
+  EXPECT_EQ(first, fingerprint(flat));
+  flat.texture_data[400'000] = 1;
+  EXPECT_EQ(kept.of(flat), first);
+  SceneChanges changes;
+  changes.leaves.add(0, 1);
+  kept.note(changes);
+  EXPECT_EQ(kept.of(flat), first);
+  changes.texture_data.add(400'000, 1);
+  kept.note(changes);
+  EXPECT_EQ(kept.of(flat), fingerprint(flat));
+  flat.texture_data.pop_back();  // another length is read in any case
+  EXPECT_EQ(kept.of(flat), fingerprint(flat));
+  flat.texture_data[3] = flat.leaves[0] = 2;
+  SceneChanges all;
+  all.all = true;
+  kept.note(all);
+  EXPECT_EQ(kept.of(flat), fingerprint(flat));
+}
+
 TEST(Fingerprint, DiffersForAnyOtherView) {
   std::set<std::string> seen;
   std::size_t count = 0;

@@ -229,6 +229,26 @@ TEST_F(Library, MattesAreOnRequest) {
   EXPECT_FALSE(fs::exists(folder_ / "none.exr"));
 }
 
+TEST_F(Library, APictureWithoutLayers) {
+  const caplet::Scene scene = caplet::import_scene(folder_ / "ball.pbrt");
+  caplet::Session session(scene, test_device(), {.none = true});
+  session.render(16);
+  const caplet::Film alone = session.film(), usual = caplet::render(scene, test_device());
+  EXPECT_THAT(alone.channels(), testing::ElementsAre("R", "G", "B", "A"));
+  double sum = 0, expected = 0;
+  for (const float value : alone.values("G")) sum += double{value};
+  for (const float value : usual.values("G")) expected += double{value};
+  EXPECT_NEAR(sum, expected, 0.02 * expected);
+  EXPECT_THROW(caplet::render(scene, test_device(), {}, {.deep = true, .none = true}),
+               caplet::InputError);
+  EXPECT_THROW(caplet::render(scene, test_device(), {}, {.cryptomatte = true, .none = true}),
+               caplet::InputError);
+  EXPECT_THROW(session.render_to({.noise = 0.5}), caplet::InputError);
+  caplet::RenderOptions to_noise;
+  to_noise.noise = caplet::NoiseTarget{.noise = 0.5};
+  EXPECT_THROW(caplet::render(scene, test_device(), to_noise, {.none = true}), caplet::InputError);
+}
+
 TEST_F(Library, OverlaysAreDrawnByName) {
   const caplet::Film film =
       caplet::render(caplet::import_scene(folder_ / "ball.pbrt"), test_device());

@@ -12,6 +12,7 @@
 #include "caplet/film.h"
 #include "caplet/render.h"
 #include "film/film_file.h"
+#include "lower/fingerprint.h"
 #include "lower/flat_scene.h"
 #include "post/scale_bar.h"
 #include "render/session.h"
@@ -19,7 +20,8 @@
 
 namespace caplet::v0 {
 
-/// Returns the layers of a film with those on request.
+/// Returns the layers of a film with those on request. Throws InputError if they do not go
+/// together.
 Layers layers_with(const ExtraLayers& extra);
 
 /// Throws InputError when a target is out of range, or does not go with the sampler.
@@ -36,11 +38,13 @@ struct SessionRuns {
   /// Gives pixels what they need for a noise and returns the noise that the film has.
   double render_to(caplet::Session& session, const NoiseTarget& target,
                    const RenderOptions& options);
-  /// Returns the present film of `scene`, whose flat arrays and view these are.
+  /// Returns the present film of `scene`, whose flat arrays and view these are. `known`: hashes
+  /// of the arrays.
   Film film(caplet::Session& session, const caplet::Scene& scene, const FlatScene& flat,
-            const FlatView& view);
+            const FlatView& view, SceneFingerprint& known);
   /// Returns what the session's film is of.
-  FilmOrigin origin(const caplet::Session& session, const FlatScene& flat, const FlatView& view);
+  FilmOrigin origin(const caplet::Session& session, const FlatScene& flat, const FlatView& view,
+                    SceneFingerprint& known);
   /// Starts with what other runs have rendered.
   void resume(const SavedFilm& film);
 
