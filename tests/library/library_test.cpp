@@ -511,6 +511,23 @@ TEST_F(LibraryEdits, FilmsAreAddedSavedAndLoaded) {
   EXPECT_THROW(caplet::Session(wide, device).resume(first), caplet::InputError);
 }
 
+// Samples of another scene are refused, also where a session's scene has been edited in between.
+TEST_F(LibraryEdits, FilmsAreOfTheSceneAsItIs) {
+  caplet::Scene edited = scene();
+  caplet::Session session(edited, test_device());
+  session.render(2);
+  caplet::Film before = session.film();
+  edited.set_capsule(edited.shape("bar"), 0, {{-1, 0.3f, 0}, {1, 0, 0}, 0.25f, 0.25f});
+  session.update(edited);
+  session.render(2);
+  caplet::Film after = session.film();
+  session.begin_at(2);
+  session.render(2);
+  EXPECT_THROW(before.add(session.film()), caplet::InputError);
+  after.add(session.film());
+  EXPECT_EQ(after.samples_per_pixel(), 4);
+}
+
 TEST_F(LibraryEdits, ASessionTriesItsDeviceBeforeItRenders) {
   namespace fs = std::filesystem;
   fs::copy(fs::path(CAPLET_SCENES).parent_path() / "kernels", folder_ / "kernels",
