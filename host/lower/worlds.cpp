@@ -119,7 +119,6 @@ CapsulesShape of_each_kind(const CapsulesShape& of) {
       out.radius0.push_back(1);
       out.radius1.push_back(kind == shape_tapered_capsule ? 0.5F : 1);
       if (!of.materials.empty()) out.materials.push_back(of.materials[i]);
-      if (!of.u.empty()) out.u.push_back(of.u[i]);
     }
   return out;
 }

@@ -288,7 +288,9 @@ void set_capsules(Shape& shape, std::span<const Capsule> to) {
 
 TEST(Worlds, CapsulesHaveOtherEndsInEachAsTheReferenceHas) {
   constexpr std::size_t count = 12, rays_each = 400;
-  const Scene scene = test::scene_of_text(limbs);
+  Scene scene = test::scene_of_text(limbs);
+  ASSERT_GE(scene.materials.size(), 2u);
+  std::get<CapsulesShape>(scene.shapes[1].geometry).materials = {1, 0, 1};
   const std::vector<std::uint32_t> moving = {2, 1}, deforming = {3, 1};
   std::mt19937_64 random(9);
   std::uniform_real_distribution<double> unit(-1, 1);
