@@ -65,6 +65,50 @@ TEST(Batch, WritesWorldsThenCamerasThenRays) {
   EXPECT_THAT(normal[2], ElementsAre(0, 0, 0));
 }
 
+// A rod across the view and a ball behind it, whose places and radii are of each world: the rays
+// along z meet the rod, or what it leaves of the ball, at the depths minus the radii.
+TEST(Batch, CapsulesHaveEndsOfEachWorld) {
+  caplet::Scene scene;
+  caplet::CapsuleArrays rod{{{-1, 0, 3}}, {{1, 0, 3}}, {0.5F}, {}, {}},
+      balls{{{0, 0, 6}, {3, 0, 6}}, {{0, 0, 6}, {3, 0, 6}}, {1, 1}, {}, {}};
+  scene.add_capsules(rod);
+  scene.add_capsules(balls);
+  const std::vector<std::uint32_t> moving = {1}, deforming = {1, 0};
+  caplet::Batch batch(scene, moving, test_device(), deforming);
+  const std::vector<Transform> places = {at_depth(0), at_depth(2)};
+  const std::vector<caplet::Capsule> ends = {
+      {{0, 0, 6}, {0, 0, 6}, 1, 1},          {{3, 0, 5}, {3, 0, 5}, 0.5F, 0.5F},
+      {{-1, 0, 3}, {1, 0, 3}, 0.25F, 0.25F},  // the second world:
+      {{0, 0, 7}, {0, 0, 7}, 2, 2},          {{3, 0, 5}, {3, 2, 5}, 0.5F, 0.5F},
+      {{-1, 2, 3}, {1, 2, 3}, 0.25F, 0.125F}};
+  const std::vector<Transform> cameras(2, at_depth(0));
+  const std::vector<std::array<float, 3>> ways = {{0, 0, 1}, {0.6F, 0, 1}, {1.0F / 64, 2, 3}};
+  std::vector<float> t(6);
+  std::vector<std::uint32_t> shape(6), primitive(6);
+  caplet::BatchHits out;
+  out.t = t;
+  out.shape = shape;
+  out.primitive = primitive;
+  batch.nearest(2, places, cameras, ways, out, ends);
+  EXPECT_THAT(shape, ElementsAre(0, 1, none, 1, none, 0));
+  EXPECT_THAT(primitive, ElementsAre(0, 1, none, 0, none, 0));
+  EXPECT_NEAR(t[0], 2.75, 1e-5);
+  EXPECT_NEAR(t[3], 7, 1e-5);
+  const auto message = [&](std::size_t count) -> std::string {
+    try {
+      batch.nearest(2, places, cameras, ways, out, std::span(ends).first(count));
+    } catch (const caplet::InputError& error) {
+      return error.what();
+    }
+    return "taken";
+  };
+  EXPECT_EQ(message(6), "taken");
+  EXPECT_EQ(message(5), "2 worlds of 3 capsules that change, and ends of 5");
+  const std::vector<std::uint32_t> twice = {0, 0}, beyond = {2};
+  EXPECT_THROW(caplet::Batch(scene, moving, test_device(), twice), caplet::InputError);
+  EXPECT_THROW(caplet::Batch(scene, moving, test_device(), beyond), caplet::InputError);
+}
+
 TEST(Batch, RefusesWhatDoesNotGoTogether) {
   const std::vector<std::uint32_t> moving = {0}, twice = {1, 1}, beyond = {2};
   const caplet::Scene scene = ball_and_wall();
