@@ -104,9 +104,9 @@ bool stands_in_tree(const Shape& shape) {
          primitive_under(shape, 0, shape.world_from_object).has_value();
 }
 
-// A capsule whose ends change may be of any of these kinds in a world. Its shape is lowered with
-// each capsule once of every kind, all those of the first kind first, so that kernels and geometry
-// records know them.
+// A capsule whose ends change may be of any of these kinds in a world. Its shape is lowered with as
+// many capsules of each kind as it has, one kind after the other: so there are kernels for all of
+// them, and numbers and geometry records to take in a world.
 constexpr std::array end_kinds{shape_capsule, shape_tapered_capsule, shape_sphere};
 
 /// Returns a shape with such capsules in the place of its own.
@@ -170,9 +170,8 @@ struct Worlds::State {
 
     Scene scene;
     std::vector<Deforming> deforming;
-    std::vector<std::uint32_t> in_tree;  // numbers of the shapes of the world
-    std::vector<std::size_t>
-        capsules_in_tree;  // by them: of one that deforms, their number; else 0
+    std::vector<std::uint32_t> in_tree;         // numbers of the shapes of the world
+    std::vector<std::size_t> capsules_in_tree;  // by them: how many one that deforms has, else 0
     std::vector<std::uint32_t> moving_in_tree;  // by moving shape: index into those, or CAPLET_NONE
     std::size_t resting_in_tree = 0;            // of them, from here on, rest
     // By instance of `scene`:

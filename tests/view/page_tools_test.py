@@ -427,6 +427,37 @@ def times(program, scenes, out):
         assert not at.shown.find("time-box").is_displayed()
 
 
+def controls(program, scenes, out):
+    """Lists and sliders are drawn by the page, in its colours, and obey the keyboard; a list opens over the panel."""
+    with work(program, out) as at:
+        shown = at.shown
+        shown.tab("camera")
+        stereo = shown.find("stereo")
+        drawn = shown.script("return CSS.supports('appearance: base-select')")
+        assert drawn == (shown.script("return getComputedStyle(document.getElementById('stereo')).appearance") == "base-select")
+        stereo.send_keys(Keys.ENTER if drawn else Keys.NULL)
+        if drawn:
+            shown.until("an open list", lambda: shown.script("return document.querySelector('#stereo:open') !== null"))
+            boxes = shown.script("return [...document.querySelectorAll('#stereo option')].map((o) => o.getBoundingClientRect()).map((b) => [b.width, b.height])")
+            assert len(boxes) == 4 and all(width > 60 and height >= 28 for width, height in boxes), boxes
+            shown.picture(out / "list.png")
+            shown.driver.switch_to.active_element.send_keys(Keys.ESCAPE)
+            shown.until("a closed list", lambda: shown.script("return document.querySelector('#stereo:open') === null"))
+            assert stereo.get_attribute("value") == "off"
+            stereo.send_keys(Keys.ENTER)
+            shown.driver.switch_to.active_element.send_keys("g", Keys.ARROW_DOWN, Keys.ENTER)  # no tool's key there
+            assert shown.find("tool-select").get_attribute("aria-pressed") == "true"
+        else:
+            stereo.send_keys(Keys.ARROW_DOWN)
+        at.changed("two eyes")
+        assert stereo.get_attribute("value") == "sbs"
+        shown.tab("render")
+        exposure = shown.find("exposure")
+        assert shown.script("return getComputedStyle(document.getElementById('exposure')).appearance") == "none"
+        exposure.send_keys(Keys.ARROW_RIGHT)
+        assert shown.text("stops") == "0.1", shown.text("stops")
+
+
 def redraws(program, scenes, out):
     """A neuron is drawn in other colours; what is wrong is said at its field, and undo leads back."""
     scene = page_test.editable(pathlib.Path(scenes) / "neuron.swc", out)
@@ -701,7 +732,7 @@ def modules(program, scenes, out):
         assert abs(x - box["width"] / 2) < 1 and abs(y - box["height"] / 2) < 1, (x, y, box)
 
 
-CASES = [modules, tools, measures, inspects, numbers, never_waits, links, paths, clips, times, redraws, labels, figure, screens]
+CASES = [modules, tools, measures, inspects, numbers, never_waits, links, paths, clips, times, controls, redraws, labels, figure, screens]
 
 
 if __name__ == "__main__":

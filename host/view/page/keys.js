@@ -25,5 +25,5 @@ export function is_taken(event) {
   const of = event.target;
   if (document.querySelector("dialog[open]")) return true;
   if (of.closest?.("[role=menu]")) return true;
-  return of.matches?.("select, textarea, input:not([type=range], [type=checkbox])") ?? false;
+  return of.matches?.("select, option, textarea, input:not([type=range], [type=checkbox])") ?? false;
 }
