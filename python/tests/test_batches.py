@@ -255,7 +255,7 @@ def test_capsules_have_other_ends_in_each_world(limbs):
         single = caplet.render_batch(limbs, places[w:w + 1], CAMERA, pose, "tail", "paths", spp=2, seed=5)["rgb"]
         assert np.array_equal(single[0], lit[w])
     assert of_capsules > 800 and {0, 1} == set(np.unique(seen["primitive"][seen["shape"] == 0]))
-    # What is not given is as it was when the batch was made; the scene has changed since.
+    # A shape whose ends are not given keeps those that it had when the batch was made, though the scene has changed since.
     some = batch.look(places[:1], CAMERA, pose, ends={"arm": (p0[:1], p1[:1])})
     none = batch.look(places[:1], CAMERA, pose)
     assert not np.array_equal(some["depth"], none["depth"], equal_nan=True)
