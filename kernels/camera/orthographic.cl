@@ -19,6 +19,7 @@ static inline float orthographic_ray(__global const CameraRecord* camera,
 static inline float2 orthographic_spread(__global const CameraRecord* camera,
                                          __global const float* camera_table, float2 raster) {
   (void)camera_table;
+  (void)raster;
   return (float2)(plane_spread(camera), 0.0f);
 }
 

@@ -14,6 +14,7 @@ static inline CapsuleLanes moving_capsules(const ShapeRay* ray, __global const f
                                            uint lane) {
   CapsuleLanes c;
 #if CAPLET_REAL_WIDTH == 8
+  (void)lane;
   float data[8][8];
   for (uint i = 0; i < 8u; i++) {
     __global const float* of = lane_data(block, i);

@@ -22,6 +22,7 @@ static inline real_mask moving_triangle_hit(const ShapeRay* ray, __global const 
   const uint order[3] = {axes.row_x / 8u, axes.row_y / 8u, axes.row_z / 8u};
   real numbers[9];  // of the three vertices, in the order of the ray's axes
 #if CAPLET_REAL_WIDTH == 8
+  (void)lane;
   float data[9][8];
   for (uint i = 0; i < 8u; i++) {
     const KeyPair keys = moving_triangle_keys(ray, block, i);

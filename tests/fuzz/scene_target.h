@@ -206,6 +206,7 @@ inline int fuzz_scene(const std::uint8_t* data, std::size_t size, bool csg) {
     Diagnostics diagnostics;
     validate(scene, diagnostics);
     diagnostics.finish();
+    ::setenv("CAPLET_ROWS", "all", 1);  // as host_kernels.cl is
     const FlatScene flat = lower(scene);
     Checker checker(flat, numbers);
     for (int i = 0; i < 16 && (i < 2 || !numbers.ended()); ++i)

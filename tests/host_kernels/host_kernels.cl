@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// host_kernels.def for one CAPLET_REAL_WIDTH, from the text of kernels/. The models have no kinds
-// of shapes from 16 up, so that lowering gives kinds four bits.
-#define CAPLET_LEAF_KIND_BITS 4
+// host_kernels.def for one CAPLET_REAL_WIDTH, from the text of kernels/. Scenes are lowered with
+// CAPLET_ROWS=all, which gives kinds of shapes as many bits as all of them need.
 #include "bsdf/bsdf.cl"
 #include "camera/camera.cl"
 #include "groups.cl"

@@ -8,6 +8,7 @@
 
 #include <bit>
 #include <cmath>
+#include <cstdlib>
 #include <cstring>
 #include <fstream>
 #include <glm/geometric.hpp>
@@ -131,6 +132,7 @@ std::optional<LoweredModel> tame_scene(unsigned kind, std::uint32_t seed, Bounds
   if (diagnostics.has_errors()) return std::nullopt;
   bounds = bounds_of(scene);
   if (bounds.empty()) return std::nullopt;
+  ::setenv("CAPLET_ROWS", "all", 1);  // as host_kernels.cl is
   try {
     return LoweredModel{lower(scene), lower_view(scene)};
   } catch (const InputError&) {  // two image lights

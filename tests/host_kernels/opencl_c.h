@@ -88,6 +88,7 @@ BUILTIN int clamp(int x, int low, int high) { return min(max(x, low), high); }
 BUILTIN uint clamp(uint x, uint low, uint high) { return min(max(x, low), high); }
 BUILTIN float clamp(float x, float low, float high) { return fmin(fmax(x, low), high); }
 VECTORS(VECTOR_3, clamp, float, float)
+VECTORS(VECTOR_3, clamp, int, int)
 VECTORS(VECTOR_3_SCALARS, clamp, float, float)
 BUILTIN float mix(float x, float y, float a) { return x + (y - x) * a; }
 VECTORS(VECTOR_3, mix, float, float)
@@ -95,6 +96,13 @@ VECTORS(VECTOR_3_SCALAR, mix, float, float)
 BUILTIN uint popcount(uint x) { return (uint)__builtin_popcount(x); }
 BUILTIN uint clz(uint x) { return x == 0 ? 32u : (uint)__builtin_clz(x); }
 BUILTIN uint mul_hi(uint x, uint y) { return (uint)(((ulong)x * (ulong)y) >> 32); }
+
+// --- Conversions (6.2.3) ---
+
+#define CONVERSION(n, to, from) \
+  BUILTIN to##n convert_##to##n(from##n x) LANES(n, to, from, (to)x[i])
+VECTORS(CONVERSION, float, int)
+VECTORS(CONVERSION, int, float)
 
 // --- Geometry (6.12.5) ---
 

@@ -78,6 +78,8 @@ const Bad bad_scenes[] = {
      "bits)"},
     {"NoValue", "WorldBegin\nShape \"sphere\" \"float radius\" []",
      "scene.pbrt:2:16: the parameter \"float radius\" has no value"},
+    {"NoTexture", "WorldBegin\nMaterial \"conductor\" \"texture roughness\" [ ]\nShape \"sphere\"",
+     "scene.pbrt:2:22: the parameter \"texture roughness\" has no value"},
     {"UnclosedBlock", "WorldBegin\n  AttributeBegin\nShape \"sphere\"",
      "scene.pbrt:2:3: AttributeBegin is never closed"},
     {"UnopenedBlock", "WorldBegin\nShape \"sphere\"\nAttributeEnd",

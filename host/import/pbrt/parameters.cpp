@@ -316,6 +316,7 @@ std::optional<std::uint32_t> Parameters::texture(std::string_view name, bool is_
                                                  const TextureTable& textures) {
   const Parameter* parameter = find(name);
   if (!parameter || parameter->type != "texture") return std::nullopt;
+  if (parameter->strings.empty()) return std::nullopt;  // which the parser has told
   const TextureValue* found = textures.find(parameter->strings[0], is_float);
   return found && found->is_float == is_float && found->refusal.empty() ? found->texture
                                                                         : std::nullopt;
