@@ -34,6 +34,12 @@ def _moving(scene, moving):
     return _numbers(scene, moving, "moving")
 
 
+def _of_shapes(ends):
+    if ends is not None and not isinstance(ends, dict):
+        raise InputError(f"ends: a dict of shapes is needed, not {type(ends).__name__}")
+    return ends or {}
+
+
 class _Deforming:
     """The shapes whose capsules change from world to world, with those that the scene has: (k, 8): p0, p1, both radii."""
 
@@ -50,8 +56,10 @@ class _Deforming:
 
     def ends(self, scene, given, worlds):
         """The capsules of each shape in each world, (worlds, k, 8): those of `given`, {shape: (p0, p1) or (p0, p1, radius)}; else its own."""
-        given = {} if given is None else dict(given)
+        given = _of_shapes(given)
         numbers = dict(zip(_numbers(scene, list(given), "ends"), given.items()))
+        if len(numbers) < len(given):
+            raise InputError("ends: a shape is there twice, by name and by number")
         for number, (which, _) in numbers.items():
             if number not in self.numbers:
                 raise InputError(f"ends: shape {which!r} is not among those that deform")
@@ -197,7 +205,7 @@ def _materials(scene, materials, count):
 
 
 def _pictures(scene, moving, views, camera, mode, spp, seed, device, materials, ends):
-    deforming = _Deforming(scene, ends)
+    deforming = _Deforming(scene, _of_shapes(ends))
     capsules = deforming.ends(scene, ends, len(views.worlds))
     looks = _materials(_scene(scene), materials, len(views.worlds))
     native = scene._native.copy()
@@ -256,10 +264,10 @@ def render_batch(scene, worlds, camera, poses, moving=None, mode="rays", layers=
     if mode == "rays":
         if materials is not None:
             raise InputError("materials: rays see none, only their numbers; modes \"direct\" and \"paths\" show them")
-        batch = Batch(scene, moving, device, [] if ends is None else list(ends))
+        batch = Batch(scene, moving, device, list(_of_shapes(ends)))
         return batch.look(worlds, camera, poses, ("depth", "shape") if layers is None else layers, ends=ends)
     if layers is not None and list(layers) != ["rgb"]:
         raise InputError('layers: pictures have "rgb" alone')
     numbers = _moving(_scene(scene), moving)
     views = _Views(worlds, len(numbers), camera, poses)
-    return {"rgb": _pictures(scene, numbers, views, camera, mode, _count(spp, "spp", 1 << 24), seed, device, materials, {} if ends is None else ends)}
+    return {"rgb": _pictures(scene, numbers, views, camera, mode, _count(spp, "spp", 1 << 24), seed, device, materials, ends)}

@@ -267,6 +267,7 @@ LIMBS = {"worlds": np.zeros((2, 0, 4, 4)), "camera": CAMERA, "poses": np.eye(4),
 
 
 @pytest.mark.parametrize("ends, said", [
+    ([0], "ends: a dict of shapes is needed, not list"), ({"arm": (np.zeros((2, 2, 3)),) * 2, 0: (np.zeros((2, 2, 3)),) * 2}, "there twice"),
     ({"wall": (np.zeros((2, 1, 3)),) * 2}, "deforming: shape 1 is not one of capsules"), ({"leg": 0}, "leg"), ({9: 0}, "names of shapes, or numbers below 3"),
     ({"arm": np.zeros((2, 2, 3))}, "(p0, p1) or (p0, p1, radius) are needed of shape 'arm'"), ({"arm": (np.zeros((2, 3)),) * 2}, "p0 of 'arm': shape (2, 2, 3) is needed, not (2, 3)"),
     ({"arm": (np.zeros((2, 2, 3)), np.zeros((1, 2, 3)))}, "p1 of 'arm': shape (2, 2, 3) is needed"), ({"arm": (*np.zeros((2, 2, 2, 3)), np.zeros(3))}, "radius of 'arm': one, shape (2,)"),

@@ -27,9 +27,9 @@ struct Result {
 /// their `--device`, unless the test says which device or which drivers they are to see.
 class Running {
  public:
-  /// `in_child`: called in the process before it becomes the program. On a terminal (its stderr
-  /// alone) the first progress is shown at once, elsewhere after five seconds.
+  /// On a terminal the first progress is shown at once, elsewhere after five seconds.
   enum class Stderr { file, terminal };
+  /// `in_child`: called in the process before it becomes the program.
   Running(const std::vector<std::string>& arguments, const std::filesystem::path& folder,
           const std::map<std::string, std::string>& environment = {},
           const std::function<void()>& in_child = {}, Stderr stderr_is = Stderr::file);
