@@ -7,6 +7,11 @@
 #include <fstream>
 #include <string>
 
+#ifdef __linux__
+#include <sys/mman.h>
+#include <unistd.h>
+#endif
+
 namespace caplet {
 
 namespace fs = std::filesystem;
@@ -38,5 +43,20 @@ std::optional<std::uint64_t> free_memory(const fs::path& root) {
   const std::uint64_t left = *most > *used ? *most - *used : 0;
   return out ? std::min(*out, left) : left;
 }
+
+#ifdef __linux__
+
+void release_pages(const void* begin, std::size_t bytes) {
+  const auto page = static_cast<std::uintptr_t>(sysconf(_SC_PAGESIZE));
+  const auto from = reinterpret_cast<std::uintptr_t>(begin);
+  const std::uintptr_t first = (from + page - 1) / page * page, end = (from + bytes) / page * page;
+  if (end > first) madvise(reinterpret_cast<void*>(first), end - first, MADV_DONTNEED);
+}
+
+#else
+
+void release_pages(const void*, std::size_t) {}
+
+#endif
 
 }  // namespace caplet

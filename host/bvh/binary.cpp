@@ -18,7 +18,9 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <memory>
 #include <numeric>
+#include <utility>
 
 namespace caplet::bvh {
 namespace {
@@ -142,28 +144,26 @@ class Builder {
  public:
   Builder(BinaryTree& tree, std::uint64_t single_groups, Effort effort)
       : tree_(tree),
-        scratch_(std::make_unique_for_overwrite<Reference[]>(tree.count)),
+        count_(static_cast<std::uint32_t>(tree.items.size())),
+        scratch_(std::make_unique_for_overwrite<Reference[]>(count_)),
         single_groups_(single_groups),
         cell_size_(cells_of(effort)) {}
 
-  void run(std::span<const Reference> references) {
+  void run() {
     next_ = 1;
-    const Bounds all = bounds(references);
-    if (tree_.count >= grid_pays_from) {
-      build_by_cells(references, all);
+    const Bounds all = bounds(0, count_);
+    if (count_ >= grid_pays_from) {
+      build_by_cells(all);
     } else {
-      for (std::uint32_t i = 0; i < tree_.count; i++) {
-        tree_.items[i] = references[i];
-        tree_.items[i].primitive = i;
-      }
-      build(0, 0, tree_.count, 0, all);
+      for (std::uint32_t i = 0; i < count_; i++) tree_.items[i].primitive = i;
+      build(0, 0, count_, 0, all);
     }
     tree_.node_count = next_;
   }
 
  private:
   std::span<Reference> items(std::uint32_t first, std::uint32_t count) {
-    return {tree_.items.get() + first, count};
+    return {tree_.items.data() + first, count};
   }
   Bounds bounds(std::uint32_t first, std::uint32_t count) { return bounds(items(first, count)); }
 
@@ -302,7 +302,7 @@ class Builder {
              const Bounds& b) {
     BinaryNode& node = tree_.nodes[index];
     const Box box = b.box.box();
-    node = {box.min, box.max, 0, 0, first, count};
+    node = {box.min, box.max, 0, first, count};
     const std::uint32_t group = tree_.items[first].group;
     if (count == 1 || (count <= width && !b.mixed && (single_groups_ >> group & 1) == 0)) return;
 
@@ -343,7 +343,6 @@ class Builder {
 
     const std::uint32_t children = next_.fetch_add(2);
     node.left = children;
-    node.right = children + 1;
     const auto go_left = [&] { build(children, first, left, depth + 1, sides[0]); };
     const auto go_right = [&] {
       build(children + 1, first + left, count - left, depth + 1, sides[1]);
@@ -370,8 +369,8 @@ class Builder {
     int depth;
   };
 
-  void build_by_cells(std::span<const Reference> references, const Bounds& all) {
-    sort_into_cells(references, all);
+  void build_by_cells(const Bounds& all) {
+    sort_into_cells(all);
     cell_order_.resize(cells_.size());
     std::iota(cell_order_.begin(), cell_order_.end(), 0u);
     build_over_cells(0, 0, static_cast<std::uint32_t>(cells_.size()), 0, 0);
@@ -381,7 +380,7 @@ class Builder {
       to[i + 1] = to[i] + cells_[cell_order_[i]].count;
     tbb::parallel_for(std::size_t{0}, cells_.size(), [&](std::size_t i) {
       const Cell& cell = cells_[cell_order_[i]];
-      std::copy_n(scratch_.get() + cell.first, cell.count, tree_.items.get() + to[i]);
+      std::copy_n(scratch_.get() + cell.first, cell.count, tree_.items.data() + to[i]);
     });
     tbb::parallel_for(std::size_t{0}, tops_.size(), [&](std::size_t i) {
       const Top& top = tops_[i];
@@ -390,8 +389,9 @@ class Builder {
   }
 
   /// Sorts into scratch_, stable within a cell; empty cells are left out of cells_.
-  void sort_into_cells(std::span<const Reference> references, const Bounds& all) {
-    const std::uint32_t count = tree_.count;
+  void sort_into_cells(const Bounds& all) {
+    const std::vector<Reference>& references = tree_.items;
+    const std::uint32_t count = count_;
     const int bits = std::clamp(
         static_cast<int>(std::bit_width(count / cell_size_.references) - 1) / 3, 1, max_cell_bits);
     const Binning grid(all.centroids.box(), std::size_t{1} << bits);
@@ -482,12 +482,13 @@ class Builder {
     }
     const Box whole = box.box();
     const std::uint32_t children = next_.fetch_add(2);
-    tree_.nodes[index] = {whole.min, whole.max, children, children + 1, first, count};
+    tree_.nodes[index] = {whole.min, whole.max, children, first, count};
     build_over_cells(children, begin, middle, first, depth + 1);
     build_over_cells(children + 1, middle, end, first + left, depth + 1);
   }
 
   BinaryTree& tree_;
+  std::uint32_t count_;
   std::unique_ptr<Reference[]> scratch_;
   std::uint64_t single_groups_;
   Cells cell_size_;
@@ -499,13 +500,12 @@ class Builder {
 
 }  // namespace
 
-BinaryTree build_binary(std::span<const Reference> references, std::uint64_t single_groups,
+BinaryTree build_binary(std::vector<Reference> references, std::uint64_t single_groups,
                         Effort effort) {
   BinaryTree tree;
-  tree.count = static_cast<std::uint32_t>(references.size());
-  tree.items = std::make_unique_for_overwrite<Reference[]>(tree.count);
-  tree.nodes = std::make_unique_for_overwrite<BinaryNode[]>(2 * references.size());
-  Builder(tree, single_groups, effort).run(references);
+  tree.items = std::move(references);
+  tree.nodes = std::make_unique_for_overwrite<BinaryNode[]>(2 * tree.items.size());
+  Builder(tree, single_groups, effort).run();
   return tree;
 }
 

@@ -8,7 +8,6 @@
 #pragma once
 
 #include <cstdint>
-#include <span>
 #include <vector>
 
 namespace caplet::bvh {
@@ -60,7 +59,7 @@ enum class Effort { full, quick };
 /// Builds the same tree for any number of threads. Boxes are finite with min <= max, groups less
 /// than 64. References of the groups in `single_groups` (bit k: group k) get a leaf each. Without
 /// references the tree is a root without children.
-Tree build(std::span<const Reference> references, std::uint64_t single_groups = 0,
+Tree build(std::vector<Reference> references, std::uint64_t single_groups = 0,
            Effort effort = Effort::full);
 
 }  // namespace caplet::bvh

@@ -6,6 +6,9 @@
 // traversal on GPUs through compressed wide BVHs", HPG 2017).
 #include <tbb/parallel_invoke.h>
 
+#include <memory>
+#include <utility>
+
 #include "base/check.h"
 #include "bvh/detail/binary.h"
 
@@ -16,24 +19,34 @@ constexpr double node_cost = 1.0, leaf_cost = 1.0;
 constexpr std::uint32_t no_root = 0xffffffff;
 constexpr std::uint32_t parallel_nodes = 4096;
 
-/// cost[i] is the least cost of the subtree as at most i + 1 roots (each a wide node or a leaf).
-/// left[i] is how many of these the left child gets; 0: the subtree stays one root.
-struct Choice {
-  std::array<float, width> cost;
-  std::array<std::uint8_t, width> left;
-};
+/// Costs[i] is the least cost of a subtree as at most i + 1 roots (each a wide node or a leaf).
+using Costs = std::array<float, width>;
+/// Lefts[i] says how many of i + 1 roots the left child of an inner node gets; 0: the subtree stays
+/// one root.
+using Lefts = std::array<std::uint8_t, width>;
 
 class Collapser {
  public:
-  explicit Collapser(const BinaryTree& binary)
-      : binary_(binary), choices_(std::make_unique_for_overwrite<Choice[]>(binary.node_count)) {}
+  explicit Collapser(BinaryTree binary)
+      : binary_(std::move(binary)),
+        costs_(std::make_unique_for_overwrite<Costs[]>(binary_.node_count / 2)),
+        lefts_(std::make_unique_for_overwrite<Lefts[]>(binary_.node_count / 2)) {}
 
   Tree run() {
     scale_ = 1 / std::max(binary_.nodes[0].box().area(), std::numeric_limits<double>::min());
+    const std::size_t count = binary_.items.size();
+    tree_.order.reserve(count);
+    groups_.reserve(count);
+    for (const Reference& item : binary_.items) {
+      tree_.order.push_back(item.primitive);
+      groups_.push_back(static_cast<std::uint8_t>(item.group));
+    }
+    binary_.items = {};
     choose(0);
-    tree_.order.reserve(binary_.count);
-    for (std::uint32_t i = 0; i < binary_.count; i++)
-      tree_.order.push_back(binary_.items[i].primitive);
+    costs_.reset();
+    // Nodes have more than four children nearly always. Room that is not used takes no memory.
+    tree_.nodes.reserve(count / 4 + 1);
+    tree_.leaves.reserve(count);
     emit(0, 1);
     return std::move(tree_);
   }
@@ -43,44 +56,52 @@ class Collapser {
     return static_cast<float>(node.box().area() * scale_);
   }
 
+  /// Returns the number of an inner node among inner nodes. Children are made in pairs, from number
+  /// 1 on.
+  static std::size_t inner(const BinaryNode& node) { return (node.left - 1) / 2; }
+
+  Costs costs_of(std::uint32_t index) const {
+    const BinaryNode& node = binary_.nodes[index];
+    if (node.left != 0) return costs_[inner(node)];
+    Costs costs;
+    costs.fill(relative_area(node) * static_cast<float>(leaf_cost));
+    return costs;
+  }
+
   void choose(std::uint32_t index) {
     const BinaryNode& node = binary_.nodes[index];
-    Choice& choice = choices_[index];
-    const float area = relative_area(node);
-    if (node.left == 0) {
-      choice.cost.fill(area * static_cast<float>(leaf_cost));
-      choice.left.fill(0);
-      return;
-    }
+    if (node.left == 0) return;
     if (node.count > parallel_nodes) {
-      tbb::parallel_invoke([&] { choose(node.left); }, [&] { choose(node.right); });
+      tbb::parallel_invoke([&] { choose(node.left); }, [&] { choose(node.left + 1); });
     } else {
       choose(node.left);
-      choose(node.right);
+      choose(node.left + 1);
     }
-    const Choice &a = choices_[node.left], &b = choices_[node.right];
+    Costs& cost = costs_[inner(node)];
+    Lefts& left = lefts_[inner(node)];
+    const Costs a = costs_of(node.left), b = costs_of(node.left + 1);
     for (std::size_t i = width; i-- > 1;) {
-      choice.cost[i] = std::numeric_limits<float>::infinity();
+      cost[i] = std::numeric_limits<float>::infinity();
       for (std::size_t l = 1; l <= i; l++) {
-        const float cost = a.cost[l - 1] + b.cost[i - l];
-        if (cost < choice.cost[i]) {
-          choice.cost[i] = cost;
-          choice.left[i] = static_cast<std::uint8_t>(l);
+        const float sum = a[l - 1] + b[i - l];
+        if (sum < cost[i]) {
+          cost[i] = sum;
+          left[i] = static_cast<std::uint8_t>(l);
         }
       }
     }
-    opened_cost(choice, area);
+    open(relative_area(node), cost, left);
   }
 
   /// Computes the cost as one root: a wide node over the best eight. With more roots allowed it is
   /// still possible to stay one root.
-  static void opened_cost(Choice& choice, float area) {
-    choice.left[0] = 0;
-    choice.cost[0] = area * static_cast<float>(node_cost) + choice.cost[width - 1];
+  static void open(float area, Costs& cost, Lefts& left) {
+    left[0] = 0;
+    cost[0] = area * static_cast<float>(node_cost) + cost[width - 1];
     for (std::size_t i = 1; i + 1 < width; i++)
-      if (choice.cost[0] < choice.cost[i]) {
-        choice.cost[i] = choice.cost[0];
-        choice.left[i] = 0;
+      if (cost[0] < cost[i]) {
+        cost[i] = cost[0];
+        left[i] = 0;
       }
   }
 
@@ -89,13 +110,13 @@ class Collapser {
   void gather(std::uint32_t index, std::size_t allowed, bool open,
               std::vector<std::uint32_t>& roots) const {
     const BinaryNode& node = binary_.nodes[index];
-    const std::size_t left = node.left == 0 ? 0 : choices_[index].left[allowed - 1];
+    const std::size_t left = node.left == 0 ? 0 : lefts_[inner(node)][allowed - 1];
     if (left == 0 && !(open && node.left != 0)) {
       roots.push_back(index);
       return;
     }
     gather(node.left, left, false, roots);
-    gather(node.right, allowed - left, false, roots);
+    gather(node.left + 1, allowed - left, false, roots);
   }
 
   /// Returns the roots in the order of slots. Pairs of a root and a slot are chosen best first, by
@@ -154,7 +175,7 @@ class Collapser {
       std::int32_t child = 0;
       if (root.left == 0) {
         child = ~narrow<std::int32_t>(tree_.leaves.size());
-        tree_.leaves.push_back({root.first, root.count, binary_.items[root.first].group});
+        tree_.leaves.push_back({root.first, root.count, groups_[root.first]});
         tree_.sah += leaf_cost * root.box().area() * scale_;
       } else {
         child = emit(slots[i], depth + 1);
@@ -164,8 +185,10 @@ class Collapser {
     return at;
   }
 
-  const BinaryTree& binary_;
-  std::unique_ptr<Choice[]> choices_;
+  BinaryTree binary_;
+  std::unique_ptr<Costs[]> costs_;  // of inner nodes
+  std::unique_ptr<Lefts[]> lefts_;
+  std::vector<std::uint8_t> groups_;  // of the items
   Tree tree_;
   double scale_ = 1;
 };
@@ -187,12 +210,12 @@ Tree childless_root() {
 
 }  // namespace
 
-Tree collapse(const BinaryTree& binary) { return Collapser(binary).run(); }
+Tree collapse(BinaryTree binary) { return Collapser(std::move(binary)).run(); }
 
-Tree build(std::span<const Reference> references, std::uint64_t single_groups, Effort effort) {
+Tree build(std::vector<Reference> references, std::uint64_t single_groups, Effort effort) {
   CHECK_LT_(references.size(), std::size_t(1) << 31);
   if (references.empty()) return childless_root();
-  return collapse(build_binary(references, single_groups, effort));
+  return collapse(build_binary(std::move(references), single_groups, effort));
 }
 
 }  // namespace caplet::bvh

@@ -266,6 +266,7 @@ struct Work {
   RenderOptions render_options;
   FilmOutput* film = nullptr;              // where the film is kept
   std::optional<double>* stops = nullptr;  // of the first of several frames, for all of them
+  FlatScene* spent = nullptr;  // `flat`, where nothing needs it once the device has it; or null
 };
 
 std::map<std::string, std::string> notes_of(const Work& work, const RenderResult& result) {
@@ -300,8 +301,11 @@ RenderResult render_with_progress(const Work& work, const FlatView& view,
                                   const RenderOptions& render_options) {
   return with_progress(work.devices, render_options, work.options.quiet,
                        [&](const std::function<void(const Progress&)>& progress) {
-                         Session session(work.flat, view, work.devices,
-                                         session_options(render_options));
+                         const SessionOptions session_of = session_options(render_options);
+                         Session session =
+                             work.spent
+                                 ? Session(std::move(*work.spent), view, work.devices, session_of)
+                                 : Session(work.flat, view, work.devices, session_of);
                          if (work.film)
                            work.film->resume(session, render_options.sample_begin,
                                              notes_of(work, so_far(work, 0, 0)));
@@ -655,7 +659,9 @@ void run_render(const RenderFlags& given, const Invocation& invocation) {
                                  ? SampleSpan{0, wanted}
                                  : parse_samples(options.film.samples, wanted);
   seconds.load = phase.lap();
-  const FlatScene flat = lower(scene);
+  // One picture needs the capsules of large scenes in no other form than the device's.
+  const bool is_one = !frames && !options.separation;
+  FlatScene flat = is_one && !options.overlays.any() ? lower_and_release(scene) : lower(scene);
   const FlatView view = lower_view(scene);
   seconds.build = phase.lap();
   if (interrupt_requested()) throw InterruptedEarly();
@@ -693,8 +699,12 @@ void run_render(const RenderFlags& given, const Invocation& invocation) {
                                             depth_layers(options.depth.is_planar()).bits());
   if (options.noise) render_options.layers = render_options.layers.with(Layer::variance);
   render_options.patience = options.patience;
-  const Work work{options, invocation,  scene, flat,           devices,
-                  layers,  film_layers, files, render_options, film ? &*film : nullptr};
+  const Work work{options,        invocation,
+                  scene,          flat,
+                  devices,        layers,
+                  film_layers,    files,
+                  render_options, film ? &*film : nullptr,
+                  nullptr,        is_one ? &flat : nullptr};
   const RenderResult result = frames ? render_frames(work, *frames, overrides, scene, seconds)
                               : options.separation ? stereo_pictures(work, seconds)
                                                    : one_picture(work, view, seconds);

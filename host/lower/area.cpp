@@ -105,9 +105,9 @@ double image_area(const Piece& piece, const glm::dmat3& cofactor) {
 Pieces pieces_of(const FlatPrimitive& p, const std::vector<float>& leaves) {
   Pieces pieces;
   switch (p.shape) {
-#define SHAPE(name, traits)           \
-  case shape_##name:                  \
-    name##_pieces(p, leaves, pieces); \
+#define SHAPE(name, traits)                                                       \
+  case shape_##name:                                                              \
+    if constexpr (((traits)&trait_linked) == 0) name##_pieces(p, leaves, pieces); \
     break;
 #define COMPOUND(name, traits)
 #include "shared/shapes.def"
@@ -122,9 +122,10 @@ Pieces pieces_of(const FlatPrimitive& p, const std::vector<float>& leaves) {
 
 double primitive_area(const FlatPrimitive& p, const std::vector<float>& leaves) {
   switch (p.shape) {
-#define SHAPE(name, traits) \
-  case shape_##name:        \
-    return name##_area(p, leaves);
+#define SHAPE(name, traits)                                                    \
+  case shape_##name:                                                           \
+    if constexpr (((traits)&trait_linked) == 0) return name##_area(p, leaves); \
+    return 0;
 #define COMPOUND(name, traits)
 #include "shared/shapes.def"
 #undef SHAPE

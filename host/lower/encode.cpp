@@ -14,9 +14,8 @@
 #include "base/check.h"
 #include "base/error.h"
 #include "bvh/bvh.h"
+#include "lower/detail/encode.h"
 #include "lower/detail/floats.h"
-#include "lower/detail/shapes.h"
-#include "lower/linking.h"
 
 namespace caplet {
 namespace {
@@ -27,73 +26,6 @@ static_assert(shape_count <= 64, "sets of shapes, and six bits of leaf reference
 
 constexpr std::uint64_t max_rows(int kind_bits) { return std::uint64_t(1) << (31 - kind_bits); }
 constexpr std::uint64_t max_nodes = std::uint64_t(1) << 31;
-
-ExactBox kept_box(const FlatPrimitive& p) {
-  ExactBox box;
-  std::copy_n(p.kept_box(), 3, box.min.begin());
-  std::copy_n(p.kept_box() + 3, 3, box.max.begin());
-  return box;
-}
-
-ExactBox exact_box(const FlatPrimitive& p) {
-  switch (p.shape) {
-#define SHAPE(name, traits)                                             \
-  case shape_##name:                                                    \
-    if constexpr (((traits)&trait_kept_box) == 0) return name##_box(p); \
-    break;
-#define COMPOUND(name, traits)
-#include "shared/shapes.def"
-#undef SHAPE
-    default:
-      break;
-  }
-  return kept_box(p);
-}
-
-/// LeafItems are what the tree is built over: primitives, and leaf blocks of linked capsules, which
-/// are several of them in a row.
-class LeafItems {
- public:
-  LeafItems(std::span<const FlatPrimitive> primitives, bool any_linked) : primitives_(primitives) {
-    if (!any_linked) return;
-    for (std::size_t first = 0, end = 0; first < primitives.size(); first = end) {
-      end = first + 1;
-      while (end < primitives.size() && are_linked(primitives[end - 1], primitives[end])) ++end;
-      // Blocks of equal length have smaller boxes than full ones and a rest.
-      const std::size_t blocks = (end - first + CAPLET_WIDTH - 1) / CAPLET_WIDTH;
-      for (std::size_t b = 0; b < blocks; ++b)
-        begins_.push_back(narrow<std::uint32_t>(first + (end - first) * b / blocks));
-    }
-    begins_.push_back(narrow<std::uint32_t>(primitives.size()));
-  }
-
-  std::size_t size() const { return begins_.empty() ? primitives_.size() : begins_.size() - 1; }
-  std::size_t begin(std::size_t item) const { return begins_.empty() ? item : begins_[item]; }
-  std::span<const FlatPrimitive> operator[](std::size_t item) const {
-    return primitives_.subspan(begin(item), begin(item + 1) - begin(item));
-  }
-
-  bvh::Reference reference(std::size_t item) const {
-    const std::span<const FlatPrimitive> of = (*this)[item];
-    bvh::Reference r{};
-    std::fill_n(r.min, 3, inf);
-    std::fill_n(r.max, 3, -inf);
-    for (const FlatPrimitive& p : of) {
-      const ReferenceBox box = reference_box(p);
-      for (int k = 0; k < 3; ++k) {
-        r.min[k] = std::min(r.min[k], box.min[k]);
-        r.max[k] = std::max(r.max[k], box.max[k]);
-      }
-    }
-    r.primitive = narrow<std::uint32_t>(item);
-    r.group = of[0].shape;
-    return r;
-  }
-
- private:
-  std::span<const FlatPrimitive> primitives_;
-  std::vector<std::uint32_t> begins_;  // of each item, and the end; empty: each is a primitive
-};
 
 }  // namespace
 
@@ -121,64 +53,116 @@ void check_tree_limits(std::uint64_t rows, std::uint64_t nodes, int kind_bits) {
         fmt::format("the scene needs {} tree nodes, the layout holds {}", nodes, max_nodes));
 }
 
-// The kernels' error is at most 16 eps (size + coordinates) for rays from nearby, eps = 2^-24, so
-// 2^-20 of that is added. The slab test covers the part that grows with the distance of a ray's
-// origin (kernels/trace/trace.cl).
-ReferenceBox reference_box(const FlatPrimitive& p) {
-  const ExactBox box = exact_box(p);
-  double reach = 0;
-  for (std::size_t k = 0; k < 3; k++)
-    reach = std::max(
-        {reach, std::abs(box.min[k]), std::abs(box.max[k]), 2 * (box.max[k] - box.min[k])});
-  const double pad = reach * 0x1p-20;
-  ReferenceBox r{};
-  const double largest = double(std::numeric_limits<float>::max());
-  for (std::size_t k = 0; k < 3; k++) {
-    r.min[k] = next_down(static_cast<float>(std::clamp(box.min[k] - pad, -largest, largest)));
-    r.max[k] = next_up(static_cast<float>(std::clamp(box.max[k] + pad, -largest, largest)));
-    r.min[k] = std::max(r.min[k], -std::numeric_limits<float>::max());
-    r.max[k] = std::min(r.max[k], std::numeric_limits<float>::max());
+namespace {
+
+/// Puts blocks of `floats` each into another order: block i becomes the one that was number
+/// `source[i]`, of which each stands there once. `source` is then of any values.
+void reorder_blocks(float* blocks, std::size_t floats, std::vector<std::uint32_t>& source) {
+  constexpr std::uint32_t done = 0xffffffffu;
+  std::vector<float> first(floats);
+  for (std::uint32_t begin = 0; begin < source.size(); ++begin) {
+    if (source[begin] == done) continue;
+    std::copy_n(blocks + floats * begin, floats, first.data());
+    std::uint32_t to = begin;
+    while (source[to] != begin) {
+      const std::uint32_t from = source[to];
+      std::copy_n(blocks + floats * from, floats, blocks + floats * to);
+      source[to] = done;
+      to = from;
+    }
+    std::copy_n(first.data(), floats, blocks + floats * to);
+    source[to] = done;
   }
-  return r;
 }
 
-void primitive_box(const FlatPrimitive& p, double min[3], double max[3]) {
-  const ExactBox box = exact_box(p);
-  std::copy(box.min.begin(), box.min.end(), min);
-  std::copy(box.max.begin(), box.max.end(), max);
-}
+}  // namespace
 
 EncodedTree encode_tree(std::span<const FlatPrimitive> primitives, std::vector<float>& nodes,
                         std::vector<float>& leaves, int kind_bits) {
+  return encode_tree(primitives, TreeLinks(), false, nodes, leaves, kind_bits);
+}
+
+EncodedTree encode_tree(std::span<const FlatPrimitive> primitives, const TreeLinks& linked,
+                        bool release, std::vector<float>& nodes, std::vector<float>& leaves,
+                        int kind_bits) {
   // These are the least numbers of rows, before anything is allocated.
   const std::uint64_t node_base = nodes.size() / CAPLET_NODE_FLOATS, row_base = leaves.size() / 8;
   std::array<std::uint64_t, shape_count> counts{};
   for (const FlatPrimitive& p : primitives) {
     CHECK_LT_(p.shape, std::uint32_t(shape_count));
     CHECK_LT_(p.shape >> kind_bits, 1u);
+    CHECK_EQ_(shape_has(p.shape, trait_linked), false);
     counts[p.shape]++;
   }
-  check_tree_limits(row_base + least_rows(counts), node_base + 1, kind_bits);
+  std::uint64_t rows = row_base;
+  std::size_t items = primitives.size();
+  for (const LinkedCapsules& form : linked.by_form) {
+    rows += std::uint64_t{form.blocks()} * form.rows_per_block();
+    items += form.blocks();
+  }
+  check_tree_limits(rows + least_rows(counts), node_base + 1, kind_bits);
 
-  const LeafItems items(primitives, counts[shape_linked_capsule] > 0);
+  // Blocks of linked capsules come first. They are written in the order of their shapes, whose
+  // memory may be given back so, before the tree says which follows which.
+  if (rows > row_base) leaves.reserve((rows + least_rows(counts) * 3 / 2) * 8);
+  leaves.resize(row_base * 8);
   bvh::Tree tree;
   {
-    std::vector<bvh::Reference> references(items.size());
-    tbb::parallel_for(std::size_t(0), items.size(),
-                      [&](std::size_t i) { references[i] = items.reference(i); });
-    tree = bvh::build(references, shape_bit(shape_instance) | shape_bit(shape_linked_capsule));
+    std::vector<bvh::Reference> references(items);
+    const auto set = [&](std::size_t i, const ReferenceBox& box, std::uint32_t group) {
+      bvh::Reference& to = references[i];
+      std::copy_n(box.min, 3, to.min);
+      std::copy_n(box.max, 3, to.max);
+      to.primitive = narrow<std::uint32_t>(i);
+      to.group = group;
+    };
+    tbb::parallel_for(std::size_t(0), primitives.size(), [&](std::size_t i) {
+      set(i, reference_box(primitives[i]), primitives[i].shape);
+    });
+    std::size_t item = primitives.size();
+    for (const LinkedCapsules& form : linked.by_form) {
+      form.append(
+          leaves,
+          [&](std::size_t block, const ReferenceBox& box) {
+            set(item + block, box, shape_linked_capsule);
+          },
+          release);
+      item += form.blocks();
+    }
+    tree = bvh::build(std::move(references),
+                      shape_bit(shape_instance) | shape_bit(shape_linked_capsule));
   }
   CHECK_LE_(tree.depth, bvh::max_depth);
 
   std::vector<std::uint32_t> row_of(tree.leaves.size());
-  std::uint64_t rows = row_base;
+  std::array<std::vector<std::uint32_t>, 2> blocks;  // in the tree's order
+  for (std::size_t f = 0; f < blocks.size(); ++f) blocks[f].reserve(linked.by_form[f].blocks());
   for (std::size_t i = 0; i < tree.leaves.size(); i++) {
-    row_of[i] = static_cast<std::uint32_t>(std::min(rows, max_rows(kind_bits)));
-    rows += tree.leaves[i].group == shape_linked_capsule
-                ? link_rows(items[tree.order[tree.leaves[i].first]][0])
-                : rows_of(tree.leaves[i].group);
+    const bvh::Leaf& leaf = tree.leaves[i];
+    if (leaf.group != shape_linked_capsule) {
+      row_of[i] = static_cast<std::uint32_t>(std::min(rows, max_rows(kind_bits)));
+      rows += rows_of(leaf.group);
+      continue;
+    }
+    std::size_t form = 0, block = tree.order[leaf.first] - primitives.size(), row = row_base;
+    if (block >= linked.by_form[0].blocks()) {
+      form = 1;
+      block -= linked.by_form[0].blocks();
+      row += linked.by_form[0].blocks() * linked.by_form[0].rows_per_block();
+    }
+    row_of[i] =
+        narrow<std::uint32_t>(row + blocks[form].size() * linked.by_form[form].rows_per_block());
+    blocks[form].push_back(narrow<std::uint32_t>(block));
   }
   check_tree_limits(rows, node_base + tree.nodes.size(), kind_bits);
+  {
+    float* at = leaves.data() + row_base * 8;
+    for (std::size_t f = 0; f < blocks.size(); ++f) {
+      const std::size_t floats = std::size_t{8} * linked.by_form[f].rows_per_block();
+      reorder_blocks(at, floats, blocks[f]);
+      at += floats * blocks[f].size();
+    }
+  }
 
   EncodedTree out;
   out.root = narrow<std::uint32_t>(node_base);
@@ -213,24 +197,18 @@ EncodedTree encode_tree(std::span<const FlatPrimitive> primitives, std::vector<f
     }
   });
 
+  tree.nodes = {};
+
   leaves.resize(rows * 8);
   out.slots.resize(primitives.size());
   tbb::parallel_for(std::size_t(0), tree.leaves.size(), [&](std::size_t l) {
     const bvh::Leaf& leaf = tree.leaves[l];
     float* block = &leaves[std::size_t(row_of[l]) * 8];
-    if (leaf.group == shape_linked_capsule) {
-      const std::size_t item = tree.order[leaf.first];
-      write_links(items[item], block);
-      for (std::size_t i = 0; i < items[item].size(); ++i)
-        out.slots[items.begin(item) + i] =
-            CAPLET_SLOT_LINKED | (row_of[l] * 8 + static_cast<std::uint32_t>(i));
-      return;
-    }
+    if (leaf.group == shape_linked_capsule) return;
     const std::uint32_t data_rows = data_of[leaf.group];
     for (std::uint32_t lane = 0; lane < 8; lane++) {
       // Empty lanes repeat the first primitive, so that no arithmetic meets odd values there.
-      const std::size_t index =
-          items.begin(tree.order[leaf.first + (lane < leaf.count ? lane : 0)]);
+      const std::size_t index = tree.order[leaf.first + (lane < leaf.count ? lane : 0)];
       const FlatPrimitive& p = primitives[index];
       block[lane] = std::bit_cast<float>(lane < leaf.count ? p.id : 0xffffffffu);
       for (std::uint32_t j = 0; j < data_rows; j++) block[8 * (j + 1) + lane] = p.data[j];

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "lower/flat_primitive.h"
+#include "lower/reference_box.h"
 
 namespace caplet {
 
@@ -21,16 +22,6 @@ struct EncodedTree {
   int depth = 0;
   double sah = 0;
 };
-
-/// Computes the exact box of a primitive in its tree's space: min, then max.
-void primitive_box(const FlatPrimitive& p, double min[3], double max[3]);
-
-/// The tree's boxes are the unions of these: the box of every point that the shape kernels may
-/// report, rounded outward.
-struct ReferenceBox {
-  float min[3], max[3];
-};
-ReferenceBox reference_box(const FlatPrimitive& p);
 
 /// Returns the least number of rows of leaf blocks that so many primitives of each kind
 /// (shapes.def) need.

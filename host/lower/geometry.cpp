@@ -13,6 +13,7 @@
 
 #include "base/check.h"
 #include "lower/all_rows.h"
+#include "lower/detail/encode.h"
 #include "lower/detail/flat_shapes.h"
 #include "lower/detail/shapes.h"
 #include "lower/detail/textures.h"
@@ -105,6 +106,7 @@ class GeometryLowering {
 
     find_shapes(lowered);
     out_.primitive_geometry = geometry_pages(geometry_of_);
+    geometry_of_ = {};
     std::deque<Subtree>& world = lowered.world.subtrees;
     Subtree& top = world[0];
     for (std::size_t i = 1; i < world.size(); ++i) {
@@ -113,11 +115,11 @@ class GeometryLowering {
     }
     for (LoweredShapes& object : lowered.objects)
       for (Subtree& subtree : object.subtrees)
-        if (!subtree.primitives.empty()) encode(subtree);
+        if (subtree.size() > 0) encode(subtree);
     for (std::size_t i = 0; i < scene_.instances.size(); ++i) {
       const Instance& instance = scene_.instances[i];
       for (const Subtree& subtree : lowered.objects[instance.object].subtrees)
-        if (!subtree.primitives.empty())
+        if (subtree.size() > 0)
           place(subtree, instance.world_from_object * subtree.placed, &instance,
                 narrow<std::uint32_t>(i), top, lowered.placed);
     }
@@ -201,7 +203,8 @@ class GeometryLowering {
       return (one.flags & CAPLET_GEOMETRY_CHAIN) != 0;
     });
     const auto add = [&](const LoweredShapes& shapes) {
-      for (const Subtree& subtree : shapes.subtrees)
+      for (const Subtree& subtree : shapes.subtrees) {
+        if (subtree.linked.size() > 0) out_.shapes |= shape_bit(shape_linked_capsule);
         for (const FlatPrimitive& p : subtree.primitives) {
           out_.shapes |= shape_bit(p.shape);
           if (p.shape != shape_csg) continue;
@@ -209,6 +212,7 @@ class GeometryLowering {
           out_.has_chains = out_.has_chains || csg_has_chain(p, out_.leaves);
           out_.has_moving_operands = out_.has_moving_operands || csg_moves(p, out_.leaves);
         }
+      }
     };
     add(lowered.world);
     for (const LoweredShapes& object : lowered.objects) add(object);
@@ -257,9 +261,11 @@ class GeometryLowering {
       extent.subtree = subtree;
       extent.first = subtree->primitives.size();
       extent.begin = lengths();
+      const std::size_t linked = subtree->linked.size();
       lower_shape(shape, own.baked, object_begin + narrow<std::uint32_t>(i),
                   object ? object_name : matte_hash(matte_name(shape, i)), *subtree);
       extent.end = lengths();
+      extent.has_linked = subtree->linked.size() > linked;
     }
     return lowered;
   }
@@ -342,9 +348,6 @@ class GeometryLowering {
 
   void append(const CapsulesShape& capsules, const Matrix& m, const GeometryRecord& record,
               Subtree& subtree) {
-    const double scale = similarity_scale(m);
-    std::map<std::pair<int, uint>, uint> own_geometries;  // by kind and material
-    const bool identity = m == Matrix(1);
     GeometryRecord of_all = record;
     if (!capsules.u.empty()) of_all.flags |= CAPLET_GEOMETRY_CHAIN;
     std::optional<CapsuleMotion> motion;
@@ -353,34 +356,45 @@ class GeometryLowering {
       const FilmSettings& film = scene_.view.film;
       moving.emplace(motion.emplace(capsules, film.shutter_open, film.open_time()), out_.leaves);
     }
-    const std::size_t first = subtree.primitives.size();
-    reserve_more(subtree.primitives, count_of(capsules));
-    for (std::size_t i = 0; i < count_of(capsules); ++i) {
-      FlatPrimitive& p = subtree.primitives.emplace_back(
-          moving ? moving->primitive(i)
-                 : flat_capsule(capsules, i, identity ? nullptr : &m, scale));
-      p.id = narrow<std::uint32_t>(geometry_of_.size() + i);
-    }
-    const bool all_linked =
-        may_link_ && !moving &&
-        link_capsules(std::span(subtree.primitives).subspan(first), capsules.u, linking_.least_run);
+    const PlacedCapsules placed(capsules, m, similarity_scale(m));
+    const std::vector<CapsuleRow> rows =
+        may_link_ && !moving ? rows_of(placed, linking_.least_run) : std::vector<CapsuleRow>();
+    std::size_t linked = 0;
+    for (const CapsuleRow& row : rows) linked += row.count;
     // Linked ones have their u in their leaf blocks.
-    if (!capsules.u.empty() && !all_linked) {
+    if (!capsules.u.empty() && linked < count_of(capsules)) {
       of_all.uv_begin = narrow<uint>(out_.mesh_uvs.size());
       reserve_more(out_.mesh_uvs, 2 * capsules.u.size());
       for (const glm::vec2& u : capsules.u) out_.mesh_uvs.insert(out_.mesh_uvs.end(), {u.x, u.y});
     }
-    reserve_more(geometry_of_, count_of(capsules));
-    for (std::size_t i = 0; i < count_of(capsules); ++i) {
-      const int kind = static_cast<int>(subtree.primitives[first + i].shape);
+    std::array<std::vector<uint>, shape_count> own_geometries;  // by kind and material
+    const auto add_id = [&](std::size_t i, std::uint32_t kind) {
       const uint material = capsules.materials.empty() ? record.material : capsules.materials[i];
-      const auto [found, fresh] = own_geometries.try_emplace({kind, material}, 0);
-      if (fresh) {
+      std::vector<uint>& by_material = own_geometries[kind];
+      if (by_material.size() <= material) by_material.resize(material + 1, CAPLET_NONE);
+      if (by_material[material] == CAPLET_NONE) {
         GeometryRecord own = of_all;
         own.material = material;
-        found->second = add_geometry(own, kind);
+        by_material[material] = add_geometry(own, static_cast<int>(kind));
       }
-      geometry_of_.push_back(found->second);
+      geometry_of_.push_back(by_material[material]);
+    };
+    reserve_more(geometry_of_, count_of(capsules));
+    reserve_more(subtree.primitives, count_of(capsules) - linked);
+    LinkedCapsules& links = subtree.linked.of(placed);
+    if (linked > 0) links.begin(placed, narrow<std::uint32_t>(geometry_of_.size()));
+    auto row = rows.begin();
+    for (std::size_t i = 0; i < count_of(capsules);) {
+      if (row != rows.end() && row->first == i) {
+        links.add_row(*row);
+        for (; i < row->first + row->count; ++i) add_id(i, shape_linked_capsule);
+        ++row;
+        continue;
+      }
+      FlatPrimitive p = moving ? moving->primitive(i) : placed[i];
+      p.id = narrow<std::uint32_t>(geometry_of_.size());
+      subtree.primitives.push_back(p);
+      add_id(i++, p.shape);
     }
   }
 
@@ -539,7 +553,9 @@ class GeometryLowering {
   }
 
   void encode(Subtree& subtree) {
-    subtree.tree = encode_tree(subtree.primitives, out_.nodes, out_.leaves, kind_bits_);
+    const bool release = linking_.release && !out_.has_media();
+    subtree.tree = encode_tree(subtree.primitives, subtree.linked, release, out_.nodes, out_.leaves,
+                               kind_bits_);
     out_.bvh_nodes += subtree.tree.nodes;
     out_.bvh_depth = std::max(out_.bvh_depth, subtree.tree.depth);
   }

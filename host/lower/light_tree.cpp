@@ -11,7 +11,6 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <limits>
-#include <memory>
 #include <numbers>
 #include <utility>
 #include <vector>
@@ -182,9 +181,9 @@ LightBounds TreeLights::bounds_of(const One& light) const {
 namespace {
 
 /// Returns the box of each light, for the tree's builder, and the extent of all.
-std::pair<std::unique_ptr<bvh::Reference[]>, Extent> boxes_of(
+std::pair<std::vector<bvh::Reference>, Extent> boxes_of(
     const std::vector<TreeLights::One>& lights) {
-  auto boxes = std::make_unique_for_overwrite<bvh::Reference[]>(lights.size());
+  std::vector<bvh::Reference> boxes(lights.size());
   const Extent extent = tbb::parallel_reduce(
       tbb::blocked_range<std::size_t>(0, lights.size(), 4096), Extent{},
       [&](const tbb::blocked_range<std::size_t>& range, Extent all) {
@@ -335,9 +334,9 @@ void lower_light_tree(const TreeLights& all_lights, std::size_t light_count, Fla
   LightingRecord& record = out.lighting;
   for (int k = 0; k < 3; ++k) record.tree_min[k] = record.tree_cell[k] = 0;
   if (lights.empty()) return;
-  const auto [boxes, extent] = boxes_of(lights);
+  auto [boxes, extent] = boxes_of(lights);
   const Grid grid(extent.min, extent.max);
-  const bvh::Tree tree = bvh::build({boxes.get(), lights.size()}, 0, bvh::Effort::quick);
+  const bvh::Tree tree = bvh::build(std::move(boxes), 0, bvh::Effort::quick);
   LightTreeWriter(all_lights, tree, grid, light_count, out).write();
   for (int k = 0; k < 3; ++k) {
     record.tree_min[k] = static_cast<float>(grid.min[k]);

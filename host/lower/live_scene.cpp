@@ -76,10 +76,10 @@ struct LiveScene::State {
     const Shape& shape = shape_at(scene, edit.at);
     ShapeExtent& of = extent(edit.at);
     if (!of.subtree) return false;
+    if (of.has_linked) return unlink();
     const Matrix baked = subtree_key(shape, shape.world_from_object).baked;
     const std::size_t at = of.first + edit.capsule;
     FlatPrimitive& p = of.subtree->primitives[at];
-    if (p.shape == shape_linked_capsule) return unlink();
     const FlatPrimitive moved =
         flat_capsule(std::get<CapsulesShape>(shape.geometry), edit.capsule,
                      baked == Matrix(1) ? nullptr : &baked, similarity_scale(baked));
@@ -114,12 +114,12 @@ struct LiveScene::State {
 
   /// Bakes a shape of which only numbers change, under another matrix.
   bool bake(const Shape& shape, ShapeExtent& of, const Matrix& baked) {
+    if (of.has_linked) return unlink();
     Subtree& subtree = *of.subtree;
     const std::size_t count = of.end.primitives - of.begin.primitives;
     if (count > most_moved && count * least_unmoved_share > subtree.primitives.size()) return false;
     for (std::size_t i = 0; i < count; ++i) {
       const std::uint32_t kind = subtree.primitives[of.first + i].shape;
-      if (kind == shape_linked_capsule) return unlink();
       // These kinds keep data in `leaves` that depend on the matrix.
       if (kind == shape_csg || kind == shape_polyhedron || kind == shape_molecular_patch ||
           shape_has(kind, trait_moves))
@@ -342,7 +342,7 @@ struct LiveScene::State {
 
   bool has_bad_tree() const {
     const auto is_bad = [&](const Subtree& subtree) {
-      return subtree.primitives.size() >= rebuilt_from_primitives &&
+      return subtree.size() >= rebuilt_from_primitives &&
              trees->cost_growth(subtree) > rebuilt_at_growth;
     };
     const LoweredGeometry& all = lowering->geometry;

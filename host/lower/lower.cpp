@@ -62,6 +62,20 @@ FlatScene lower(const Scene& scene, const Linking& linking) {
   return std::move(Lowering(scene, linking).flat);
 }
 
+FlatScene lower_and_release(Scene& scene, Linking linking) {
+  linking.release = true;
+  Lowering lowering(scene, linking);
+  if (lowering.flat.has_media()) return std::move(lowering.flat);
+  const auto empty = [](std::vector<Shape>& shapes, const LoweredShapes& lowered) {
+    for (std::size_t i = 0; i < shapes.size(); ++i)
+      if (lowered.extents[i].has_linked) shapes[i].geometry = CapsulesShape{};
+  };
+  empty(scene.shapes, lowering.geometry.world);
+  for (std::size_t i = 0; i < scene.objects.size(); ++i)
+    empty(scene.objects[i].shapes, lowering.geometry.objects[i]);
+  return std::move(lowering.flat);
+}
+
 FlatView lower_view(const Scene& scene) {
   FlatView out;
   lower_camera(scene, out);

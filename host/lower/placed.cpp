@@ -36,7 +36,7 @@ Bounds placed_bounds(const Subtree& subtree, const Matrix& world_from_subtree,
     }
     return motion->swept(box);
   }
-  if (subtree.primitives.size() <= 256) {
+  if (subtree.size() <= 256) {
     // A subtree with its own transform holds its shapes in their object space.
     const bool baked = subtree.placed == Matrix(1);
     for (const Shape* shape : subtree.shapes)

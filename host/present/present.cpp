@@ -12,8 +12,8 @@
 #include <glm/matrix.hpp>
 #include <glm/trigonometric.hpp>
 #include <glm/vec2.hpp>
-#include <memory>
 #include <numbers>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -36,26 +36,63 @@ struct Ball {
   double radius;
 };
 
-/// Returns spheres whose hull contains every shape: a capsule's ends, balls themselves, the corners
-/// of the bounds of anything else. Without shapes it is the unit ball, as in bounds_or_unit_of.
-std::vector<Ball> balls_of(const Scene& scene) {
-  std::vector<Ball> balls;
-  const auto add_corners = [&balls](const Bounds& bounds) {
-    if (bounds.empty()) return;
-    for (int corner = 0; corner < 8; ++corner)
-      balls.push_back(
-          {{corner & 1 ? bounds.max.x : bounds.min.x, corner & 2 ? bounds.max.y : bounds.min.y,
-            corner & 4 ? bounds.max.z : bounds.min.z},
-           0});
-  };
-  const bool is_empty =
-      std::ranges::all_of(scene.shapes, &Shape::is_backdrop) && scene.instances.empty();
-  for (const Shape& shape : scene.shapes) {
-    if (shape.is_backdrop && !is_empty) continue;
-    const glm::dmat3 linear(shape.world_from_object);
-    const auto place = [&shape](const glm::dvec3& p) {
-      return glm::dvec3(shape.world_from_object * glm::dvec4(p, 1));
+/// Balls are spheres whose hull contains every shape: a capsule's ends, balls themselves, the
+/// corners of the bounds of anything else. Without shapes it is the unit ball, as in
+/// bounds_or_unit_of. Those of capsules take no memory: they are made again wherever they are
+/// needed. It refers to the scene.
+class Balls {
+ public:
+  explicit Balls(const Scene& scene) {
+    const bool is_empty =
+        std::ranges::all_of(scene.shapes, &Shape::is_backdrop) && scene.instances.empty();
+    for (const Shape& shape : scene.shapes)
+      if (!shape.is_backdrop || is_empty) add(shape);
+    if (!scene.instances.empty()) {
+      Scene placed;
+      placed.objects = scene.objects;
+      placed.instances = scene.instances;
+      add_corners(bounds_of(placed));
+    }
+    if (size_ == 0) add({glm::dvec3(0), 1});
+  }
+
+  std::size_t size() const { return size_; }
+  /// Turns them about the origin.
+  void turn(const glm::dmat3& by) { turn_ = by; }
+  template <class Function>
+  void for_each(const Function& function) const {
+    const auto turned = [&](Ball ball) {
+      if (turn_) ball.center = *turn_ * ball.center;
+      function(ball);
     };
+    for (const Part& part : parts_) {
+      std::ranges::for_each(part.balls, turned);
+      if (part.capsules == nullptr) continue;
+      const CapsulesShape& of = *part.capsules;
+      for (std::size_t i = 0; i < of.p0.size(); ++i) {
+        const float radius1 = of.radius1.empty() ? of.radius0[i] : of.radius1[i];
+        turned({place(part.world, of.p0[i]), part.scale * of.radius0[i]});
+        turned({place(part.world, of.p1[i]), part.scale * radius1});
+      }
+    }
+  }
+
+ private:
+  /// Part is some balls, and after them those of capsules.
+  struct Part {
+    std::vector<Ball> balls{};
+    const CapsulesShape* capsules = nullptr;
+    glm::dmat4 world{1};
+    double scale = 1;
+  };
+
+  static glm::dvec3 place(const glm::dmat4& world, const glm::dvec3& p) {
+    return glm::dvec3(world * glm::dvec4(p, 1));
+  }
+
+  /// Returns how long a transform makes a radius at most.
+  static double scale_of(const glm::dmat4& world) {
+    const glm::dmat3 linear(world);
     // The Frobenius norm bounds the largest stretch; divided by sqrt(3) it is that of a uniform
     // scale.
     const double stretch =
@@ -65,34 +102,45 @@ std::vector<Ball> balls_of(const Scene& scene) {
                              std::abs(glm::dot(linear[1], linear[2])) +
                              std::abs(glm::dot(linear[2], linear[0])) <=
                          1e-12 * stretch * stretch;
-    const double scale =
-        uniform ? std::max({glm::length(linear[0]), glm::length(linear[1]), glm::length(linear[2])})
-                : stretch;
+    return uniform
+               ? std::max({glm::length(linear[0]), glm::length(linear[1]), glm::length(linear[2])})
+               : stretch;
+  }
+
+  void add(const Ball& ball) {
+    if (parts_.empty() || parts_.back().capsules != nullptr) parts_.emplace_back();
+    parts_.back().balls.push_back(ball);
+    ++size_;
+  }
+
+  void add_corners(const Bounds& bounds) {
+    if (bounds.empty()) return;
+    for (int corner = 0; corner < 8; ++corner)
+      add({{corner & 1 ? bounds.max.x : bounds.min.x, corner & 2 ? bounds.max.y : bounds.min.y,
+            corner & 4 ? bounds.max.z : bounds.min.z},
+           0});
+  }
+
+  void add(const Shape& shape) {
+    const glm::dmat4& world = shape.world_from_object;
+    const double scale = scale_of(world);
     if (const auto* sphere = std::get_if<SphereShape>(&shape.geometry)) {
-      balls.push_back({place({0, 0, 0}), scale * sphere->radius});
+      add({place(world, {0, 0, 0}), scale * sphere->radius});
     } else if (const auto* capsules = std::get_if<CapsulesShape>(&shape.geometry)) {
-      for (std::size_t i = 0; i < capsules->p0.size(); ++i) {
-        const float radius1 =
-            capsules->radius1.empty() ? capsules->radius0[i] : capsules->radius1[i];
-        balls.push_back({place(capsules->p0[i]), scale * capsules->radius0[i]});
-        balls.push_back({place(capsules->p1[i]), scale * radius1});
-      }
+      parts_.push_back({{}, capsules, world, scale});
+      size_ += 2 * capsules->p0.size();
     } else if (const auto* molecule = std::get_if<MolecularSurfaceShape>(&shape.geometry)) {
       for (std::size_t i = 0; i < molecule->centers.size(); ++i)
-        balls.push_back({place(molecule->centers[i]), scale * molecule->radii[i]});
+        add({place(world, molecule->centers[i]), scale * molecule->radii[i]});
     } else {
       add_corners(bounds_of(shape));
     }
   }
-  if (!scene.instances.empty()) {
-    Scene placed;
-    placed.objects = scene.objects;
-    placed.instances = scene.instances;
-    add_corners(bounds_of(placed));
-  }
-  if (balls.empty()) balls.push_back({glm::dvec3(0), 1});
-  return balls;
-}
+
+  std::vector<Part> parts_;
+  std::size_t size_ = 0;
+  std::optional<glm::dmat3> turn_;
+};
 
 // --- The direction of view ---
 
@@ -102,14 +150,15 @@ struct Axes {
 };
 
 /// Returns the principal axes of the balls' centres.
-Axes axes_of(const std::vector<Ball>& balls) {
+Axes axes_of(const Balls& balls) {
+  const auto count = static_cast<double>(balls.size());
   glm::dvec3 mean(0);
-  for (const Ball& ball : balls) mean += ball.center / static_cast<double>(balls.size());
+  balls.for_each([&](const Ball& ball) { mean += ball.center / count; });
   glm::dmat3 covariance(0);
-  for (const Ball& ball : balls) {
+  balls.for_each([&](const Ball& ball) {
     const glm::dvec3 d = ball.center - mean;
-    covariance += glm::outerProduct(d, d) / static_cast<double>(balls.size());
-  }
+    covariance += glm::outerProduct(d, d) / count;
+  });
   const PrincipalAxes found = principal_axes(covariance);
   std::array<int, 3> order{0, 1, 2};
   std::ranges::sort(order, std::greater(), [&](int k) { return found.values[k]; });
@@ -160,20 +209,20 @@ bool is_flat(const Axes& axes) { return axes.extent[2] < kFlat * axes.extent[1];
 
 /// For scenes without an up axis: makes a quarter turn where the longer side then fits the image's
 /// longer side clearly better.
-ViewFrame along_image(const ViewFrame& view, const std::vector<Ball>& balls, double aspect) {
+ViewFrame along_image(const ViewFrame& view, const Balls& balls, double aspect) {
   glm::dvec2 low(1e300), high(-1e300);
-  for (const Ball& ball : balls) {
+  balls.for_each([&](const Ball& ball) {
     const glm::dvec2 p(glm::dot(view.right, ball.center), glm::dot(view.up, ball.center));
     low = glm::min(low, p - ball.radius);
     high = glm::max(high, p + ball.radius);
-  }
+  });
   const glm::dvec2 size = high - low;
   const double upright = std::max(size.x / aspect, size.y),
                turned = std::max(size.y / aspect, size.x);
   return turned < 0.8 * upright ? ViewFrame{view.up, -view.right, view.forward} : view;
 }
 
-ViewFrame choose_view(const std::vector<Ball>& balls) {
+ViewFrame choose_view(const Balls& balls) {
   const Axes axes = axes_of(balls);
   const auto facing = [](glm::dvec3 n) {
     // The viewer is in front, above or at the right, whichever is nearest to the normal.
@@ -192,7 +241,7 @@ ViewFrame choose_view(const std::vector<Ball>& balls) {
 }
 
 /// Returns the view of the scene's framing; the balls are in world space.
-ViewFrame framed_view(const Scene& scene, const std::vector<Ball>& balls) {
+ViewFrame framed_view(const Scene& scene, const Balls& balls) {
   const Framing& framing = scene.framing;
   const double aspect = static_cast<double>(scene.view.film.width) / scene.view.film.height;
   ViewFrame view;
@@ -203,8 +252,8 @@ ViewFrame framed_view(const Scene& scene, const std::vector<Ball>& balls) {
     if (framing.toward_viewer) {
       view = view_asked(turn * *framing.toward_viewer);
     } else {
-      std::vector<Ball> upright = balls;
-      for (Ball& ball : upright) ball.center = turn * ball.center;
+      Balls upright = balls;
+      upright.turn(turn);
       view = choose_view(upright);
     }
     view = {back * view.right, back * view.up, back * view.forward};
@@ -225,14 +274,14 @@ void set_camera(Scene& scene, const ViewFrame& view, const glm::dvec3& eye,
 
 /// The camera stands one extent before the nearest point, for the depth layer; the picture does not
 /// depend on it.
-void frame_orthographic(Scene& scene, const ViewFrame& view, const std::vector<Ball>& balls) {
+void frame_orthographic(Scene& scene, const ViewFrame& view, const Balls& balls) {
   glm::dvec3 low(1e300), high(-1e300);
-  for (const Ball& ball : balls) {
+  balls.for_each([&](const Ball& ball) {
     const glm::dvec3 p(glm::dot(view.right, ball.center), glm::dot(view.up, ball.center),
                        glm::dot(view.forward, ball.center));
     low = glm::min(low, p - ball.radius);
     high = glm::max(high, p + ball.radius);
-  }
+  });
   const glm::dvec3 middle = 0.5 * (low + high), half = 0.5 * (high - low) / (1 - frame_margin);
   const double width = scene.view.film.width, height = scene.view.film.height;
   double per_pixel = std::max(2 * half.x / width, 2 * half.y / height);
@@ -248,7 +297,7 @@ void frame_orthographic(Scene& scene, const ViewFrame& view, const std::vector<B
 }  // namespace
 
 void frame_camera(Scene& scene) {
-  const std::vector<Ball> balls = balls_of(scene);
+  const Balls balls(scene);
   const ViewFrame view = framed_view(scene, balls);
   if (scene.framing.is_orthographic) return frame_orthographic(scene, view, balls);
   const double width = scene.view.film.width, height = scene.view.film.height,
@@ -265,12 +314,12 @@ void frame_camera(Scene& scene) {
   const auto fit = [&](const glm::dvec3& across, double tangent) {
     const double angle = std::atan(tangent);
     Side side{std::sin(angle), std::cos(angle), -1e300, -1e300};
-    for (const Ball& ball : balls) {
+    balls.for_each([&](const Ball& ball) {
       const double x = side.cosine * glm::dot(across, ball.center);
       const double depth = ball.radius - side.sine * glm::dot(view.forward, ball.center);
       side.right = std::max(side.right, x + depth);
       side.left = std::max(side.left, -x + depth);
-    }
+    });
     return side;
   };
   const Side horizontal = fit(view.right, half * width / shorter),

@@ -7,6 +7,7 @@
 #include <algorithm>
 
 #include "base/check.h"
+#include "base/memory.h"
 #include "lower/packed_nodes.h"
 
 namespace caplet {
@@ -71,7 +72,21 @@ std::uint64_t send(const Device& device, std::span<const T> now, const ChangedRa
   return bytes;
 }
 
-/// Does the same for nodes that are sent packed.
+/// Sends values and empties them. Their memory is given back part by part.
+Buffer<float> sent_in_parts(const Device& device, std::vector<float>& values) {
+  constexpr std::size_t part = std::size_t{1} << 21;
+  Buffer<float> out(device, values.size());
+  for (std::size_t begin = 0; begin < values.size(); begin += part) {
+    const std::span<float> own =
+        std::span(values).subspan(begin, std::min(part, values.size() - begin));
+    out.RawBuffer::write(own.data(), begin * sizeof(float), own.size_bytes());
+    release_pages(own.data(), own.size_bytes());
+  }
+  values = {};
+  return out;
+}
+
+/// Does as `send` for nodes that are sent packed.
 std::uint64_t send_packed(const Device& device, std::span<const float> nodes,
                           const ChangedRanges& changed, bool all, Buffer<float>& to) {
   constexpr std::size_t from_each = CAPLET_NODE_FLOATS, to_each = CAPLET_PACKED_NODE_FLOATS;
@@ -160,6 +175,23 @@ SceneBuffers::SceneBuffers(const Device& device, const FlatScene& flat, Encoding
   const std::vector<float> packed =
       encoding_ == Encoding::single ? packed_nodes(flat.nodes) : std::vector<float>{};
   require_fit(device, flat, packed);
+  SCENE_GROUPS
+}
+#undef BUFFER
+#define BUFFER(name, type, access) \
+  if (!is_sent(&flat.name)) buffers.name = Buffer<type>(device, contents(flat.name));
+SceneBuffers::SceneBuffers(const Device& device, FlatScene&& flat) : encoding_(device.encoding()) {
+  std::vector<float> packed;
+  if (encoding_ == Encoding::single) {
+    packed = packed_nodes(flat.nodes);
+    flat.nodes = {};
+  }
+  require_fit(device, flat, packed);
+  tree.nodes = sent_in_parts(device, packed.empty() ? flat.nodes : packed);
+  tree.leaves = sent_in_parts(device, flat.leaves);
+  const auto is_sent = [&flat](const void* array) {
+    return array == &flat.nodes || array == &flat.leaves;
+  };
   SCENE_GROUPS
 }
 #undef BUFFER

@@ -53,6 +53,9 @@ struct SceneBuffers {
   /// RunError, before anything is allocated, when it does not fit.
   SceneBuffers(const Device& device, const FlatScene& scene,
                Encoding encoding = Encoding::automatic);
+  /// Does the same, and gives back the memory of the scene's nodes and leaves, which are empty
+  /// then.
+  SceneBuffers(const Device& device, FlatScene&& scene);
   /// Sends what has changed, and returns its bytes. Buffers that have grown are allocated again,
   /// with some room to grow.
   std::uint64_t update(const Device& device, const FlatScene& scene, const SceneChanges& changes);

@@ -42,9 +42,15 @@ std::vector<CompileJob> render_jobs(const Device& device, const FlatScene& scene
 }
 
 DeviceScene::DeviceScene(const Device& device, const FlatScene& scene)
+    : DeviceScene(device, scene, SceneBuffers(device, scene)) {}
+
+DeviceScene::DeviceScene(const Device& device, FlatScene&& scene)
+    : DeviceScene(device, scene, SceneBuffers(device, std::move(scene))) {}
+
+DeviceScene::DeviceScene(const Device& device, const FlatScene& scene, SceneBuffers buffers)
     : device_(device),
       options_(stage_options(scene, device)),
-      buffers_(device, scene),
+      buffers_(std::move(buffers)),
       kernels_(device, options_),
       world_(scene.world),
       light_radiance_(scene.lighting.radiance),

@@ -23,6 +23,9 @@ class DeviceScene {
   /// Sends the scene to the device; nothing of `scene` is referred to afterwards. Throws RunError
   /// when it does not fit.
   DeviceScene(const Device& device, const FlatScene& scene);
+  /// Does the same, and gives back the memory of the scene's nodes and leaves, which are empty
+  /// then.
+  DeviceScene(const Device& device, FlatScene&& scene);
 
   /// Sends what differs: `scene` is the one that was sent last, except for `changes`. Buffers that
   /// have grown are allocated again, and kernels are built again if the scene needs others.
@@ -58,6 +61,7 @@ class DeviceScene {
   std::uint64_t bvh_nodes() const { return bvh_nodes_; }
 
  private:
+  DeviceScene(const Device& device, const FlatScene& scene, SceneBuffers buffers);
   Device device_;
   StageOptions options_;
   SceneBuffers buffers_;

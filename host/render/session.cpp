@@ -27,12 +27,9 @@ DeviceWork work_of(const DeviceInfo& info) {
 }
 
 struct Session::Worker {
-  Worker(const Device& on, const FlatScene& flat, const FlatView& of,
+  Worker(const Device& on, std::shared_ptr<DeviceScene> of_scene, const FlatView& of,
          const RendererOptions& options)
-      : device(on),
-        scene(std::make_shared<DeviceScene>(on, flat)),
-        view(of),
-        renderer(*scene, view, options) {}
+      : device(on), scene(std::move(of_scene)), view(of), renderer(*scene, view, options) {}
   DeviceWork work() const {
     DeviceWork out = work_of(device.info());
     out.paths_a_second = speed.paths_a_second();
@@ -138,6 +135,19 @@ struct Session::Run {
 
 Session::Session(const FlatScene& scene, const FlatView& view, const std::vector<Device>& devices,
                  const SessionOptions& options)
+    : Session(view, devices, options,
+              [&](const Device& device) { return std::make_shared<DeviceScene>(device, scene); }) {}
+
+Session::Session(FlatScene&& scene, const FlatView& view, const std::vector<Device>& devices,
+                 const SessionOptions& options)
+    : Session(view, devices, options, [&](const Device& device) {
+        return &device == &devices.back() ? std::make_shared<DeviceScene>(device, std::move(scene))
+                                          : std::make_shared<DeviceScene>(device, scene);
+      }) {}
+
+Session::Session(const FlatView& view, const std::vector<Device>& devices,
+                 const SessionOptions& options,
+                 const std::function<std::shared_ptr<DeviceScene>(const Device&)>& scene_for)
     : options_(options), first_(options.sample_begin), next_(options.sample_begin) {
   CHECK_LT_(std::size_t{0}, devices.size());
   RendererOptions each;
@@ -148,7 +158,7 @@ Session::Session(const FlatScene& scene, const FlatView& view, const std::vector
                       std::size_t{options.most_samples};
   std::exception_ptr failure;
   for (const Device& device : devices) try {
-      workers_.push_back(std::make_shared<Worker>(device, scene, view, each));
+      workers_.push_back(std::make_shared<Worker>(device, scene_for(device), view, each));
       workers_.back()->scene->kernels().time_stages(options.time_stages);
     } catch (const RunError&) {
       if (failure || devices.size() > 1)

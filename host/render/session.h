@@ -67,6 +67,10 @@ class Session {
   /// Sends the scene to every device and compiles. Throws RunError when no device can do it.
   Session(const FlatScene& scene, const FlatView& view, const std::vector<Device>& devices,
           const SessionOptions& options);
+  /// Does the same, and gives back the memory of the scene's nodes and leaves, which are empty
+  /// then.
+  Session(FlatScene&& scene, const FlatView& view, const std::vector<Device>& devices,
+          const SessionOptions& options);
   ~Session();
 
   /// Switches to the scene as it now is, which differs from the last one in `changes`, and to a
@@ -138,6 +142,8 @@ class Session {
  private:
   struct Worker;
   struct Run;
+  Session(const FlatView& view, const std::vector<Device>& devices, const SessionOptions& options,
+          const std::function<std::shared_ptr<DeviceScene>(const Device&)>& scene_for);
   using Workers = std::vector<std::shared_ptr<Worker>>;
   void clear();
   void part_with(const Workers& gone, const std::exception_ptr& last_failure);

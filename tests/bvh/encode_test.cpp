@@ -36,6 +36,7 @@ std::vector<FlatPrimitive> mixed(unsigned count) {
   std::vector<FlatPrimitive> out;
   for (unsigned i = 0; i < count; i++) {
     FlatPrimitive p{i % shape_instance, 1000 + i, {}};
+    if (shape_has(p.shape, trait_linked)) continue;
     for (float& x : p.data) x = u(engine);
     if (p.shape == shape_disk)
       std::copy_n(std::array{0.0f, 0.0f, 1.0f}.data(), 3, p.data + disk_at_n);

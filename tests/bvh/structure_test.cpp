@@ -11,6 +11,7 @@
 #include <cstring>
 #include <limits>
 #include <random>
+#include <span>
 
 #include "bvh/bvh.h"
 
@@ -81,7 +82,7 @@ struct Census {
 
 Tree check(std::span<const Reference> references, std::uint64_t single_groups = 0,
            Effort effort = Effort::full) {
-  Tree tree = build(references, single_groups, effort);
+  Tree tree = build({references.begin(), references.end()}, single_groups, effort);
   Census census{tree, references, single_groups, std::vector<int>(references.size(), 0),
                 std::vector<bool>(tree.nodes.size(), false)};
   census.visit(0, 1);

@@ -17,6 +17,7 @@
 #include "fuzz_numbers.h"
 #include "host_kernels/host_kernels.h"
 #include "host_kernels/scene_arrays.h"
+#include "shared/shapes.h"
 #include "target.h"
 
 namespace caplet::test {

@@ -17,6 +17,7 @@
 #include "lower/geometry_pages.h"
 #include "lower/live_scene.h"
 #include "lower/lower.h"
+#include "render/device_scene.h"
 #include "render/query.h"
 #include "render_scene.h"
 #include "support/rays.h"
@@ -266,15 +267,6 @@ TEST(Links, AreOfRunsAlone) {
   broken = chain;
   broken.u[4].x = 41;
   EXPECT_EQ(kinds(broken, {0, 5}), shape_bit(shape_tapered_capsule));
-  // Others may have ids between.
-  std::vector<FlatPrimitive> pair(2, FlatPrimitive{shape_capsule, 3, {0, 0, 0, 1, 0, 0, 1}});
-  pair[1] = {shape_capsule, 4, {1, 0, 0, 2, 0, 0, 1}};
-  std::vector<FlatPrimitive> apart = pair;
-  apart[1].id = 5;
-  EXPECT_TRUE(link_capsules(pair, {}, 2));
-  EXPECT_FALSE(link_capsules(apart, {}, 2));
-  EXPECT_EQ(pair[1].shape, std::uint32_t{shape_linked_capsule});
-  EXPECT_EQ(apart[1].shape, std::uint32_t{shape_capsule});
   // Lights are sampled one by one.
   Scene scene;
   scene.materials.resize(1);
@@ -317,6 +309,67 @@ TEST(Links, EditsAreThoseOfTheSameCapsulesUnlinked) {
   LiveScene live(scene, all_links);
   live.edit(TransformEdit{{std::nullopt, 0}, glm::translate(dmat4(1), dvec3(0.2, 0.1, 0))});
   expect_same(live);
+}
+
+/// Compares what the trees and their geometries take.
+void expect_same_trees(const FlatScene& a, const FlatScene& b) {
+  // References and ids may be the bits of a NaN.
+  const auto same = [](const std::vector<float>& x, const std::vector<float>& y) {
+    return x.size() == y.size() && std::memcmp(x.data(), y.data(), x.size() * sizeof(float)) == 0;
+  };
+  EXPECT_TRUE(same(a.nodes, b.nodes));
+  EXPECT_TRUE(same(a.leaves, b.leaves));
+  EXPECT_EQ(a.primitive_geometry, b.primitive_geometry);
+  EXPECT_EQ(a.primitive_count, b.primitive_count);
+  EXPECT_EQ(a.world.root, b.world.root);
+  EXPECT_EQ(a.bvh_sah, b.bvh_sah);
+}
+
+TEST(LowerAndRelease, GivesTheSameTreesAndLeavesLinkedShapesEmpty) {
+  const Scene scene = walking_scene();
+  Scene spent = scene;
+  const FlatScene flat = lower_and_release(spent, {0, 6});
+  expect_same_trees(flat, lower(scene, {0, 6}));
+  for (const Shape& shape : spent.shapes)
+    EXPECT_EQ(count_of(std::get<CapsulesShape>(shape.geometry)), 0u);
+  EXPECT_EQ(count_of(std::get<CapsulesShape>(spent.objects[0].shapes[0].geometry)), 0u);
+  // Shapes that are not linked keep their capsules.
+  spent = scene;
+  expect_same_trees(lower_and_release(spent), lower(scene));
+  EXPECT_EQ(count_of(std::get<CapsulesShape>(spent.shapes[0].geometry)),
+            count_of(std::get<CapsulesShape>(scene.shapes[0].geometry)));
+}
+
+TEST(LowerAndRelease, GivesBackOnlyWhatIsWritten) {
+  // Memory is given back after each 65,536 blocks: here within a shape, and between two of them.
+  Random random(5);
+  Scene scene;
+  scene.materials.resize(2);
+  for (const bool chain : {false, true, true})
+    scene.shapes.push_back(shape_of(walks(random, 30000, chain)));
+  Scene spent = scene;
+  FlatScene flat = lower_and_release(spent, all_links);
+  EXPECT_LT(std::size_t{3} * 65536 * 48, flat.leaves.size());
+  const FlatScene kept = lower(scene, all_links);
+  expect_same_trees(flat, kept);
+  // They are sent in parts of 2^21 floats.
+  DeviceScene own(test_device(), std::move(flat));
+  Query found_by(own), expected_by(kept, test_device());
+  const std::vector<RayRecord> rays = random_rays(8000);
+  const std::vector<PickRecord> found = found_by.closest(rays),
+                                expected = expected_by.closest(rays);
+  for (std::size_t i = 0; i < rays.size(); ++i)
+    ASSERT_TRUE(same_bits(found[i], expected[i])) << "ray " << i;
+}
+
+TEST(LowerAndRelease, KeepsCapsulesThatMediaAreOrderedBy) {
+  Scene scene = walking_scene();
+  scene.materials[1].model = InterfaceMaterial{};
+  Scene spent = scene;
+  expect_same_trees(lower_and_release(spent, all_links), lower(scene, all_links));
+  for (std::size_t i = 0; i < scene.shapes.size(); ++i)
+    EXPECT_EQ(std::get<CapsulesShape>(spent.shapes[i].geometry).p0,
+              std::get<CapsulesShape>(scene.shapes[i].geometry).p0);
 }
 
 TEST(GeometryPages, TellTheGeometryOfEachPrimitive) {

@@ -201,6 +201,28 @@ TEST(FilmSplit, DevicesShareTheSamples) {
   EXPECT_THROW(test_device().split(units + 1), RunError);
 }
 
+TEST(FilmSplit, SessionsMayTakeTheTreesOfAScene) {
+  for (const Encoding encoding : {Encoding::wide, Encoding::single}) {
+    const Device device = test_device(encoding);
+    const SessionOptions options{.layers = Layers::every()};
+    FlatScene spent = model().flat;
+    Session session(std::move(spent), model().view, {device}, options);
+    EXPECT_TRUE(spent.nodes.empty());  // NOLINT(bugprone-use-after-move): as documented
+    EXPECT_TRUE(spent.leaves.empty());
+    EXPECT_EQ(spent.geometries.size(), model().flat.geometries.size());
+    EXPECT_EQ(session.render(samples), samples);
+    Session other(model().flat, model().view, {device}, options);
+    EXPECT_EQ(other.render(samples), samples);
+    EXPECT_TRUE(same(session.film(), other.film()));
+  }
+  // Each of several devices has them.
+  FlatScene spent = model().flat;
+  Session session(std::move(spent), model().view, {test_device(), test_device()},
+                  {.layers = Layers::every(), .pass_samples = 5});
+  EXPECT_EQ(session.render(samples), samples);
+  EXPECT_TRUE(same(session.film(), whole()));
+}
+
 TEST(FilmSplit, CancelledSessionsKeepWhatIsFinished) {
   Session session(model().flat, model().view, {test_device()},
                   {.layers = Layers::every(), .pass_samples = 4});

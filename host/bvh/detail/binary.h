@@ -9,7 +9,6 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
-#include <span>
 #include <utility>
 #include <vector>
 
@@ -38,25 +37,23 @@ struct Box {
 
 struct BinaryNode {
   std::array<float, 3> min, max;
-  std::uint32_t left, right;   // 0: leaf, since the root is nobody's child
+  std::uint32_t left;          // the right one follows it; 0: leaf, for the root is no child
   std::uint32_t first, count;  // range of the ordered references
   Box box() const { return {min, max}; }
 };
 
 struct BinaryTree {
-  std::unique_ptr<Reference[]>
-      items;                // in leaf order; `primitive` is the index into the references given
-  std::uint32_t count = 0;  // of them
+  std::vector<Reference> items;  // in leaf order; `primitive` is the index into those given
   std::unique_ptr<BinaryNode[]> nodes;
   std::uint32_t node_count = 0;
 };
 
 /// Builds the tree. Node 0 is the root. Numbers of the other nodes depend on timing; the tree's
 /// shape does not.
-BinaryTree build_binary(std::span<const Reference> references, std::uint64_t single_groups,
+BinaryTree build_binary(std::vector<Reference> references, std::uint64_t single_groups,
                         Effort effort);
 
 /// Returns the wide nodes of least cost over the binary tree.
-Tree collapse(const BinaryTree& binary);
+Tree collapse(BinaryTree binary);
 
 }  // namespace caplet::bvh

@@ -12,6 +12,7 @@
 #include <map>
 #include <optional>
 #include <span>
+#include <utility>
 
 #include "base/check.h"
 #include "base/error.h"
@@ -103,39 +104,45 @@ double mean_of(float a, float b) {
 class Colors {
  public:
   Colors(Scene& scene, FibreColor by) : scene_(scene), by_(by) {}
+  void reserve(std::size_t count) { keys_.reserve(count); }
   void add(const glm::dvec3& color) {
     const glm::uvec3 step(glm::clamp(color, 0.0, 1.0) * static_cast<double>(kSteps[0]) + 0.5);
     keys_.push_back((step.x << 16U) + (step.y << 8U) + step.z);
   }
 
+  /// Returns them; no colours are left.
   std::vector<std::uint32_t> materials() {
-    std::vector<std::uint32_t> distinct = keys_;
-    std::ranges::sort(distinct);
-    distinct.erase(std::unique(distinct.begin(), distinct.end()), distinct.end());
+    const auto same = [](std::uint32_t key) { return key; };
+    const std::vector<std::uint32_t> colors = distinct(keys_, same);
     const auto* steps = kSteps;
-    std::vector<std::uint32_t> cells;
-    for (;; ++steps) {
-      cells.clear();
-      for (const std::uint32_t key : distinct) cells.push_back(cell_of(key, *steps));
-      std::ranges::sort(cells);
-      cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
-      if (cells.size() <= kMostColors) break;
-    }
-    std::vector<std::uint32_t> out;
+    while (distinct(colors, [&](auto key) { return cell_of(key, *steps); }).size() > kMostColors)
+      ++steps;
     std::map<std::uint32_t, std::uint32_t> index;
-    for (const std::uint32_t key : keys_) {
+    for (std::uint32_t& key : keys_) {
       const std::uint32_t cell = cell_of(key, *steps);
       const auto [entry, fresh] =
           index.try_emplace(cell, narrow<std::uint32_t>(scene_.materials.size()));
       if (fresh)
         add_material(glm::dvec3(cell >> 16U, cell >> 8U & 255U, cell & 255U) /
                      static_cast<double>(*steps));
-      out.push_back(entry->second);
+      key = entry->second;
     }
-    return out;
+    return std::move(keys_);
   }
 
  private:
+  /// Returns each value that `of` gives for the keys, once.
+  template <class Of>
+  static std::vector<std::uint32_t> distinct(const std::vector<std::uint32_t>& keys, const Of& of) {
+    std::vector<bool> seen(std::size_t{1} << 24U);
+    std::vector<std::uint32_t> out;
+    for (const std::uint32_t key : keys) {
+      const std::uint32_t value = of(key);
+      if (!seen[value]) out.push_back(value);
+      seen[value] = true;
+    }
+    return out;
+  }
   static std::uint32_t cell_of(std::uint32_t key, int steps) {
     const auto one = [&](unsigned shift) {
       return ((key >> shift & 255U) * static_cast<std::uint32_t>(steps) + 127U) / 255U << shift;
@@ -235,9 +242,8 @@ struct Usual {
   const char* unit = "";  // of lengths in the file
 };
 
-Scene scene_of(const Fibres& fibres, const std::filesystem::path& path,
-               const ImportOptions& options, const Usual& usual,
-               const FibreScalars* scalars = nullptr) {
+Scene scene_of(Fibres fibres, const std::filesystem::path& path, const ImportOptions& options,
+               const Usual& usual, const FibreScalars* scalars = nullptr) {
   Scene scene;
   scene.source = path.string();
   if (fibres.points.empty()) throw InputError({scene.source, 0, 0}, "holds no fibres");
@@ -258,6 +264,8 @@ Scene scene_of(const Fibres& fibres, const std::filesystem::path& path,
   const float radius =
       radius_asked(options, usual.radius > 0 ? usual.radius : std::max(kThinPart * extent, 1e-6F));
   const bool own_radii = !fibres.radii.empty() && !options.text("radius");
+  // Only files with a radius for each point have tapered fibres.
+  const bool may_taper = own_radii && fibres.radii.size() > 1;
   const auto radius_at = [&](std::size_t i) {
     const float own = own_radii ? fibres.radii[fibres.radii.size() == 1 ? 0 : i] : 0;
     return own > 0 ? own : radius;
@@ -276,6 +284,13 @@ Scene scene_of(const Fibres& fibres, const std::filesystem::path& path,
   if (choice.needs_values() && by != FibreColor::scalar)
     throw InputError({"--values"}, "goes with --color scalar");
   CapsulesShape capsules;
+  const std::size_t most = fibres.points.size();
+  capsules.p0.reserve(most);
+  capsules.p1.reserve(most);
+  capsules.radius0.reserve(most);
+  capsules.u.reserve(most);
+  if (may_taper) capsules.radius1.reserve(most);
+  if (!as_hair && by != FibreColor::scalar) colors.reserve(most);
   bool tapered = false;
   std::size_t begin = 0, drawn = 0;
   for (std::size_t f = 0; f < fibres.ends.size(); ++f) {
@@ -315,9 +330,9 @@ Scene scene_of(const Fibres& fibres, const std::filesystem::path& path,
       capsules.p0.push_back(p0);
       capsules.p1.push_back(p1);
       capsules.radius0.push_back(radius_at(i));
-      capsules.radius1.push_back(radius_at(next));
+      if (may_taper) capsules.radius1.push_back(radius_at(next));
       capsules.u.emplace_back(u[i - begin], u[next - begin]);
-      tapered |= capsules.radius0.back() != capsules.radius1.back();
+      tapered |= may_taper && capsules.radius0.back() != capsules.radius1.back();
     }
     begin = end;
   }
@@ -326,6 +341,7 @@ Scene scene_of(const Fibres& fibres, const std::filesystem::path& path,
         {scene.source, 0, 0},
         fmt::format("--share, --lengths and --values leave none of {} fibres", fibres.ends.size()));
   if (!tapered) capsules.radius1 = {};
+  fibres = {};
   if (!as_hair && by != FibreColor::scalar) capsules.materials = colors.materials();
   Shape shape;
   shape.geometry = std::move(capsules);
@@ -349,45 +365,47 @@ Scene scene_of(const Fibres& fibres, const std::filesystem::path& path,
 
 Scene import_hair(const std::filesystem::path& path, const ImageReader&,
                   const ImportOptions& options) {
-  return scene_of(read_hair(read_file(path, {}), path.string()), path, options,
-                  {0, FibreColor::file, "z", true});
+  Fibres fibres = read_hair(read_file(path, {}), path.string());
+  return scene_of(std::move(fibres), path, options, {0, FibreColor::file, "z", true});
 }
 Scene import_tressfx(const std::filesystem::path& path, const ImageReader&,
                      const ImportOptions& options) {
-  return scene_of(read_tressfx(read_file(path, {}), path.string()), path, options,
-                  {0, FibreColor::fibre, "y", true});
+  Fibres fibres = read_tressfx(read_file(path, {}), path.string());
+  return scene_of(std::move(fibres), path, options, {0, FibreColor::fibre, "y", true});
 }
 Scene import_trk(const std::filesystem::path& path, const ImageReader&,
                  const ImportOptions& options) {
   std::optional<FibreScalars> scalars = scalars_asked(options);
-  const Fibres fibres = read_trk(read_file(path, {}), path.string(), scalars ? &*scalars : nullptr);
-  return scene_of(fibres, path, options, {kStreamline, FibreColor::direction, "z", false, "mm"},
+  Fibres fibres = read_trk(read_file(path, {}), path.string(), scalars ? &*scalars : nullptr);
+  return scene_of(std::move(fibres), path, options,
+                  {kStreamline, FibreColor::direction, "z", false, "mm"},
                   scalars ? &*scalars : nullptr);
 }
 Scene import_tck(const std::filesystem::path& path, const ImageReader&,
                  const ImportOptions& options) {
-  return scene_of(read_tck(read_file(path, {}), path.string()), path, options,
+  Fibres fibres = read_tck(read_file(path, {}), path.string());
+  return scene_of(std::move(fibres), path, options,
                   {kStreamline, FibreColor::direction, "z", false, "mm"});
 }
 Scene import_trx(const std::filesystem::path& path, const ImageReader&,
                  const ImportOptions& options) {
   std::optional<FibreScalars> scalars = scalars_asked(options);
-  const Fibres fibres = read_trx(path, scalars ? &*scalars : nullptr);
-  return scene_of(fibres, path, options, {kStreamline, FibreColor::direction, "z", false},
-                  scalars ? &*scalars : nullptr);
+  Fibres fibres = read_trx(path, scalars ? &*scalars : nullptr);
+  return scene_of(std::move(fibres), path, options,
+                  {kStreamline, FibreColor::direction, "z", false}, scalars ? &*scalars : nullptr);
 }
 Scene import_vtk(const std::filesystem::path& path, const ImageReader&,
                  const ImportOptions& options) {
   std::optional<FibreScalars> scalars = scalars_asked(options);
-  const Fibres fibres = read_vtk(read_file(path, {}), path.string(), scalars ? &*scalars : nullptr);
-  return scene_of(fibres, path, options, {0, FibreColor::direction, "z", false},
+  Fibres fibres = read_vtk(read_file(path, {}), path.string(), scalars ? &*scalars : nullptr);
+  return scene_of(std::move(fibres), path, options, {0, FibreColor::direction, "z", false},
                   scalars ? &*scalars : nullptr);
 }
 Scene import_vtp(const std::filesystem::path& path, const ImageReader&,
                  const ImportOptions& options) {
   std::optional<FibreScalars> scalars = scalars_asked(options);
-  const Fibres fibres = read_vtp(read_file(path, {}), path.string(), scalars ? &*scalars : nullptr);
-  return scene_of(fibres, path, options, {0, FibreColor::direction, "z", false},
+  Fibres fibres = read_vtp(read_file(path, {}), path.string(), scalars ? &*scalars : nullptr);
+  return scene_of(std::move(fibres), path, options, {0, FibreColor::direction, "z", false},
                   scalars ? &*scalars : nullptr);
 }
 

@@ -100,6 +100,9 @@ Fibres read_hair(std::string_view text, const std::string& path) {
     const glm::vec3 c = bytes.point(offset);
     return glm::min(glm::max(c, glm::vec3(0)), glm::vec3(1));
   };
+  out.points.reserve(end);
+  if ((flags & has_thickness) != 0) out.radii.reserve(end);
+  if ((flags & has_colors) != 0) out.colors.reserve(end);
   for (std::uint64_t i = 0; i < end; ++i) {
     out.points.push_back(bytes.point(points_at + 12 * i));
     if ((flags & has_thickness) != 0)
@@ -122,6 +125,7 @@ Fibres read_tressfx(std::string_view text, const std::string& path) {
   if (vertices < 2) bytes.fail(8, fmt::format("{} vertices a strand", vertices));
   bytes.need(positions, std::uint64_t{strands} * vertices, 16);
   Fibres out;
+  out.points.reserve(std::size_t{strands} * vertices);
   for (std::uint64_t i = 0; i < strands; ++i) {
     for (std::uint64_t k = 0; k < vertices; ++k)
       out.points.push_back(bytes.point(positions + 16 * (i * vertices + k)));
@@ -263,6 +267,7 @@ Fibres read_trk(std::string_view text, const std::string& path, FibreScalars* sc
     property = trk_column(text, 240, properties, "property", false, *scalars_wanted);
   }
   Fibres out;
+  out.points.reserve(bytes.left(header) / stride);
   for (std::size_t at = header; bytes.left(at) > 0;) {
     const auto count = bytes.at<std::int32_t>(at);
     if (count < 0) bytes.fail(at, fmt::format("a track of {} points", count));
@@ -323,6 +328,7 @@ Fibres read_tck(std::string_view text, const std::string& path) {
   if (offset == 0) offset = static_cast<std::size_t>(rest.data() - text.data());
   const std::size_t size = wide ? 8 : 4;
   Fibres out;
+  out.points.reserve(bytes.left(offset) / (3 * size));
   for (std::size_t at = offset;; at += 3 * size) {
     if (bytes.left(at) < 3 * size)
       throw InputError({path, 0, 0}, "the file ends without the infinite point that ends tracks");

@@ -26,7 +26,7 @@ struct ExactBox {
   std::array<double, 3> min{}, max{};
 };
 
-// Each kind of shapes.def has, for a primitive in the space of its tree:
+// Each kind of shapes.def but linked capsules has, for a primitive in the space of its tree:
 // - its exact box; kinds with trait_kept_box have it in their data.
 // - its area, without open ends (0 for csg shapes), and the pieces of its surface, which give areas
 //   under affine maps. Bilinear and molecular patches have no pieces: bilinear_area and

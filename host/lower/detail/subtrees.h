@@ -14,6 +14,7 @@
 
 #include "lower/detail/emitter.h"
 #include "lower/detail/images.h"
+#include "lower/detail/linked_capsules.h"
 #include "lower/encode.h"
 #include "lower/flat_primitive.h"
 #include "lower/flat_scene.h"
@@ -27,8 +28,10 @@ namespace caplet {
 struct Subtree {
   glm::dmat4 placed{1};  // object_from_subtree
   uint flags = 0;        // of its instances
-  /// Primitives are by id; after them, in the world's first subtree, come the instances.
+  /// Primitives are by id; after them, in the world's first subtree, come the instances. Linked
+  /// capsules are none of them.
   std::vector<FlatPrimitive> primitives;
+  TreeLinks linked;
   std::vector<const Shape*> shapes;  // those that gave primitives
   struct Emissive {
     std::size_t first, count;  // a range of `primitives`
@@ -38,6 +41,8 @@ struct Subtree {
   std::vector<Emissive> emissive;
   std::size_t emitter_count = 0;
   EncodedTree tree;
+
+  std::size_t size() const { return primitives.size() + linked.size(); }
 };
 
 /// PlacedSubtree is an instance record: a subtree as placed, by the number of the record.
@@ -60,7 +65,8 @@ struct Lengths {
 /// null where it gave nothing.
 struct ShapeExtent {
   Subtree* subtree = nullptr;
-  std::size_t first = 0;  // of its primitives in the subtree
+  std::size_t first = 0;    // of its primitives in the subtree
+  bool has_linked = false;  // some of its capsules are linked
   Lengths begin, end;
 };
 

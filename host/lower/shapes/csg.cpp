@@ -163,9 +163,10 @@ double length3(const double (&v)[3]) { return std::sqrt(v[0] * v[0] + v[1] * v[1
 /// Returns the solid with its surfaces moved out by `b`.
 FlatPrimitive grown_by(const FlatPrimitive& p, double b, std::vector<float>& leaves) {
   switch (p.shape) {
-#define SHAPE(name, traits)                                                       \
-  case shape_##name:                                                              \
-    if constexpr (((traits)&trait_solid) != 0) return name##_grown(p, b, leaves); \
+#define SHAPE(name, traits)                                                 \
+  case shape_##name:                                                        \
+    if constexpr (((traits) & (trait_solid | trait_linked)) == trait_solid) \
+      return name##_grown(p, b, leaves);                                    \
     break;
 #define COMPOUND(name, traits)
 #include "shared/shapes.def"
