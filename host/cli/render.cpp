@@ -622,6 +622,32 @@ SavedFilm saved_like(const Scene& scene, const FlatScene& flat, const FlatView& 
   return out;
 }
 
+/// Returns the options of a render of `samples`. `film_layers`: those to write, and those that
+/// overlays need.
+RenderOptions render_options_of(const RenderFlags& options, const Scene& scene, const Files& files,
+                                const SampleSpan& samples, Layers film_layers, bool keeps_film) {
+  RenderOptions out;
+  out.sample_begin = samples.begin;
+  out.samples_per_pixel = narrow<int>(samples.end - samples.begin);
+  out.noise = noise_target(options, scene.view.film.exposure);
+  out.time_limit = options.time_limit;
+  out.least_samples = narrow<std::uint32_t>(options.least_samples.value_or(0));
+  out.batch_paths = options.batch_paths;
+  out.time_stages = !options.stats.empty();
+  out.film_on_device = !keeps_film;
+  out.cancelled = interrupt_requested;
+  out.layers = film_layers;
+  if (scene.view.film.denoise)
+    out.layers = Layers::of_bits(film_layers.bits() | report::denoising_layers().bits());
+  if (!files.deep.empty()) out.layers = Layers::of_bits(out.layers.bits() | deep_layers().bits());
+  if (!files.depth.empty())
+    out.layers =
+        Layers::of_bits(out.layers.bits() | depth_layers(options.depth.is_planar()).bits());
+  if (options.noise) out.layers = out.layers.with(Layer::variance);
+  out.patience = options.patience;
+  return out;
+}
+
 void run_render(const RenderFlags& given, const Invocation& invocation) {
   Stopwatch total, phase;
   report::RunSeconds seconds;
@@ -679,26 +705,8 @@ void run_render(const RenderFlags& given, const Invocation& invocation) {
   if (!files.film.empty())
     film.emplace(files.film, saved_like(scene, flat, view, options.noise.has_value()),
                  options.film.resume);
-  RenderOptions render_options;
-  render_options.sample_begin = samples.begin;
-  render_options.samples_per_pixel = narrow<int>(samples.end - samples.begin);
-  render_options.noise = noise_target(options, scene.view.film.exposure);
-  render_options.time_limit = options.time_limit;
-  render_options.least_samples = narrow<std::uint32_t>(options.least_samples.value_or(0));
-  render_options.batch_paths = options.batch_paths;
-  render_options.time_stages = !options.stats.empty();
-  render_options.film_on_device = !film;
-  render_options.cancelled = interrupt_requested;
-  render_options.layers = film_layers;
-  if (scene.view.film.denoise)
-    render_options.layers = Layers::of_bits(film_layers.bits() | report::denoising_layers().bits());
-  if (!files.deep.empty())
-    render_options.layers = Layers::of_bits(render_options.layers.bits() | deep_layers().bits());
-  if (!files.depth.empty())
-    render_options.layers = Layers::of_bits(render_options.layers.bits() |
-                                            depth_layers(options.depth.is_planar()).bits());
-  if (options.noise) render_options.layers = render_options.layers.with(Layer::variance);
-  render_options.patience = options.patience;
+  const RenderOptions render_options =
+      render_options_of(options, scene, files, samples, film_layers, film.has_value());
   const Work work{options,        invocation,
                   scene,          flat,
                   devices,        layers,

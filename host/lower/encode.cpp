@@ -75,6 +75,174 @@ void reorder_blocks(float* blocks, std::size_t floats, std::vector<std::uint32_t
   }
 }
 
+/// TreeEncoder appends one tree to nodes and leaves. Blocks of linked capsules come first in the
+/// leaves, those of chains after the others. They are written in the order of their shapes, whose
+/// memory may be given back so, before the tree says which follows which.
+class TreeEncoder {
+ public:
+  TreeEncoder(std::span<const FlatPrimitive> primitives, const TreeLinks& linked,
+              std::vector<float>& nodes, std::vector<float>& leaves, int kind_bits)
+      : primitives_(primitives),
+        linked_(linked),
+        nodes_(nodes),
+        leaves_(leaves),
+        kind_bits_(kind_bits),
+        node_base_(nodes.size() / CAPLET_NODE_FLOATS),
+        row_base_(leaves.size() / 8) {}
+
+  EncodedTree run(bool release) {
+    rows_ = row_base_;
+    for (const LinkedCapsules& form : linked_.by_form)
+      rows_ += std::uint64_t{form.blocks()} * form.rows_per_block();
+    // These are the least numbers of rows, before anything is allocated.
+    const std::uint64_t least = least_rows(count_kinds());
+    check_tree_limits(rows_ + least, node_base_ + 1, kind_bits_);
+    if (rows_ > row_base_) leaves_.reserve((rows_ + least * 3 / 2) * 8);
+    leaves_.resize(row_base_ * 8);
+    tree_ = bvh::build(references(release),
+                       shape_bit(shape_instance) | shape_bit(shape_linked_capsule));
+    CHECK_LE_(tree_.depth, bvh::max_depth);
+    place_leaves();
+    EncodedTree out = described();
+    write_nodes(out.root);
+    tree_.nodes = {};
+    write_primitives(out.slots);
+    return out;
+  }
+
+ private:
+  std::array<std::uint64_t, shape_count> count_kinds() const {
+    std::array<std::uint64_t, shape_count> counts{};
+    for (const FlatPrimitive& p : primitives_) {
+      CHECK_LT_(p.shape, std::uint32_t(shape_count));
+      CHECK_LT_(p.shape >> kind_bits_, 1u);
+      CHECK_EQ_(shape_has(p.shape, trait_linked), false);
+      counts[p.shape]++;
+    }
+    return counts;
+  }
+
+  /// Returns boxes of the primitives, then of the blocks of linked capsules, which it writes.
+  std::vector<bvh::Reference> references(bool release) {
+    std::size_t item = primitives_.size();
+    std::vector<bvh::Reference> out(item + linked_.by_form[0].blocks() +
+                                    linked_.by_form[1].blocks());
+    const auto set = [&](std::size_t i, const ReferenceBox& box, std::uint32_t group) {
+      std::copy_n(box.min, 3, out[i].min);
+      std::copy_n(box.max, 3, out[i].max);
+      out[i].primitive = narrow<std::uint32_t>(i);
+      out[i].group = group;
+    };
+    tbb::parallel_for(std::size_t(0), primitives_.size(), [&](std::size_t i) {
+      set(i, reference_box(primitives_[i]), primitives_[i].shape);
+    });
+    for (const LinkedCapsules& form : linked_.by_form) {
+      const auto set_block = [&](std::size_t block, const ReferenceBox& box) {
+        set(item + block, box, shape_linked_capsule);
+      };
+      form.append(leaves_, set_block, release);
+      item += form.blocks();
+    }
+    return out;
+  }
+
+  /// Chooses the first rows of all leaves, and puts the blocks of linked capsules into the tree's
+  /// order.
+  void place_leaves() {
+    row_of_.resize(tree_.leaves.size());
+    std::array<std::vector<std::uint32_t>, 2> blocks;  // in the tree's order
+    std::array<std::uint64_t, 2> base{row_base_, row_base_};
+    base[1] += linked_.by_form[0].blocks() * linked_.by_form[0].rows_per_block();
+    for (std::size_t f = 0; f < blocks.size(); ++f) blocks[f].reserve(linked_.by_form[f].blocks());
+    for (std::size_t i = 0; i < tree_.leaves.size(); i++) {
+      const bvh::Leaf& leaf = tree_.leaves[i];
+      if (leaf.group != shape_linked_capsule) {
+        row_of_[i] = static_cast<std::uint32_t>(std::min(rows_, max_rows(kind_bits_)));
+        rows_ += rows_of(leaf.group);
+        continue;
+      }
+      std::size_t block = tree_.order[leaf.first] - primitives_.size(), f = 0;
+      if (block >= linked_.by_form[0].blocks()) {
+        f = 1;
+        block -= linked_.by_form[0].blocks();
+      }
+      row_of_[i] =
+          narrow<std::uint32_t>(base[f] + blocks[f].size() * linked_.by_form[f].rows_per_block());
+      blocks[f].push_back(narrow<std::uint32_t>(block));
+    }
+    check_tree_limits(rows_, node_base_ + tree_.nodes.size(), kind_bits_);
+    for (std::size_t f = 0; f < blocks.size(); ++f)
+      reorder_blocks(leaves_.data() + base[f] * 8,
+                     std::size_t{8} * linked_.by_form[f].rows_per_block(), blocks[f]);
+  }
+
+  EncodedTree described() const {
+    EncodedTree out;
+    out.root = narrow<std::uint32_t>(node_base_);
+    out.nodes = tree_.nodes.size();
+    out.depth = tree_.depth;
+    out.sah = tree_.sah;
+    std::fill(std::begin(out.min), std::end(out.min), inf);
+    std::fill(std::begin(out.max), std::end(out.max), -inf);
+    for (std::size_t k = 0; k < 3; k++)
+      for (std::size_t i = 0; i < bvh::width; i++) {
+        out.min[k] = std::min(out.min[k], tree_.nodes[0].min[k][i]);
+        out.max[k] = std::max(out.max[k], tree_.nodes[0].max[k][i]);
+      }
+    return out;
+  }
+
+  void write_nodes(std::uint32_t root) {
+    nodes_.resize(nodes_.size() + tree_.nodes.size() * CAPLET_NODE_FLOATS);
+    tbb::parallel_for(std::size_t(0), tree_.nodes.size(), [&](std::size_t n) {
+      const bvh::Node& from = tree_.nodes[n];
+      float* to = &nodes_[(node_base_ + n) * CAPLET_NODE_FLOATS];
+      for (std::size_t i = 0; i < bvh::width; i++) {
+        for (std::size_t k = 0; k < 3; k++) {
+          to[8 * k + i] = from.min[k][i];
+          to[8 * (3 + k) + i] = from.max[k][i];
+        }
+        std::uint32_t child = static_cast<std::uint32_t>(from.child[i]);
+        if (from.child[i] < 0) {
+          const std::uint32_t leaf = ~child;
+          child = 0x80000000u | (tree_.leaves[leaf].group << (31 - kind_bits_)) | row_of_[leaf];
+        } else if (from.child[i] != 0x7fffffff) {
+          child += root;
+        }
+        to[CAPLET_NODE_CHILDREN + i] = std::bit_cast<float>(child);
+      }
+    });
+  }
+
+  void write_primitives(std::vector<std::uint32_t>& slots) {
+    leaves_.resize(rows_ * 8);
+    slots.resize(primitives_.size());
+    tbb::parallel_for(std::size_t(0), tree_.leaves.size(), [&](std::size_t l) {
+      const bvh::Leaf& leaf = tree_.leaves[l];
+      if (leaf.group == shape_linked_capsule) return;
+      float* block = &leaves_[std::size_t(row_of_[l]) * 8];
+      const std::uint32_t data_rows = data_of[leaf.group];
+      for (std::uint32_t lane = 0; lane < 8; lane++) {
+        // Empty lanes repeat the first primitive, so that no arithmetic meets odd values there.
+        const std::size_t index = tree_.order[leaf.first + (lane < leaf.count ? lane : 0)];
+        const FlatPrimitive& p = primitives_[index];
+        block[lane] = std::bit_cast<float>(lane < leaf.count ? p.id : 0xffffffffu);
+        for (std::uint32_t j = 0; j < data_rows; j++) block[8 * (j + 1) + lane] = p.data[j];
+        if (lane < leaf.count) slots[index] = row_of_[l] * 8 + lane;
+      }
+    });
+  }
+
+  std::span<const FlatPrimitive> primitives_;
+  const TreeLinks& linked_;
+  std::vector<float>&nodes_, &leaves_;
+  int kind_bits_;
+  std::uint64_t node_base_, row_base_;
+  std::uint64_t rows_ = 0;  // of leaves_, that are in use
+  bvh::Tree tree_;
+  std::vector<std::uint32_t> row_of_;  // by leaf
+};
+
 }  // namespace
 
 EncodedTree encode_tree(std::span<const FlatPrimitive> primitives, std::vector<float>& nodes,
@@ -85,137 +253,7 @@ EncodedTree encode_tree(std::span<const FlatPrimitive> primitives, std::vector<f
 EncodedTree encode_tree(std::span<const FlatPrimitive> primitives, const TreeLinks& linked,
                         bool release, std::vector<float>& nodes, std::vector<float>& leaves,
                         int kind_bits) {
-  // These are the least numbers of rows, before anything is allocated.
-  const std::uint64_t node_base = nodes.size() / CAPLET_NODE_FLOATS, row_base = leaves.size() / 8;
-  std::array<std::uint64_t, shape_count> counts{};
-  for (const FlatPrimitive& p : primitives) {
-    CHECK_LT_(p.shape, std::uint32_t(shape_count));
-    CHECK_LT_(p.shape >> kind_bits, 1u);
-    CHECK_EQ_(shape_has(p.shape, trait_linked), false);
-    counts[p.shape]++;
-  }
-  std::uint64_t rows = row_base;
-  std::size_t items = primitives.size();
-  for (const LinkedCapsules& form : linked.by_form) {
-    rows += std::uint64_t{form.blocks()} * form.rows_per_block();
-    items += form.blocks();
-  }
-  check_tree_limits(rows + least_rows(counts), node_base + 1, kind_bits);
-
-  // Blocks of linked capsules come first. They are written in the order of their shapes, whose
-  // memory may be given back so, before the tree says which follows which.
-  if (rows > row_base) leaves.reserve((rows + least_rows(counts) * 3 / 2) * 8);
-  leaves.resize(row_base * 8);
-  bvh::Tree tree;
-  {
-    std::vector<bvh::Reference> references(items);
-    const auto set = [&](std::size_t i, const ReferenceBox& box, std::uint32_t group) {
-      bvh::Reference& to = references[i];
-      std::copy_n(box.min, 3, to.min);
-      std::copy_n(box.max, 3, to.max);
-      to.primitive = narrow<std::uint32_t>(i);
-      to.group = group;
-    };
-    tbb::parallel_for(std::size_t(0), primitives.size(), [&](std::size_t i) {
-      set(i, reference_box(primitives[i]), primitives[i].shape);
-    });
-    std::size_t item = primitives.size();
-    for (const LinkedCapsules& form : linked.by_form) {
-      form.append(
-          leaves,
-          [&](std::size_t block, const ReferenceBox& box) {
-            set(item + block, box, shape_linked_capsule);
-          },
-          release);
-      item += form.blocks();
-    }
-    tree = bvh::build(std::move(references),
-                      shape_bit(shape_instance) | shape_bit(shape_linked_capsule));
-  }
-  CHECK_LE_(tree.depth, bvh::max_depth);
-
-  std::vector<std::uint32_t> row_of(tree.leaves.size());
-  std::array<std::vector<std::uint32_t>, 2> blocks;  // in the tree's order
-  for (std::size_t f = 0; f < blocks.size(); ++f) blocks[f].reserve(linked.by_form[f].blocks());
-  for (std::size_t i = 0; i < tree.leaves.size(); i++) {
-    const bvh::Leaf& leaf = tree.leaves[i];
-    if (leaf.group != shape_linked_capsule) {
-      row_of[i] = static_cast<std::uint32_t>(std::min(rows, max_rows(kind_bits)));
-      rows += rows_of(leaf.group);
-      continue;
-    }
-    std::size_t form = 0, block = tree.order[leaf.first] - primitives.size(), row = row_base;
-    if (block >= linked.by_form[0].blocks()) {
-      form = 1;
-      block -= linked.by_form[0].blocks();
-      row += linked.by_form[0].blocks() * linked.by_form[0].rows_per_block();
-    }
-    row_of[i] =
-        narrow<std::uint32_t>(row + blocks[form].size() * linked.by_form[form].rows_per_block());
-    blocks[form].push_back(narrow<std::uint32_t>(block));
-  }
-  check_tree_limits(rows, node_base + tree.nodes.size(), kind_bits);
-  {
-    float* at = leaves.data() + row_base * 8;
-    for (std::size_t f = 0; f < blocks.size(); ++f) {
-      const std::size_t floats = std::size_t{8} * linked.by_form[f].rows_per_block();
-      reorder_blocks(at, floats, blocks[f]);
-      at += floats * blocks[f].size();
-    }
-  }
-
-  EncodedTree out;
-  out.root = narrow<std::uint32_t>(node_base);
-  out.nodes = tree.nodes.size();
-  out.depth = tree.depth;
-  out.sah = tree.sah;
-  std::fill(std::begin(out.min), std::end(out.min), inf);
-  std::fill(std::begin(out.max), std::end(out.max), -inf);
-  for (std::size_t k = 0; k < 3; k++)
-    for (std::size_t i = 0; i < bvh::width; i++) {
-      out.min[k] = std::min(out.min[k], tree.nodes[0].min[k][i]);
-      out.max[k] = std::max(out.max[k], tree.nodes[0].max[k][i]);
-    }
-
-  nodes.resize(nodes.size() + tree.nodes.size() * CAPLET_NODE_FLOATS);
-  tbb::parallel_for(std::size_t(0), tree.nodes.size(), [&](std::size_t n) {
-    const bvh::Node& from = tree.nodes[n];
-    float* to = &nodes[(node_base + n) * CAPLET_NODE_FLOATS];
-    for (std::size_t i = 0; i < bvh::width; i++) {
-      for (std::size_t k = 0; k < 3; k++) {
-        to[8 * k + i] = from.min[k][i];
-        to[8 * (3 + k) + i] = from.max[k][i];
-      }
-      std::uint32_t child = static_cast<std::uint32_t>(from.child[i]);
-      if (from.child[i] < 0) {
-        const std::uint32_t leaf = ~child;
-        child = 0x80000000u | (tree.leaves[leaf].group << (31 - kind_bits)) | row_of[leaf];
-      } else if (from.child[i] != 0x7fffffff) {
-        child += out.root;
-      }
-      to[CAPLET_NODE_CHILDREN + i] = std::bit_cast<float>(child);
-    }
-  });
-
-  tree.nodes = {};
-
-  leaves.resize(rows * 8);
-  out.slots.resize(primitives.size());
-  tbb::parallel_for(std::size_t(0), tree.leaves.size(), [&](std::size_t l) {
-    const bvh::Leaf& leaf = tree.leaves[l];
-    float* block = &leaves[std::size_t(row_of[l]) * 8];
-    if (leaf.group == shape_linked_capsule) return;
-    const std::uint32_t data_rows = data_of[leaf.group];
-    for (std::uint32_t lane = 0; lane < 8; lane++) {
-      // Empty lanes repeat the first primitive, so that no arithmetic meets odd values there.
-      const std::size_t index = tree.order[leaf.first + (lane < leaf.count ? lane : 0)];
-      const FlatPrimitive& p = primitives[index];
-      block[lane] = std::bit_cast<float>(lane < leaf.count ? p.id : 0xffffffffu);
-      for (std::uint32_t j = 0; j < data_rows; j++) block[8 * (j + 1) + lane] = p.data[j];
-      if (lane < leaf.count) out.slots[index] = row_of[l] * 8 + lane;
-    }
-  });
-  return out;
+  return TreeEncoder(primitives, linked, nodes, leaves, kind_bits).run(release);
 }
 
 }  // namespace caplet
