@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "library/detail/inside.h"
 #include "library/detail/questions.h"
@@ -14,6 +15,7 @@
 #include "present/film_window.h"
 #include "render/known_answers.h"
 #include "render/query.h"
+#include "scene/carried.h"
 #include "scene/frozen.h"
 
 namespace caplet::v0 {
@@ -105,7 +107,32 @@ class Numbers {
     return out;
   }
 
+  /// Returns the surface of a crossing; none for a miss. Throws InputError where the scene has no
+  /// such surface.
+  std::optional<SurfacePlace> place(const Crossing& hit) const {
+    if (hit.shape == Crossing::none) return std::nullopt;
+    SurfacePlace out{{}, hit.shape, hit.primitive};
+    const std::vector<Shape>* shapes = &scene_.shapes;
+    if (hit.instance != Crossing::none) {
+      if (hit.instance >= scene_.instances.size()) throw no_surface(hit);
+      out.instance = hit.instance;
+      const std::uint32_t object = scene_.instances[hit.instance].object;
+      shapes = &scene_.objects[object].shapes;
+      out.shape = hit.shape - first_[object];  // wraps where it is before the first
+    }
+    if (out.shape >= shapes->size() || out.primitive >= primitive_count((*shapes)[out.shape]))
+      throw no_surface(hit);
+    return out;
+  }
+
  private:
+  static InputError no_surface(const Crossing& hit) {
+    return InputError(
+        fmt::format("the scene has no primitive {} of shape {}{}", hit.primitive, hit.shape,
+                    hit.instance == Crossing::none ? std::string()
+                                                   : fmt::format(" in instance {}", hit.instance)));
+  }
+
   const caplet::Scene& scene_;
   std::vector<std::size_t> first_;
 };
@@ -206,6 +233,25 @@ void Picker::nearest(std::span<const Ray> rays, std::span<Crossing> out) {
 }
 std::vector<Crossing> Picker::crossings(std::span<const Ray> rays, std::size_t most) {
   return data_->questions().crossings(rays, most);
+}
+
+void Picker::carry(std::span<const Crossing> hits, double from, double to,
+                   std::span<std::array<double, 3>> points) const {
+  if (hits.size() != points.size())
+    throw InputError(fmt::format("{} hits and {} points", hits.size(), points.size()));
+  if (!std::isfinite(from) || !std::isfinite(to))
+    throw InputError(fmt::format("times must be finite, not {} and {}", from, to));
+  const caplet::Scene& scene = *data_->scene;
+  if (!moves(scene)) return;
+  const Carrier carrier(scene, from, to);
+  const Numbers numbers(scene);
+  for (std::size_t i = 0; i < hits.size(); ++i) {
+    const std::optional<SurfacePlace> place = numbers.place(hits[i]);
+    if (!place) continue;
+    std::array<double, 3>& p = points[i];
+    const glm::dvec3 carried = carrier.carried(*place, {p[0], p[1], p[2]});
+    p = {carried.x, carried.y, carried.z};
+  }
 }
 
 }  // namespace caplet::v0

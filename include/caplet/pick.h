@@ -77,6 +77,13 @@ class CAPLET_API Picker {
   void nearest(std::span<const Ray> rays, std::span<Crossing> out);
   /// Returns every hit, by ray and in order along it.
   std::vector<Crossing> crossings(std::span<const Ray> rays, std::size_t most = 256);
+  /// Moves points (x y z) of surfaces that were hit at the time `from` to where they are at `to`
+  /// (seconds; nothing moves before the shutter opens and after it closes). Points of a triangle
+  /// keep their barycentric coordinates, those of a capsule their share of its axis and, turned and
+  /// stretched with it, their offset from it. Points of misses stay. Throws InputError for other
+  /// numbers of points than hits, and for times that are not finite.
+  void carry(std::span<const Crossing> hits, double from, double to,
+             std::span<std::array<double, 3>> points) const;
 
  private:
   struct Data;

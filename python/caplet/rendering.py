@@ -284,6 +284,13 @@ def trace(scene, origins, directions, mode="nearest", t_min=0.0, t_max=np.inf, m
     return np.isfinite(out["t"]) if mode == "any" else out
 
 
+def carry(scene, hits, points, start, end, device=None):
+    """Where points (n, 3) go that `trace` hit at the time start, by the time end (seconds; sensors.flow says how)."""
+    points = np.ascontiguousarray(points, dtype=np.float64).copy()
+    _picker(scene, device).carry(np.ascontiguousarray(hits).view(np.uint8), float(start), float(end), points)
+    return points
+
+
 def pick(scene, x, y, device=None):
     """What the middle of a pixel shows (from the top left): a dict with names, or None."""
     return _picker(scene, device).pixel(int(x), int(y))

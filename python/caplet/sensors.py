@@ -13,7 +13,7 @@ import numpy as np
 from .bridges.lidar import NOTHING
 from .errors import InputError
 from .files import ply_bytes, replace_file
-from .rendering import trace
+from .rendering import carry, trace
 from .scanner import RETURN, Scanner, save_returns, scan
 
 __all__ = ["EVENT", "Frame", "Pinhole", "RETURN", "Scanner", "coco", "depth_camera", "events", "flow", "save_returns", "scan", "segment"]
@@ -267,24 +267,36 @@ def coco(frames, path=None, categories=None):
     return out
 
 
-def flow(scene, camera, pose, next_pose, *, moved=None, next_camera=None, device=None):
+def flow(scene, camera, pose, next_pose, *, times=None, moved=None, next_camera=None, device=None):
     """Where what each pixel sees goes until the next picture: optical flow (height, width, 2) in pixels, x then y, and scene flow
     (height, width, 3) in the world; NaN where nothing is, and optical flow where it goes behind the camera.
 
-    moved: {index of a shape: 4 x 4, world from world}, what moves meanwhile. What hides the point later is not asked.
+    times: (seconds of this picture, of the next one), for scenes that move. Points of a mesh keep their barycentric coordinates,
+    those of a capsule their share of its axis and, turned and stretched with it, their offset from it. moved: {index of a shape:
+    4 x 4, world from world}, what moves meanwhile otherwise. What hides the point later is not asked.
     """
     pose, then, size = _pose(pose), _pose(next_pose, "next_pose"), (camera.height, camera.width)
+    start, end = (0.0, 0.0) if times is None else _times(times)
     eye, ways, is_seen, _ = _rays(camera, pose)
-    hits = trace(scene, eye, ways, device=device)
+    hits = trace(scene, eye, ways, device=device, time=start)
     is_there = is_seen & np.isfinite(hits["t"])
     points = np.where(is_there[:, None], eye + ways * np.where(is_there, hits["t"], 0)[:, None].astype(np.float64), np.nan)
     after = points.copy()
+    if times is not None:
+        after[is_there] = carry(scene, hits[is_there], points[is_there], start, end, device=device)
     for shape, matrix in (moved or {}).items():
         matrix, rows = _pose(matrix, f"moved[{shape}]"), is_there & (hits["shape"] == shape)
-        after[rows] = points[rows] @ matrix[:3, :3].T + matrix[:3, 3]
+        after[rows] = after[rows] @ matrix[:3, :3].T + matrix[:3, 3]
     own = (after - then[:3, 3]) @ np.linalg.inv(then[:3, :3]).T
     optical = (next_camera or camera).project(own) - camera.pixels()
     return optical.reshape(*size, 2).astype(np.float32), (after - points).reshape(*size, 3).astype(np.float32)
+
+
+def _times(times):
+    found = np.asarray(times, dtype=np.float64)
+    if found.shape != (2,) or not np.isfinite(found).all():
+        raise InputError(f"times: two finite numbers are needed, not {times!r}")
+    return float(found[0]), float(found[1])
 
 
 def events(pictures, times, threshold=0.2, floor=1e-3):

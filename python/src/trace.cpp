@@ -135,6 +135,23 @@ auto crossings(Owner& held, std::size_t count, const Array& origins, const Array
   return array_of<std::uint8_t, 1>(std::move(bytes), {size});
 }
 
+/// `hits`: bytes of crossings; `points`: as many x y z, which are changed.
+void carry(HeldPicker& held,
+           const nb::ndarray<const std::uint8_t, nb::ndim<1>, nb::c_contig, nb::device::cpu>& hits,
+           double from, double to,
+           nb::ndarray<double, nb::shape<-1, 3>, nb::c_contig, nb::device::cpu>& points) {
+  std::vector<Crossing> own(hits.shape(0) / sizeof(Crossing));
+  std::memcpy(own.data(), hits.data(), own.size() * sizeof(Crossing));
+  std::vector<std::array<double, 3>> at(points.shape(0));
+  std::memcpy(at.data(), points.data(), at.size() * sizeof at[0]);
+  {
+    const Released released;
+    const auto turn = turn_of(held);
+    held.session.carry(own, from, to, at);
+  }
+  std::memcpy(points.data(), at.data(), at.size() * sizeof at[0]);
+}
+
 /// Names, NumPy's types and places of a crossing's numbers.
 std::vector<std::tuple<std::string, std::string, std::size_t, std::size_t>> layout() {
   return {{"t", "f4", 1, offsetof(Crossing, t)},
@@ -172,6 +189,7 @@ void bind_trace(nb::module_& m) {
            })
       .def("nearest", &nearest<HeldPicker>)
       .def("crossings", &crossings<HeldPicker>)
+      .def("carry", &carry)
       .def("pixel", [](HeldPicker& held, int x, int y) -> nb::object {
         std::optional<caplet::Hit> hit;
         {

@@ -220,6 +220,41 @@ def test_flow_of_a_plane_and_of_what_moves():
     assert np.isnan(sensors.flow(scene, CAMERA, np.eye(4), turned(0, at=(0, 0, 20)))[0]).all()
 
 
+def test_flow_of_what_moves_by_itself():
+    # A ball and a sheet go to the right, a capsule in an object turns a quarter about the axis of view.
+    scene = caplet.Scene()
+    ball = scene.add_spheres((-1, 0, 5), 0.5)
+    sheet = scene.add_mesh([(0.5, -1, 5), (2, -1, 5), (2, 1, 5), (0.5, 1, 5)], [(0, 1, 2), (0, 2, 3)])
+    scene.add_capsules((-1, 0, 0), (1, 0, 0), 0.1, object="rod")
+    scene.add_instances("rod", [turned(0, at=(0, 0, 3))])
+    ball.animate([0, 2], p0=[[(-1, 0, 5)], [(-0.8, 0, 5)]], p1=[[(-1, 0, 5)], [(-0.8, 0, 5)]])
+    sheet.animate([0, 2], vertices=np.stack([sheet.vertices, sheet.vertices + [0, 0.4, 1]]))
+    quarter = turned(np.pi / 2, axis=(0, 0, 1), at=(0, 0, 3))
+    scene.animate_instance(0, [0, 2], [turned(0, at=(0, 0, 3)), quarter])
+    scene.shutter(0, 2)
+    optical, moved = sensors.flow(scene, CAMERA, np.eye(4), np.eye(4), times=(0, 2))
+    frame = sensors.depth_camera(scene, CAMERA, np.eye(4))
+    points = frame.points.astype(float)
+    rod = (frame.shape != ball.number) & (frame.shape != sheet.number) & np.isfinite(frame.depth)
+    for rows, wanted in ((frame.shape == ball.number, lambda p: p + [0.2, 0, 0]), (frame.shape == sheet.number, lambda p: p + [0, 0.4, 1]),
+                         (rod, lambda p: np.stack([-p[:, 1], p[:, 0], p[:, 2]], 1))):
+        assert rows.sum() > 30
+        after = wanted(points[rows])
+        assert np.abs(moved[rows] - (after - points[rows])).max() < 1e-5
+        assert np.abs(optical[rows] - (CAMERA.project(after) - CAMERA.project(points[rows]))).max() < 1e-3
+    # Half of the time, and what others move besides.
+    half = sensors.flow(scene, CAMERA, np.eye(4), np.eye(4), times=(0, 1), moved={ball.number: turned(0, at=(0, 1, 0))})[1]
+    assert np.abs(half[frame.shape == ball.number] - [0.1, 1, 0]).max() < 1e-5
+    # Back from the later time, whose pixels see it elsewhere.
+    back = sensors.flow(scene, CAMERA, np.eye(4), np.eye(4), times=(2, 0))[1]
+    assert (np.abs(back - [-0.2, 0, 0]).max(2) < 1e-5).sum() > 30 and (np.abs(back - [0, -0.4, -1]).max(2) < 1e-5).sum() > 30
+    # Without times nothing moves by itself.
+    assert np.nanmax(np.abs(sensors.flow(scene, CAMERA, np.eye(4), np.eye(4))[1])) == 0
+    for wrong in (1, (0, 1, 2), (0, np.nan)):
+        with pytest.raises(caplet.InputError, match="times: two finite numbers"):
+            sensors.flow(scene, CAMERA, np.eye(4), np.eye(4), times=wrong)
+
+
 def test_events_of_light_that_grows_and_falls():
     # exp(t) - floor: log luminance is t, so events of 0.25 come at 0.25, 0.5 ... up to 1, and on the way back at 1.25 ... 2.
     floor, times = 1e-3, np.linspace(0, 2, 41)

@@ -307,6 +307,44 @@ TEST_F(LibraryBuild, ShapesInBulkHaveTheirOwnValues) {
   EXPECT_FLOAT_EQ(hit->t, 13);
 }
 
+TEST_F(LibraryBuild, PickersCarryPointsWithInstances) {
+  caplet::Scene scene = three_balls();
+  const auto add_box = [&](double low, double high) {
+    scene.add_shape("box",
+                    {{"p0", std::array{low, low, low}}, {"p1", std::array{high, high, high}}},
+                    {.object = "crate"});
+  };
+  add_box(-1, 1);
+  add_box(2, 3);
+  caplet::Transform away = caplet::identity, farther = caplet::identity;
+  away[3] = 20;
+  farther[3] = 24;
+  scene.add_instances("crate", std::vector{caplet::identity, away});
+  scene.set_instance_motion(1, {0, 2}, std::vector{away, farther});
+  scene.set_shutter(0, 2);
+  scene.present();
+  caplet::Picker picker(scene, test_device());
+  const std::vector<caplet::Ray> rays = {{{22.5F, 2.5F, 9}, {0, 0, -1}, 0, 100},
+                                         {{2.5F, 2.5F, 9}, {0, 0, -1}, 0, 100},
+                                         {{0, 0, 90}, {0, 0, 1}, 0, 100}};
+  std::vector<caplet::Crossing> hits(3);
+  picker.nearest(rays, hits);
+  using Points = std::vector<std::array<double, 3>>;
+  Points points = {{22.5, 2.5, 3}, {2.5, 2.5, 3}, {7, 8, 9}};
+  picker.carry(hits, 0, 1, points);
+  EXPECT_EQ(points, (Points{{24.5, 2.5, 3}, {2.5, 2.5, 3}, {7, 8, 9}}));
+  EXPECT_THROW(picker.carry(hits, 0, NAN, points), caplet::InputError);
+  EXPECT_THROW(picker.carry(std::span(hits).first(2), 0, 1, points), caplet::InputError);
+  for (const auto number :
+       {&caplet::Crossing::shape, &caplet::Crossing::instance, &caplet::Crossing::primitive}) {
+    std::vector<caplet::Crossing> wrong = hits;
+    wrong[0].*number = 40;
+    EXPECT_THROW(picker.carry(wrong, 0, 1, points), caplet::InputError);
+  }
+  hits[0].shape = 0;  // is of the world, not of the object
+  EXPECT_THROW(picker.carry(hits, 0, 1, points), caplet::InputError);
+}
+
 TEST_F(LibraryBuild, CrossingsInNumbersAreTheHits) {
   caplet::Scene scene = three_balls();
   scene.add_shape(
