@@ -32,7 +32,7 @@ Scene scene_of(Geometry geometry) {
   return scene;
 }
 
-/// Two capsules. The second one goes from the z axis to the x axis, twice as long and thick.
+/// Two capsules. The second one goes from the z axis to the x axis, twice as thick.
 CapsulesShape bending(const vec3& p0, const vec3& p1) {
   CapsulesShape out;
   out.p0 = {vec3(9), vec3(0), vec3(9), p0};
@@ -43,21 +43,21 @@ CapsulesShape bending(const vec3& p0, const vec3& p1) {
 }
 
 TEST(Carried, PointsOfACapsuleKeepTheirPlaceOnIt) {
-  const Scene scene = scene_of(bending(vec3(1, 0, 0), vec3(5, 0, 0)));
+  const Scene scene = scene_of(bending(vec3(1, 0, 0), vec3(7, 0, 0)));
   const Carrier carrier(scene, 1, 3);
   const SurfacePlace second{{}, 0, 1};
   // A quarter turn about y takes z to x and x to -z.
-  expect_near(carrier.carried(second, {0.5, 0, 0.5}), {2, 0, -1});
-  expect_near(carrier.carried(second, {0, 0.5, 1}), {3, 1, 0});
-  expect_near(carrier.carried(second, {0, 0, 2.5}), {6, 0, 0});
+  expect_near(carrier.carried(second, {0.5, 0, 0.5}), {2.5, 0, -1});
+  expect_near(carrier.carried(second, {0, 0.5, 1}), {4, 1, 0});
+  expect_near(carrier.carried(second, {0, 0, 2.5}), {8, 0, 0});
   expect_near(carrier.carried(second, {0.3, 0, -0.4}), {1 - 0.8, 0, -0.6});
   // The first one rests.
   expect_near(carrier.carried({{}, 0, 0}, {9, 9, 10}), {9, 9, 10});
   // The way back.
-  expect_near(Carrier(scene, 3, 1).carried(second, {2, 0, -1}), {0.5, 0, 0.5});
-  // Halfway the ends are (0.5 0 0) and (2.5 0 1), and the radius is 0.75.
+  expect_near(Carrier(scene, 3, 1).carried(second, {2.5, 0, -1}), {0.5, 0, 0.5});
+  // Halfway the ends are (0.5 0 0) and (3.5 0 1), and the radius is 0.75.
   const dvec3 half = Carrier(scene, 1, 2).carried(second, {0, 0.5, 1});
-  expect_near(half, {1.5, 0.75, 0.5}, 1e-7);
+  expect_near(half, {2, 0.75, 0.5}, 1e-7);
   // Nothing moves before the shutter opens and after it closes.
   Scene shorter = scene;
   shorter.view.film.exposure_time = 1;
