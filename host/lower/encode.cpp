@@ -80,10 +80,11 @@ void reorder_blocks(float* blocks, std::size_t floats, std::vector<std::uint32_t
 /// memory may be given back so, before the tree says which follows which.
 class TreeEncoder {
  public:
-  TreeEncoder(std::span<const FlatPrimitive> primitives, const TreeLinks& linked,
-              std::vector<float>& nodes, std::vector<float>& leaves, int kind_bits)
-      : primitives_(primitives),
-        linked_(linked),
+  TreeEncoder(const TreeItems& items, std::vector<float>& nodes, std::vector<float>& leaves,
+              int kind_bits)
+      : primitives_(items.primitives),
+        loose_(items.loose),
+        linked_(items.linked),
         nodes_(nodes),
         leaves_(leaves),
         kind_bits_(kind_bits),
@@ -119,12 +120,19 @@ class TreeEncoder {
       CHECK_EQ_(shape_has(p.shape, trait_linked), false);
       counts[p.shape]++;
     }
+    for (std::size_t kind = 0; kind < counts.size(); kind++) counts[kind] += loose_.counts()[kind];
     return counts;
   }
 
-  /// Returns boxes of the primitives, then of the blocks of linked capsules, which it writes.
+  /// Returns how many items are no blocks of linked capsules. They come first.
+  std::size_t single_count() const { return primitives_.size() + loose_.size(); }
+  FlatPrimitive single(std::size_t i) const {
+    return i < primitives_.size() ? primitives_[i] : loose_[i - primitives_.size()];
+  }
+
+  /// Returns boxes of the items, and writes the blocks of linked capsules.
   std::vector<bvh::Reference> references(bool release) {
-    std::size_t item = primitives_.size();
+    std::size_t item = single_count();
     std::vector<bvh::Reference> out(item + linked_.by_form[0].blocks() +
                                     linked_.by_form[1].blocks());
     const auto set = [&](std::size_t i, const ReferenceBox& box, std::uint32_t group) {
@@ -133,8 +141,9 @@ class TreeEncoder {
       out[i].primitive = narrow<std::uint32_t>(i);
       out[i].group = group;
     };
-    tbb::parallel_for(std::size_t(0), primitives_.size(), [&](std::size_t i) {
-      set(i, reference_box(primitives_[i]), primitives_[i].shape);
+    tbb::parallel_for(std::size_t(0), single_count(), [&](std::size_t i) {
+      const FlatPrimitive p = single(i);
+      set(i, reference_box(p), p.shape);
     });
     for (const LinkedCapsules& form : linked_.by_form) {
       const auto set_block = [&](std::size_t block, const ReferenceBox& box) {
@@ -161,7 +170,7 @@ class TreeEncoder {
         rows_ += rows_of(leaf.group);
         continue;
       }
-      std::size_t block = tree_.order[leaf.first] - primitives_.size(), f = 0;
+      std::size_t block = tree_.order[leaf.first] - single_count(), f = 0;
       if (block >= linked_.by_form[0].blocks()) {
         f = 1;
         block -= linked_.by_form[0].blocks();
@@ -225,15 +234,16 @@ class TreeEncoder {
       for (std::uint32_t lane = 0; lane < 8; lane++) {
         // Empty lanes repeat the first primitive, so that no arithmetic meets odd values there.
         const std::size_t index = tree_.order[leaf.first + (lane < leaf.count ? lane : 0)];
-        const FlatPrimitive& p = primitives_[index];
+        const FlatPrimitive p = single(index);
         block[lane] = std::bit_cast<float>(lane < leaf.count ? p.id : 0xffffffffu);
         for (std::uint32_t j = 0; j < data_rows; j++) block[8 * (j + 1) + lane] = p.data[j];
-        if (lane < leaf.count) slots[index] = row_of_[l] * 8 + lane;
+        if (lane < leaf.count && index < slots.size()) slots[index] = row_of_[l] * 8 + lane;
       }
     });
   }
 
   std::span<const FlatPrimitive> primitives_;
+  const LooseCapsules& loose_;
   const TreeLinks& linked_;
   std::vector<float>&nodes_, &leaves_;
   int kind_bits_;
@@ -247,13 +257,12 @@ class TreeEncoder {
 
 EncodedTree encode_tree(std::span<const FlatPrimitive> primitives, std::vector<float>& nodes,
                         std::vector<float>& leaves, int kind_bits) {
-  return encode_tree(primitives, TreeLinks(), false, nodes, leaves, kind_bits);
+  return encode_tree({primitives, LooseCapsules(), TreeLinks()}, false, nodes, leaves, kind_bits);
 }
 
-EncodedTree encode_tree(std::span<const FlatPrimitive> primitives, const TreeLinks& linked,
-                        bool release, std::vector<float>& nodes, std::vector<float>& leaves,
-                        int kind_bits) {
-  return TreeEncoder(primitives, linked, nodes, leaves, kind_bits).run(release);
+EncodedTree encode_tree(const TreeItems& items, bool release, std::vector<float>& nodes,
+                        std::vector<float>& leaves, int kind_bits) {
+  return TreeEncoder(items, nodes, leaves, kind_bits).run(release);
 }
 
 }  // namespace caplet

@@ -165,6 +165,7 @@ class GeometryLowering {
     if (!is_watertight(shape)) record.flags |= CAPLET_GEOMETRY_OPEN;
     reversed_ = shape.reverse_orientation;
     may_link_ = links_ && !shape.emission && (!linking_.allows || linking_.allows(shape));
+    may_be_loose_ = !shape.emission && !linking_.keeps_primitives;
     std::visit([&](const auto& geometry) { append(geometry, m, record, subtree); }, shape.geometry);
     const std::size_t count = subtree.primitives.size() - first;
     if (shape.emission && count > 0) {
@@ -205,6 +206,8 @@ class GeometryLowering {
     const auto add = [&](const LoweredShapes& shapes) {
       for (const Subtree& subtree : shapes.subtrees) {
         if (subtree.linked.size() > 0) out_.shapes |= shape_bit(shape_linked_capsule);
+        for (std::uint32_t kind = 0; kind < shape_count; ++kind)
+          if (subtree.loose.counts()[kind] > 0) out_.shapes |= shape_bit(kind);
         for (const FlatPrimitive& p : subtree.primitives) {
           out_.shapes |= shape_bit(p.shape);
           if (p.shape != shape_csg) continue;
@@ -380,6 +383,11 @@ class GeometryLowering {
       geometry_of_.push_back(by_material[material]);
     };
     reserve_more(geometry_of_, count_of(capsules));
+    if (linked == 0 && !moving && may_be_loose_) {
+      subtree.loose.add(placed, narrow<std::uint32_t>(geometry_of_.size()));
+      for (std::size_t i = 0; i < placed.size(); ++i) add_id(i, placed[i].shape);
+      return;
+    }
     reserve_more(subtree.primitives, count_of(capsules) - linked);
     LinkedCapsules& links = subtree.linked.of(placed);
     if (linked > 0) links.begin(placed, narrow<std::uint32_t>(geometry_of_.size()));
@@ -554,8 +562,8 @@ class GeometryLowering {
 
   void encode(Subtree& subtree) {
     const bool release = linking_.release && !out_.has_media();
-    subtree.tree = encode_tree(subtree.primitives, subtree.linked, release, out_.nodes, out_.leaves,
-                               kind_bits_);
+    subtree.tree = encode_tree({subtree.primitives, subtree.loose, subtree.linked}, release,
+                               out_.nodes, out_.leaves, kind_bits_);
     out_.bvh_nodes += subtree.tree.nodes;
     out_.bvh_depth = std::max(out_.bvh_depth, subtree.tree.depth);
   }
@@ -606,6 +614,7 @@ class GeometryLowering {
   std::vector<std::uint32_t> geometry_of_;  // by primitive id
   bool links_ = false;                      // the scene has linked capsules
   bool may_link_ = false;                   // the shape being appended may
+  bool may_be_loose_ = false;               // it needs no primitives
   std::map<std::pair<std::uint32_t, double>, uint> alphas_;
   struct {
     std::string file;

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <iterator>
 
 #include "base/check.h"
 #include "base/memory.h"
@@ -81,6 +82,20 @@ std::vector<CapsuleRow> rows_of(const PlacedCapsules& capsules, std::size_t leas
   }
   end_row();
   return out;
+}
+
+void LooseCapsules::add(const PlacedCapsules& shape, std::uint32_t id) {
+  shapes_.push_back({shape, id, size_});
+  for (std::size_t i = 0; i < shape.size(); ++i) ++counts_[shape[i].shape];
+  size_ += shape.size();
+}
+
+FlatPrimitive LooseCapsules::operator[](std::size_t i) const {
+  const auto after = std::ranges::upper_bound(shapes_, i, {}, &Placed::first);
+  const Placed& of = *std::prev(after);
+  FlatPrimitive p = of.capsules[i - of.first];
+  p.id = narrow<std::uint32_t>(of.id + (i - of.first));
+  return p;
 }
 
 void LinkedCapsules::add_row(const CapsuleRow& row) {

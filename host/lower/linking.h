@@ -24,8 +24,15 @@ struct Linking {
   /// The memory of linked capsules of the scene is given back while it is lowered, unless media
   /// need them: use lower_and_release.
   bool release = false;
+  /// Capsules that are not linked stay as primitives, which edits move.
+  bool keeps_primitives = false;
 
-  static Linking none() { return {std::numeric_limits<std::size_t>::max()}; }
+  /// All stay as primitives.
+  static Linking none() {
+    Linking out{std::numeric_limits<std::size_t>::max()};
+    out.keeps_primitives = true;
+    return out;
+  }
   /// Scenes that are edited have some only where memory counts more than the first edit's time.
   static Linking of_edited() { return {std::size_t{1} << 24}; }
 };

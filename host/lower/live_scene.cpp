@@ -50,7 +50,10 @@ void add_differences(const std::vector<T>& before, const std::vector<T>& now, Ch
 }  // namespace
 
 struct LiveScene::State {
-  State(Scene of, const Linking& links) : scene(std::move(of)), linking(links) { lower_all(); }
+  State(Scene of, const Linking& links) : scene(std::move(of)), linking(links) {
+    linking.keeps_primitives = true;
+    lower_all();
+  }
 
   void lower_all() {
     auto fresh = std::make_unique<Lowering>(scene, linking);

@@ -306,9 +306,36 @@ TEST(Links, EditsAreThoseOfTheSameCapsulesUnlinked) {
     EXPECT_EQ(live.lowerings(), 2u);  // none are linked any more
     expect_same(live);
   }
+  {
+    // Where none is linked, a capsule moves in its place.
+    LiveScene live(scene, {0, 100});
+    const auto& walk = std::get<CapsulesShape>(scene.shapes[1].geometry);
+    CapsuleEdit moved = one;
+    moved.to = {walk.p0[5], walk.p1[5] + vec3(0.1f), walk.radius0[5], walk.radius1[5]};
+    live.edit(moved);
+    EXPECT_EQ(live.lowerings(), 1u);
+    expect_same(live);
+  }
   LiveScene live(scene, all_links);
   live.edit(TransformEdit{{std::nullopt, 0}, glm::translate(dmat4(1), dvec3(0.2, 0.1, 0))});
   expect_same(live);
+}
+
+TEST(LooseCapsules, AreThoseThatEditsKeepAsPrimitives) {
+  Scene scene = walking_scene();
+  // Others stand between them, some of which emit.
+  scene.shapes.insert(scene.shapes.begin() + 1, shape_of(straight(3, true)));
+  scene.shapes[1].emission.emplace();
+  Shape ball;
+  ball.geometry = SphereShape{0.5};
+  scene.shapes.insert(scene.shapes.begin() + 3, ball);
+  const Linking none_linked{scene.shapes.size() * 1000000};
+  const FlatScene loose = lower(scene, none_linked), kept = lower(scene, Linking::none());
+  EXPECT_EQ(loose.shapes, kept.shapes);
+  EXPECT_EQ(kept.lights.size(), 3u);
+  EXPECT_EQ(loose.lights.size(), 3u);
+  EXPECT_EQ(loose.primitive_count, kept.primitive_count);
+  expect_same_hits(loose, kept);
 }
 
 /// Compares what the trees and their geometries take.

@@ -12,10 +12,16 @@
 
 namespace caplet {
 
-/// Does as encode_tree of encode.h, with linked capsules beside the primitives. They have no slots.
-/// `release`: see LinkedCapsules::append.
-EncodedTree encode_tree(std::span<const FlatPrimitive> primitives, const TreeLinks& linked,
-                        bool release, std::vector<float>& nodes, std::vector<float>& leaves,
-                        int kind_bits);
+/// TreeItems are what a tree is built over.
+struct TreeItems {
+  std::span<const FlatPrimitive> primitives;
+  const LooseCapsules& loose;
+  const TreeLinks& linked;
+};
+
+/// Does as encode_tree of encode.h. Only primitives have slots. `release`: see
+/// LinkedCapsules::append.
+EncodedTree encode_tree(const TreeItems& items, bool release, std::vector<float>& nodes,
+                        std::vector<float>& leaves, int kind_bits);
 
 }  // namespace caplet

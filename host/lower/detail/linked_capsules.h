@@ -12,6 +12,7 @@
 #include <glm/mat4x4.hpp>
 #include <glm/vec2.hpp>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "lower/flat_primitive.h"
@@ -48,6 +49,30 @@ struct CapsuleRow {
 };
 /// Returns all rows of at least `least_count`, in order. Spheres are in none.
 std::vector<CapsuleRow> rows_of(const PlacedCapsules& capsules, std::size_t least_count);
+
+/// LooseCapsules are the capsules of a tree of which none is linked, where nothing needs them as
+/// primitives afterwards.
+class LooseCapsules {
+ public:
+  /// Adds a whole shape, whose ids begin with `id`.
+  void add(const PlacedCapsules& shape, std::uint32_t id);
+
+  std::size_t size() const { return size_; }
+  /// Returns how many there are of each kind of shape.
+  std::span<const std::uint64_t> counts() const { return counts_; }
+  /// Returns one as a primitive.
+  FlatPrimitive operator[](std::size_t i) const;
+
+ private:
+  struct Placed {
+    PlacedCapsules capsules;
+    std::uint32_t id;
+    std::size_t first;  // its place among all
+  };
+  std::vector<Placed> shapes_;
+  std::array<std::uint64_t, shape_count> counts_{};
+  std::size_t size_ = 0;
+};
 
 /// LinkedCapsules are those of one tree, all of chains or none.
 class LinkedCapsules {

@@ -28,9 +28,10 @@ namespace caplet {
 struct Subtree {
   glm::dmat4 placed{1};  // object_from_subtree
   uint flags = 0;        // of its instances
-  /// Primitives are by id; after them, in the world's first subtree, come the instances. Linked
-  /// capsules are none of them.
+  /// Primitives are by id; after them, in the world's first subtree, come the instances. Loose and
+  /// linked capsules are none of them.
   std::vector<FlatPrimitive> primitives;
+  LooseCapsules loose;
   TreeLinks linked;
   std::vector<const Shape*> shapes;  // those that gave primitives
   struct Emissive {
@@ -42,7 +43,7 @@ struct Subtree {
   std::size_t emitter_count = 0;
   EncodedTree tree;
 
-  std::size_t size() const { return primitives.size() + linked.size(); }
+  std::size_t size() const { return primitives.size() + loose.size() + linked.size(); }
 };
 
 /// PlacedSubtree is an instance record: a subtree as placed, by the number of the record.
