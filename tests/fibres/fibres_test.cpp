@@ -120,6 +120,7 @@ TEST(Hair, ColoursAreAsFineAsTheirNumberAllows) {
   const auto [worst, materials] = worst_color(60000, false);
   EXPECT_LT(worst, 1 / 30.0 + 1 / 509.0);
   EXPECT_LE(materials, 4096u);
+  EXPECT_LE(worst_color(4150, false).second, 4096u);
   EXPECT_GT(materials, 3000u);
 }
 

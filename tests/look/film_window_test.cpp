@@ -294,6 +294,18 @@ TEST(Framing, OrthographicCamerasStandOneExtentAway) {
   }
 }
 
+// A capsule is framed by the balls of both its ends.
+TEST(Framing, TaperedCapsulesAreWithinByBothRadii) {
+  for (const auto& [r0, r1] : {std::pair{0.1F, 1.0F}, std::pair{1.0F, 0.1F}}) {
+    Shape tapered;
+    tapered.geometry = CapsulesShape{{glm::vec3(0)}, {glm::vec3(4, 0, 0)}, {r0}, {r1}, {}};
+    const Scene scene = scene_of({tapered}, {{"view", "front"}, {"projection", "orthographic"}});
+    const Camera& camera = scene.view.camera;
+    EXPECT_NEAR(camera.world_from_camera[3].x, 0.5 * (4 + double{r1} - double{r0}), 1e-6);
+    EXPECT_NEAR(camera.screen_window.value()[1], 0.5 * (4 + 0.1 + 1) / 0.95, 1e-6);
+  }
+}
+
 // A tower is seen across its wider level side, three-quarter: 30 degrees to its right and 18 above.
 TEST(Framing, TowersAreSeenAcrossTheirWiderSide) {
   const double azimuth = std::numbers::pi / 6, elevation = std::numbers::pi / 10;
