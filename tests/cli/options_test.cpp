@@ -6,13 +6,17 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 #include <nlohmann/json.hpp>
+#include <random>
 
 #include "film/film_file.h"
 #include "film/image.h"
 #include "program.h"
 #include "support/data.h"
+#include "support/sanitized.h"
 
 namespace caplet {
 namespace {
@@ -109,6 +113,48 @@ TEST_F(Options, BatchTakesLessMemory) {
   EXPECT_LT(
       peak({"--stats", "stats.json", "--size", "100x100", "--layers", "none"}) + 96 * 100 * 100,
       peak({"--stats", "stats.json", "--size", "100x100"}));
+}
+
+/// Returns an MRtrix file of tracks of 100 points, which go straight on in any direction.
+std::string straight_tracks(std::size_t count) {
+  std::string out = "mrtrix tracks\ndatatype: Float32LE\nfile: . 100\nEND\n";
+  out.resize(100);
+  out.reserve(out.size() + 12 * (101 * count + 1));
+  const auto put = [&out](const std::array<float, 3>& point) {
+    out.append(reinterpret_cast<const char*>(point.data()), sizeof point);
+  };
+  constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+  std::minstd_rand random(1);
+  std::uniform_real_distribution<float> place(-100, 100), way(-0.5F, 0.5F);
+  for (std::size_t i = 0; i < count; ++i) {
+    std::array<float, 3> at{place(random), place(random), place(random)};
+    const std::array<float, 3> step{way(random), way(random), way(random)};
+    for (int k = 0; k < 100; ++k) {
+      put(at);
+      for (std::size_t axis = 0; axis < 3; ++axis) at.at(axis) += step.at(axis);
+    }
+    put({nan, nan, nan});
+  }
+  constexpr float infinity = std::numeric_limits<float>::infinity();
+  put({infinity, infinity, infinity});
+  return out;
+}
+
+// A hundred million of them are to fit into 6 GB (docs/performance.md). What the program takes
+// without any is not counted.
+TEST_F(Options, CapsulesInARowTakeAtMost62Bytes) {
+  if (test::sanitized) GTEST_SKIP() << "sanitizers take more memory";
+  const auto peak = [&](std::size_t tracks) {
+    test::write_file(folder_ / "tracks.tck", straight_tracks(tracks));
+    return json({"render", "tracks.tck", "-q", "-o", "out.exr", "--size", "16x16", "--spp", "1",
+                 "--layers", "none", "--stats", "-"})
+        .at("peak_bytes")
+        .get<double>();
+  };
+  peak(1);  // compiles, which may take more
+  const double few = peak(20000), many = peak(40000);
+  EXPECT_LT(few, many);
+  EXPECT_LT((many - few) / (99 * 20000), 62);
 }
 
 TEST_F(Options, VarianceIsWrittenWhenAsked) {
