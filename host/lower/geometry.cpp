@@ -384,9 +384,14 @@ class GeometryLowering {
     };
     reserve_more(geometry_of_, count_of(capsules));
     if (linked == 0 && !moving && may_be_loose_) {
-      subtree.loose.add(placed, narrow<std::uint32_t>(geometry_of_.size()));
-      for (std::size_t i = 0; i < placed.size(); ++i) add_id(i, placed[i].shape);
-      return;
+      const auto id = narrow<std::uint32_t>(geometry_of_.size());
+      std::array<std::uint64_t, shape_count> counts{};
+      for (std::size_t i = 0; i < placed.size(); ++i) {
+        const std::uint32_t kind = placed[i].shape;
+        add_id(i, kind);
+        ++counts[kind];
+      }
+      return subtree.loose.add(placed, id, counts);
     }
     reserve_more(subtree.primitives, count_of(capsules) - linked);
     LinkedCapsules& links = subtree.linked.of(placed);

@@ -84,9 +84,10 @@ std::vector<CapsuleRow> rows_of(const PlacedCapsules& capsules, std::size_t leas
   return out;
 }
 
-void LooseCapsules::add(const PlacedCapsules& shape, std::uint32_t id) {
+void LooseCapsules::add(const PlacedCapsules& shape, std::uint32_t id,
+                        std::span<const std::uint64_t> counts) {
   shapes_.push_back({shape, id, size_});
-  for (std::size_t i = 0; i < shape.size(); ++i) ++counts_[shape[i].shape];
+  for (std::size_t kind = 0; kind < counts_.size(); ++kind) counts_[kind] += counts[kind];
   size_ += shape.size();
 }
 

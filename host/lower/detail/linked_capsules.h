@@ -54,8 +54,8 @@ std::vector<CapsuleRow> rows_of(const PlacedCapsules& capsules, std::size_t leas
 /// primitives afterwards.
 class LooseCapsules {
  public:
-  /// Adds a whole shape, whose ids begin with `id`.
-  void add(const PlacedCapsules& shape, std::uint32_t id);
+  /// Adds a whole shape, whose ids begin with `id`. `counts`: how many there are of each kind.
+  void add(const PlacedCapsules& shape, std::uint32_t id, std::span<const std::uint64_t> counts);
 
   std::size_t size() const { return size_; }
   /// Returns how many there are of each kind of shape.
