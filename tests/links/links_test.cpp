@@ -338,6 +338,15 @@ TEST(LooseCapsules, AreThoseThatEditsKeepAsPrimitives) {
   expect_same_hits(loose, kept);
 }
 
+TEST(LooseCapsules, OfSeveralShapesAreAllCounted) {
+  Scene scene;
+  scene.materials.resize(1);
+  CapsulesShape ball = straight(1, false);
+  ball.p1 = ball.p0;
+  scene.shapes = {shape_of(straight(3, false)), shape_of(ball)};
+  EXPECT_EQ(lower(scene).shapes, shape_bit(shape_tapered_capsule) | shape_bit(shape_sphere));
+}
+
 /// Compares what the trees and their geometries take.
 void expect_same_trees(const FlatScene& a, const FlatScene& b) {
   // References and ids may be the bits of a NaN.
