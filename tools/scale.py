@@ -7,8 +7,8 @@ usage: scale.py PROGRAM [--most N] [--limit BYTES]
 
 Renders 1280 x 960 pixels of 4 samples of tractograms (.tck, 99 capsules a track, coloured by direction) of 10^3, 10^4, ... up to
 N (10^7) capsules, which are made here, and prints a table: seconds of loading, of the tree and of rendering, and bytes a capsule of
-the whole process at its peak and on the device. `--limit`: each render is in a control group of so much memory, which root can make.
-Needs numpy.
+the whole process at its peak and on the device; then of a tree file of the same (`caplet build`) seconds in all and to the first
+sample of every pixel. `--limit`: each of them is in a control group of so much memory, which root can make. Needs numpy.
 """
 import argparse
 import json
@@ -55,13 +55,23 @@ def control_group(limit):
     sys.exit("scale.py: there is no control group of memory")
 
 
+def run(group, *arguments):
+    """Runs in the group."""
+    enter = (lambda: group.write_text(str(os.getpid()))) if group else None
+    subprocess.run(arguments, check=True, preexec_fn=enter)
+
+
 def render(program, scene, folder, group):
     """Renders, and returns the statistics."""
     stats = folder / "stats.json"
-    enter = (lambda: group.write_text(str(os.getpid()))) if group else None
-    subprocess.run([program, "render", scene, "-o", folder / "out.exr", "--size", "1280x960", "--spp", "4", "--quiet", "--stats", stats],
-                   check=True, preexec_fn=enter)
+    run(group, program, "render", scene, "-o", folder / "out.exr", "--size", "1280x960", "--spp", "4", "--quiet", "--stats", stats)
     return json.loads(stats.read_text())
+
+
+def first_sample(stats):
+    """Seconds from the start of the program to the first sample of every pixel."""
+    seconds = stats["seconds"]
+    return seconds["total"] - seconds["render"] - seconds["write"] + stats["first_pass_seconds"]
 
 
 def main():
@@ -71,7 +81,8 @@ def main():
     parser.add_argument("--limit", type=float)
     options = parser.parse_args()
     group = control_group(int(options.limit)) if options.limit else None
-    print("| capsules | loading, s | tree, s | rendering, s | all, s | bytes each | on the device |\n|---:|---:|---:|---:|---:|---:|---:|")
+    print("| capsules | loading, s | tree, s | rendering, s | all, s | bytes each | on the device | tree file: all, s | first sample, s |\n"
+          "|---:|---:|---:|---:|---:|---:|---:|---:|---:|")
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
         scene, capsules = folder / "tracks.tck", 1000
@@ -79,8 +90,11 @@ def main():
             write_tracks(scene, capsules)
             stats = render(options.program, scene, folder, group)
             seconds = stats["seconds"]
+            tree = folder / "tracks.tree"
+            run(group, program, "build", scene, tree, "--size", "1280x960", "--quiet")
+            of_tree = render(program, tree, folder, group)
             print(f"| {capsules:,} | {seconds['load']:.2f} | {seconds['build']:.2f} | {seconds['render']:.2f} | {seconds['total']:.2f} | "
-                  f"{stats['peak_bytes'] / capsules:.1f} | {stats['peak_device_bytes'] / capsules:.1f} |", flush=True)
+                  f"{stats['peak_bytes'] / capsules:.1f} | {stats['peak_device_bytes'] / capsules:.1f} | {of_tree['seconds']['total']:.2f} | {first_sample(of_tree):.2f} |", flush=True)
             capsules *= 10
     if group:
         print("most memory of the group:", (group.parent / "memory.max_usage_in_bytes").read_text().strip()

@@ -4,6 +4,8 @@
 // Ctrl-C requests an orderly end; a second one ends the process at once.
 #pragma once
 
+#include <string>
+
 namespace caplet {
 
 /// Installs handlers for SIGINT, SIGTERM, SIGUSR1 and SIGHUP (unless ignored, as by nohup) that set
@@ -15,6 +17,19 @@ void install_interrupt_handlers();
 /// does nothing.
 void renew_user_signal_handler();
 bool interrupt_requested();
+/// While an instance exists, the first of these signals ends the process at once with this exit
+/// code, for there is nothing to finish: `message` is written to stderr, and the files that
+/// write_atomically is writing are removed.
+class EndsAtOnce {
+ public:
+  EndsAtOnce(std::string message, int code);
+  ~EndsAtOnce();
+  EndsAtOnce(const EndsAtOnce&) = delete;
+  EndsAtOnce& operator=(const EndsAtOnce&) = delete;
+
+ private:
+  std::string message_;
+};
 /// Sets or clears the flag, for tests.
 void set_interrupt_requested(bool requested);
 

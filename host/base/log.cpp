@@ -7,6 +7,7 @@
 #include <mutex>
 #include <string>
 
+#include "base/status_line.h"
 #include "base/utf8.h"
 
 namespace caplet {
@@ -16,6 +17,12 @@ namespace {
 std::atomic<int> errors{0};
 std::atomic<LogLevel> least{LogLevel::warning};
 std::mutex writing;
+std::string shown_line;  // the terminal's last line; guarded by `writing`
+
+void print(std::string_view text) {
+  std::fwrite(text.data(), 1, text.size(), stderr);
+  std::fflush(stderr);
+}
 
 /// The sink is never destroyed, because destructors at the end of the process may still log.
 LogSink& sink() {
@@ -46,9 +53,14 @@ void write(LogLevel level, std::string_view message) {
   if (!is_shown(level)) return;
   const std::lock_guard lock(writing);
   if (sink()) return sink()(level, message);
-  const std::string line = fmt::format("caplet: {}: {}\n", name_of(level), one_line(message));
-  std::fwrite(line.data(), 1, line.size(), stderr);
-  std::fflush(stderr);
+  const char* const clear = shown_line.empty() ? "" : "\r\x1b[K";
+  print(fmt::format("{}caplet: {}: {}\n{}", clear, name_of(level), one_line(message), shown_line));
+}
+
+void show_line(std::string_view text) {
+  const std::lock_guard lock(writing);
+  if (!text.empty() || !shown_line.empty()) print(fmt::format("\r{}\x1b[K", text));
+  shown_line = text;
 }
 
 }  // namespace log

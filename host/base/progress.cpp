@@ -7,9 +7,13 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <utility>
+
+#include "base/status_line.h"
 
 namespace caplet {
 
@@ -120,6 +124,31 @@ void ProgressReporter::update(double fraction, double paths_per_second, const st
   }
   bar_shown_ = true;
   write_("\r" + progress_bar(state, terminal_columns()) + "\x1b[K");
+}
+
+StepNotice::StepNotice(std::string what, ProgressReporter::Style style) {
+  if (style != ProgressReporter::Style::bar) return;
+  thread_ = std::thread([this, what = std::move(what)] { run(what); });
+}
+
+StepNotice::~StepNotice() {
+  if (!thread_.joinable()) return;
+  {
+    const std::lock_guard lock(mutex_);
+    ended_ = true;
+  }
+  changed_.notify_one();
+  thread_.join();
+}
+
+void StepNotice::run(const std::string& what) {
+  using namespace std::chrono_literals;
+  const auto start = std::chrono::steady_clock::now();
+  std::unique_lock lock(mutex_);
+  for (int seconds = 1; !changed_.wait_until(lock, start + seconds * 1s, [this] { return ended_; });
+       ++seconds)
+    log::show_line(fmt::format("caplet: {}: {} s", what, seconds));
+  log::show_line("");
 }
 
 }  // namespace caplet

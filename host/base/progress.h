@@ -5,10 +5,13 @@
 #pragma once
 
 #include <chrono>
+#include <condition_variable>
 #include <functional>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <thread>
 
 namespace caplet {
 
@@ -61,6 +64,26 @@ class ProgressReporter {
   Clock::time_point start_;
   std::optional<Clock::time_point> drawn_;
   bool bar_shown_ = false, finished_ = false;
+};
+
+/// While an instance exists, a line on the terminal says what takes so long and counts the seconds,
+/// from the second one on. For steps that do not know how far they are; they may write messages
+/// meanwhile.
+class StepNotice {
+ public:
+  /// Shows nothing unless `style` is a bar.
+  StepNotice(std::string what, ProgressReporter::Style style);
+  /// Clears the line.
+  ~StepNotice();
+  StepNotice(const StepNotice&) = delete;
+  StepNotice& operator=(const StepNotice&) = delete;
+
+ private:
+  void run(const std::string& what);
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  bool ended_ = false;
+  std::thread thread_;
 };
 
 }  // namespace caplet

@@ -22,6 +22,7 @@ void add_render(CLI::App& app, const Invocation& invocation);
 void add_merge(CLI::App& app, const Invocation& invocation);
 void add_film(CLI::App& app);
 void add_convert(CLI::App& app);
+void add_build(CLI::App& app);
 void add_devices(CLI::App& app);
 void add_doctor(CLI::App& app);
 void add_pick(CLI::App& app);

@@ -12,6 +12,7 @@
 #include "cli/description.h"
 #include "cli/options.h"
 #include "cli/parameters.h"
+#include "cli/trees.h"
 #include "lower/lower.h"
 #include "report/summary.h"
 
@@ -80,8 +81,15 @@ void add_info(CLI::App& app) {
       return;
     }
     if (options->scenes.empty()) throw CLI::RequiredError("SCENE");
-    const Scene scene = import_files(options->scenes, options->import_options);
-    const nlohmann::ordered_json info = report::scene_summary(scene, lower(scene));
+    nlohmann::ordered_json info;
+    if (is_tree(options->scenes)) {
+      Tree tree = read_tree(options->scenes.front(), options->import_options);
+      check_tree(options->scenes.front(), tree.file);
+      info = std::move(tree.summary);
+    } else {
+      const Scene scene = import_files(options->scenes, options->import_options);
+      info = report::scene_summary(scene, lower(scene));
+    }
     options->json ? fmt::print("{}", report::to_text(info)) : print_text(info);
   });
 }

@@ -143,6 +143,7 @@ int whole_program(int argc, char** argv) {
 #endif
   caplet::cli::add_info(app);
   caplet::cli::add_convert(app);
+  caplet::cli::add_build(app);
   caplet::cli::add_devices(app);
   caplet::cli::add_doctor(app);
   caplet::cli::add_bench(app, invocation);

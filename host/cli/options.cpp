@@ -14,6 +14,8 @@
 
 #include "base/duration.h"
 #include "base/error.h"
+#include "base/log.h"
+#include "base/progress.h"
 #include "base/spelling.h"
 #include "film/image.h"
 #include "import/import.h"
@@ -232,6 +234,8 @@ CLI::Option* add_scene_files(CLI::App& command, std::vector<std::string>& scenes
 }
 
 Scene import_files(const std::vector<std::string>& scenes, const ImportOptions& options) {
+  const StepNotice notice("reading " + scene_names(scenes),
+                          ProgressReporter::style_for_stderr(!log::is_shown(LogLevel::info)));
   return import_scenes(std::vector<std::filesystem::path>(scenes.begin(), scenes.end()),
                        FileImageReader(), options);
 }

@@ -15,6 +15,7 @@
 #include "cli/commands.h"
 #include "cli/description.h"
 #include "cli/options.h"
+#include "cli/trees.h"
 #include "cli/trial.h"
 #include "device/second_try.h"
 #include "lower/camera.h"
@@ -179,6 +180,18 @@ void check_combination(const PickFlags& o) {
     refuse(o.size.empty() ? "--crop" : "--size", "goes with --pixel");
 }
 
+/// Reads the tree file that is picked in. Throws InputError for what needs its scene.
+Tree tree_to_pick(const PickFlags& options) {
+  if (options.reference)
+    throw InputError(SourceLocation{"--reference"}, "needs a scene: a tree file has no shapes");
+  Tree out = read_tree(options.scenes.front(), options.import_options);
+  if (out.file.scene.moves())
+    throw InputError({options.scenes.front()},
+                     "the tree file is of a scene that moves: pick in the scene itself, which is "
+                     "stopped at --time");
+  return out;
+}
+
 void run_pick(const PickFlags& options, bool has_limit) {
   log::set_quiet(options.quiet);
   check_combination(options);
@@ -201,7 +214,10 @@ void run_pick(const PickFlags& options, bool has_limit) {
     install_interrupt_handlers();
   }
   const Device device = choose_device(options.device, options.encoding);
-  Scene scene = import_files(options.scenes, options.import_options);
+  std::optional<Tree> tree;
+  if (is_tree(options.scenes)) tree = tree_to_pick(options);
+  Scene scene =
+      tree ? std::move(tree->scene) : import_files(options.scenes, options.import_options);
   outputs.check_inputs();
   apply(overrides, scene);
   if (moves(scene))
@@ -210,7 +226,7 @@ void run_pick(const PickFlags& options, bool has_limit) {
     with_flag("--pixel", [&] { check_pixel(*pixel, scene.view.film); });
     ray = ray_of_pixel(scene, (*pixel)[0], (*pixel)[1]);
   }
-  const FlatScene flat = lower(scene);
+  const FlatScene flat = tree ? std::move(tree->file.scene) : lower(scene);
   try_device_apart(device, {.shapes = flat.shapes, .nearest = !options.all, .lists = options.all});
   SecondTry::guard(device);
   if (rays)

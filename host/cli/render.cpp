@@ -30,6 +30,7 @@
 #include "cli/presets.h"
 #include "cli/render_files.h"
 #include "cli/render_flags.h"
+#include "cli/trees.h"
 #include "cli/trial.h"
 #include "device/second_try.h"
 #include "display/tev.h"
@@ -212,8 +213,17 @@ void check_outputs(const RenderFlags& options, const Scene& scene, Layers layers
 
 /// Is thrown when an interrupt comes before there is anything to write.
 struct InterruptedEarly : RunError {
-  InterruptedEarly() : RunError("interrupted before anything was rendered; nothing is written") {}
+  static constexpr const char* message =
+      "interrupted before anything was rendered; nothing is written";
+  InterruptedEarly() : RunError(message) {}
 };
+
+/// Returns the last words of a program that is ended while it prepares a render, as of
+/// InterruptedEarly.
+std::string ended_early(bool keeps_film) {
+  return fmt::format("caplet: {}: {}\n", keeps_film ? "warning" : "error",
+                     InterruptedEarly::message);
+}
 
 void guard(const std::vector<Device>& devices) {
   for (const Device& device : devices) SecondTry::guard(device);
@@ -232,7 +242,7 @@ RenderResult with_progress(const std::vector<Device>& devices, const RenderOptio
   ProgressReporter reporter(ProgressReporter::style_for_stderr(quiet));
   try {
     return work([&](const Progress& progress) {
-      renew_user_signal_handler();
+      renew_user_signal_handler();  // a compiler may have replaced it
       if (progress.samples_done > 0 || progress.fraction >= 1)
         SecondTry::driver_works();
       else
@@ -267,6 +277,7 @@ struct Work {
   FilmOutput* film = nullptr;              // where the film is kept
   std::optional<double>* stops = nullptr;  // of the first of several frames, for all of them
   FlatScene* spent = nullptr;  // `flat`, where nothing needs it once the device has it; or null
+  const post::Sight* sight = nullptr;  // of the scene, where it is known; or null
 };
 
 std::map<std::string, std::string> notes_of(const Work& work, const RenderResult& result) {
@@ -418,7 +429,7 @@ RenderResult written(const Work& work, RenderResult result, report::RunSeconds& 
   report::Finish finish{overlays.layers(), work.layers, {}};
   if (overlays.any())
     finish.draw = [&](Shown& shown, const LayeredImage& layers) {
-      post::draw(shown, layers, work.scene, overlays);
+      post::draw(shown, layers, work.sight ? *work.sight : post::Sight(work.scene), overlays);
     };
   each_pair(work.files, [&](const fs::path& exr, const fs::path& preview) {
     report::write_pictures(exr, preview, picture, channels_of(work), result.render_seconds, finish);
@@ -489,8 +500,8 @@ RenderResult stereo_pictures(const Work& both, report::RunSeconds& seconds) {
   return std::move(out);
 }
 
-void tell_of_bar(const RenderFlags& options, const Scene& scene) {
-  const post::BarOnPicture bar = post::bar_of(*options.overlays.scale_bar, scene, "--scale-bar");
+void tell_of_bar(const RenderFlags& options, const post::Sight& sight) {
+  const post::BarOnPicture bar = post::bar_of(*options.overlays.scale_bar, sight, "--scale-bar");
   log::info("scale bar: {} are {:.1f} pixels{}", bar.label, bar.pixels,
             bar.distance ? fmt::format(" at {:.6g} before the camera, the middle of what is seen "
                                        "(--orthographic: everywhere)",
@@ -522,15 +533,6 @@ void frame_all(const RenderFlags& options, const FrameSource& source, const Over
   move_camera(first, all.view.camera);
 }
 
-/// Returns whether all outputs of a frame exist.
-bool is_there(const Files& files) {
-  std::error_code ignored;
-  const auto exists = [&](const fs::path& path) { return fs::is_regular_file(path, ignored); };
-  return std::ranges::all_of(files.pictures, exists) &&
-         std::ranges::all_of(files.previews, exists) &&
-         (files.deep.empty() || exists(files.deep)) && (files.depth.empty() || exists(files.depth));
-}
-
 /// Renders the frames one after the other. What they share (the device, its kernels, for a
 /// turntable the whole scene) is made once. Throws RunError when it is interrupted: each frame is
 /// then either complete or missing.
@@ -556,7 +558,7 @@ RenderResult render_frames(const Work& of_all, const FrameSource& source,
   const Clock::time_point began = Clock::now();
   for (std::uint32_t frame = source.range.first; frame <= source.range.last; ++frame) {
     Files files = of_frame(of_all.files, frame);
-    if (options.skip_existing && is_there(files)) continue;
+    if (options.skip_existing && are_there(files)) continue;
     if (movie) files.previews.push_back(movie->next());
     if (interrupt_requested())
       throw RunError(fmt::format("interrupted: {} of {} frames are written", made, count));
@@ -611,10 +613,10 @@ RenderResult render_frames(const Work& of_all, const FrameSource& source,
 }
 
 /// Returns what a film's file says besides its samples.
-SavedFilm saved_like(const Scene& scene, const FlatScene& flat, const FlatView& view,
+SavedFilm saved_like(const Scene& scene, const std::string& scene_fingerprint, const FlatView& view,
                      bool to_noise) {
   SavedFilm out;
-  out.scene = fingerprint(flat);
+  out.scene = scene_fingerprint;
   out.view = fingerprint(view);
   if (!to_noise)
     out.samples_wanted = static_cast<std::uint32_t>(scene.view.sampler.samples_per_pixel);
@@ -648,6 +650,16 @@ RenderOptions render_options_of(const RenderFlags& options, const Scene& scene, 
   return out;
 }
 
+/// Reads the tree file that is rendered, if it is one. Throws InputError for frames, which need the
+/// scene that it was built of.
+std::optional<Tree> tree_to_render(const RenderFlags& options) {
+  if (!is_tree(options.scenes)) return std::nullopt;
+  if (options.has_frames())
+    throw InputError({options.scenes.front()},
+                     "a tree file has no shapes, which frames need: render the scene itself");
+  return read_tree(options.scenes.front(), options.import_options);
+}
+
 void run_render(const RenderFlags& given, const Invocation& invocation) {
   Stopwatch total, phase;
   report::RunSeconds seconds;
@@ -659,13 +671,18 @@ void run_render(const RenderFlags& given, const Invocation& invocation) {
   install_interrupt_handlers();
   std::vector<Device> devices = choose_devices(given.device, given.encoding);
 
+  renew_user_signal_handler();  // drivers may have replaced it when they were loaded
+  std::optional<EndsAtOnce> early(std::in_place, ended_early(given.film.keeps()),
+                                  given.film.keeps() ? exit_stopped : 1);
   phase.lap();
+  std::optional<Tree> tree = tree_to_render(given);
   std::optional<FrameSource> frames;
   if (given.has_frames()) frames = source_of(given);
   if (!files.movie.empty())
     Movie(files.movie, given.frames_a_second, "-o");  // checks that it can be made
-  Scene scene = frames ? scene_of_frame(given, *frames, frames->range.first)
-                       : import_files(given.scenes, given.import_options);
+  Scene scene = tree     ? std::move(tree->scene)
+                : frames ? scene_of_frame(given, *frames, frames->range.first)
+                         : import_files(given.scenes, given.import_options);
   const RenderFlags options = with_noise_of(scene.view.sampler, given);
   const Layers layers = with_mattes(
       parse_layers(options.layers, options.variance || (options.noise && !options.layers)),
@@ -676,8 +693,10 @@ void run_render(const RenderFlags& given, const Invocation& invocation) {
   if (frames && !frames->has_one_scene()) frame_all(options, *frames, overrides, scene);
   if (scene.view.film.denoise && !options.denoise) check_denoiser("Film \"denoise\"");
   check_outputs(options, scene, layers, files);
-  post::check(options.overlays, scene, "--");
-  if (options.overlays.scale_bar && !options.quiet) tell_of_bar(options, scene);
+  std::optional<post::Sight> sight;
+  if (options.overlays.any()) sight = tree ? tree->sight(scene) : post::Sight(scene);
+  if (sight) post::check(options.overlays, *sight, "--");
+  if (options.overlays.scale_bar && !options.quiet) tell_of_bar(options, *sight);
   widen_to_least(scene);
   if (frames) read_poses_of(options, scene, *frames);
   const auto wanted = static_cast<std::uint32_t>(scene.view.sampler.samples_per_pixel);
@@ -687,8 +706,14 @@ void run_render(const RenderFlags& given, const Invocation& invocation) {
   seconds.load = phase.lap();
   // One picture needs the capsules of large scenes in no other form than the device's.
   const bool is_one = !frames && !options.separation;
-  FlatScene flat = is_one && !options.overlays.any() ? lower_and_release(scene) : lower(scene);
+  std::optional<StepNotice> notice(std::in_place, "building the tree",
+                                   ProgressReporter::style_for_stderr(options.quiet));
+  FlatScene flat = tree     ? std::move(tree->file.scene)
+                   : is_one ? lower_and_release(scene)
+                            : lower(scene);
   const FlatView view = lower_view(scene);
+  notice.reset();
+  early.reset();
   seconds.build = phase.lap();
   if (interrupt_requested()) throw InterruptedEarly();
 
@@ -703,16 +728,25 @@ void run_render(const RenderFlags& given, const Invocation& invocation) {
               names_of(devices));
   std::optional<FilmOutput> film;
   if (!files.film.empty())
-    film.emplace(files.film, saved_like(scene, flat, view, options.noise.has_value()),
+    film.emplace(files.film,
+                 saved_like(scene, tree ? tree->file.fingerprint : fingerprint(flat), view,
+                            options.noise.has_value()),
                  options.film.resume);
   const RenderOptions render_options =
       render_options_of(options, scene, files, samples, film_layers, film.has_value());
-  const Work work{options,        invocation,
-                  scene,          flat,
-                  devices,        layers,
-                  film_layers,    files,
-                  render_options, film ? &*film : nullptr,
-                  nullptr,        is_one ? &flat : nullptr};
+  const Work work{options,
+                  invocation,
+                  scene,
+                  flat,
+                  devices,
+                  layers,
+                  film_layers,
+                  files,
+                  render_options,
+                  film ? &*film : nullptr,
+                  nullptr,
+                  is_one ? &flat : nullptr,
+                  is_one && sight ? &*sight : nullptr};
   const RenderResult result = frames ? render_frames(work, *frames, overrides, scene, seconds)
                               : options.separation ? stereo_pictures(work, seconds)
                                                    : one_picture(work, view, seconds);

@@ -4,6 +4,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <system_error>
+
 #include "base/error.h"
 #include "cli/frames.h"
 #include "cli/options.h"
@@ -20,6 +23,16 @@ Files of_frame(const Files& files, std::uint32_t frame) {
   if (!files.deep.empty()) out.deep = numbered(files.deep, frame);
   if (!files.depth.empty()) out.depth = numbered(files.depth, frame);
   return out;
+}
+
+bool are_there(const Files& files) {
+  std::error_code ignored;
+  const auto exists = [&](const std::filesystem::path& path) {
+    return std::filesystem::is_regular_file(path, ignored);
+  };
+  return std::ranges::all_of(files.pictures, exists) &&
+         std::ranges::all_of(files.previews, exists) &&
+         (files.deep.empty() || exists(files.deep)) && (files.depth.empty() || exists(files.depth));
 }
 
 void add_preview(Files& files, const fs::path& path, const std::string& flag) {

@@ -34,6 +34,9 @@ struct Files {
 /// Returns them with the number of a frame filled in.
 Files of_frame(const Files& files, std::uint32_t frame);
 
+/// Returns whether all outputs of a frame exist.
+bool are_there(const Files& files);
+
 /// Adds a tone-mapped picture that `flag` names. Throws InputError for another format.
 void add_preview(Files& files, const std::filesystem::path& path, const std::string& flag);
 

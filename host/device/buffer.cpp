@@ -3,6 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstddef>
+#include <memory>
+#include <utility>
 
 #include "base/check.h"
 #include "device/cl_error.h"
@@ -26,6 +29,10 @@ void require_memory(const DeviceInfo& info, std::uint64_t bytes, std::uint64_t a
                   bytes, info.max_allocation_bytes, info.global_bytes, alive, info.name));
 }
 
+void CL_CALLBACK let_go(cl_mem, void* keeper) {
+  delete static_cast<std::shared_ptr<const void>*>(keeper);
+}
+
 }  // namespace
 
 RawBuffer::RawBuffer(const Device& device, std::size_t bytes, bool read_only, const void* contents)
@@ -44,6 +51,20 @@ RawBuffer::RawBuffer(const Device& device, std::size_t bytes, bool read_only, co
   accounting->add(size);
   accounted_ =
       std::shared_ptr<void>(nullptr, [accounting, size](void*) { accounting->remove(size); });
+}
+
+RawBuffer::RawBuffer(const Device& device, std::span<const std::byte> memory,
+                     std::shared_ptr<const void> keeper)
+    : device_(device), bytes_(memory.size()) {
+  CHECK_LE_(std::size_t{1}, memory.size());
+  require_memory(device.info(), memory.size(), 0);
+  auto kept = std::make_unique<std::shared_ptr<const void>>(std::move(keeper));
+  cl_call(fmt::format("buffer over {} bytes", bytes_), device.info().name, [&] {
+    buffer_ = cl::Buffer(device.context(), CL_MEM_READ_ONLY | CL_MEM_USE_HOST_PTR, memory.size(),
+                         const_cast<std::byte*>(memory.data()));
+    buffer_.setDestructorCallback(let_go, kept.get());
+  });
+  (void)kept.release();
 }
 
 void RawBuffer::read(void* to, std::size_t offset, std::size_t bytes) const {

@@ -13,6 +13,7 @@
 #include <string>
 #include <string_view>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "base/error.h"
@@ -149,6 +150,11 @@ class RawBuffer {
   RawBuffer() = default;
   /// Throws RunError when the device lacks the memory ("needs N bytes, the device allows M").
   RawBuffer(const Device& device, std::size_t bytes, bool read_only, const void* contents);
+  /// Is memory of this process where it lies, which a CPU reads. `keeper` lives until the driver
+  /// does not need the memory any more. It does not count as memory of the device. Throws RunError
+  /// when it is more than the device allows in one buffer.
+  RawBuffer(const Device& device, std::span<const std::byte> memory,
+            std::shared_ptr<const void> keeper);
   void read(void* to, std::size_t offset, std::size_t bytes) const;     // blocking
   void write(const void* from, std::size_t offset, std::size_t bytes);  // blocking
   void clear();  // zeros, in the order of the queue
@@ -170,6 +176,8 @@ class Buffer : public RawBuffer {
       : RawBuffer(device, count * sizeof(T), false, nullptr) {}
   Buffer(const Device& device, std::span<const T> contents)
       : RawBuffer(device, contents.size_bytes(), true, contents.data()) {}
+  Buffer(const Device& device, std::span<const T> memory, std::shared_ptr<const void> keeper)
+      : RawBuffer(device, std::as_bytes(memory), std::move(keeper)) {}
   std::size_t size() const { return bytes() / sizeof(T); }
   std::vector<T> read() const {
     std::vector<T> out(size());

@@ -43,6 +43,9 @@ constexpr std::pair<const char*, const char*> not_read[] = {
      "Neurolucida files are not read by the program; Python's caplet.from_morphio takes them as "
      "MorphIO reads them. Or write the "
      "morphology as SWC (morphio's Morphology.write)"},
+    {".tree",
+     "a tree of `caplet build` has no shapes: render, pick and info read it, and it alone; others "
+     "need the scene that it was built of"},
 };
 
 /// Returns the name of an XML file's root element, as far as its first 64 KiB show it; else empty.

@@ -69,6 +69,10 @@ std::vector<ImportOptionRow> format_options_of(std::span<const std::filesystem::
 Imported read_scene(const std::filesystem::path& path, const ImageReader& images,
                     const ImportOptions& options = {}, const Format* format = nullptr);
 
+/// Reads the pbrt text of a scene without content as if it were that of `file`. Throws InputError.
+Scene read_pbrt_text(const std::filesystem::path& file, std::string text,
+                     const ImageReader& images);
+
 /// Adds the camera and the light that the file lacks (present/present.h).
 Scene presented(Imported file);
 

@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <span>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -41,6 +42,10 @@ constexpr std::size_t piece_bytes = std::size_t{1} << 20;
 template <class T>
 std::string_view view_of(const std::vector<T>& values) {
   return {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T)};
+}
+template <class T>
+std::string_view view_of(std::span<const T> values) {
+  return {reinterpret_cast<const char*>(values.data()), values.size_bytes()};
 }
 template <class T>
 std::string_view view_of(const T& record) {
@@ -88,7 +93,8 @@ std::string SceneFingerprint::of(const FlatScene& scene) {
     buffer.bytes = bytes.size();
     unknown.add(bytes, buffer.pieces);
   };
-#define BUFFER(name, type, access) find(view_of(scene.name), buffers_.name);
+  const SceneArrays arrays = scene.arrays();
+#define BUFFER(name, type, access) find(view_of(arrays.name), buffers_.name);
   SCENE_GROUPS
 #undef BUFFER
   unknown.hash();

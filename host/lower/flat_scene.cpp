@@ -12,12 +12,12 @@ namespace caplet {
 namespace {
 
 template <class T>
-std::uint64_t bytes_of(const std::vector<T>& values) {
-  return values.size() * sizeof(T);
+std::span<const T> array_of(const std::vector<T>& values) {
+  return values;
 }
 template <class T>
-std::uint64_t bytes_of(const T& record) {
-  return sizeof(record);
+std::span<const T> array_of(const T& record) {
+  return {&record, 1};
 }
 
 template <class Record>
@@ -56,20 +56,32 @@ bool FlatScene::multiscatters() const {
   });
 }
 
+SceneArrays FlatScene::arrays() const {
+  SceneArrays out;
+#define GROUP_BEGIN(Type, group)
+#define GROUP_END(Type)
+#define BUFFER(name, type, access) \
+  out.name = in_file && !in_file->name.empty() ? in_file->name : array_of(name);
+  SCENE_GROUPS
+#undef BUFFER
+  return out;
+}
+
 std::uint64_t FlatScene::geometry_bytes() const {
-  return bytes_of(nodes) + bytes_of(leaves) + bytes_of(primitive_geometry) + bytes_of(instances) +
-         bytes_of(mesh_indices) + bytes_of(mesh_normals) + bytes_of(mesh_uvs);
+  const SceneArrays all = arrays();
+  return all.nodes.size_bytes() + all.leaves.size_bytes() + all.primitive_geometry.size_bytes() +
+         all.instances.size_bytes() + all.mesh_indices.size_bytes() +
+         all.mesh_normals.size_bytes() + all.mesh_uvs.size_bytes();
 }
 
 std::uint64_t FlatScene::device_bytes() const {
+  const SceneArrays all = arrays();
   std::uint64_t bytes = 0;
-#define GROUP_BEGIN(Type, group)
-#define GROUP_END(Type)
-#define BUFFER(name, type, access) bytes += bytes_of(name);
+#define BUFFER(name, type, access) bytes += all.name.size_bytes();
   SCENE_GROUPS
+#undef BUFFER
 #undef GROUP_BEGIN
 #undef GROUP_END
-#undef BUFFER
   return bytes;
 }
 

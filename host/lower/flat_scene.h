@@ -7,6 +7,8 @@
 
 #include <cmath>
 #include <cstdint>
+#include <memory>
+#include <span>
 #include <vector>
 
 #include "shared/groups.h"
@@ -18,12 +20,28 @@ namespace caplet {
 #define GROUP_BEGIN(Type, group)
 #define GROUP_END(Type)
 #define BUFFER(name, type, access) access(type) name{};
+#define ONE(type) std::span<const type>
+#define IN(type) std::span<const type>
+
+/// SceneArrays tells where each array of a scene lies; a record is an array of one.
+struct SceneArrays {
+  SCENE_GROUPS
+};
+
+#undef ONE
+#undef IN
 #define ONE(type) type
 #define IN(type) std::vector<type>
 
 /// FlatScene is everything that a device needs of a scene, whatever the view.
 struct FlatScene {
   SCENE_GROUPS
+
+  /// Arrays that lie in a file in place of the members, which are empty then (tree_file.h); null:
+  /// none do. What the pointer holds keeps the file's memory.
+  std::shared_ptr<const SceneArrays> in_file{};
+  /// Returns where the arrays are, in the file or in the members.
+  SceneArrays arrays() const;
 
   // Kernels are built for these (stage_options): the kinds of shapes there are (bit k: kind k),
   // operands of csg among them, and the bits of leaf references for them.

@@ -5,6 +5,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <memory>
+#include <string_view>
 
 #include "base/check.h"
 #include "base/memory.h"
@@ -40,6 +42,15 @@ std::span<const T> contents(const std::vector<T>& values) {
 template <class T>
 std::span<const T> contents(const T& record) {
   return {&record, 1};
+}
+
+/// Sends an array. One that lies in a file stays there where the device is a CPU.
+template <class T>
+Buffer<T> sent(const Device& device, std::span<const T> array, std::span<const T> in_file,
+               const std::shared_ptr<const SceneArrays>& file) {
+  if (device.is_cpu() && !array.empty() && array.data() == in_file.data())
+    return {device, array, file};
+  return {device, array};
 }
 
 // Changes nearer to each other than this are sent as one: a call costs more than so many bytes.
@@ -105,34 +116,25 @@ std::uint64_t send_packed(const Device& device, std::span<const float> nodes,
   return bytes;
 }
 
-/// Returns what devices are sent of an array of a scene: the array itself, except for nodes that
-/// must be packed.
-template <class T>
-const T& sent_of(const T& values, const FlatScene&, const std::vector<float>&) {
-  return values;
-}
-const std::vector<float>& sent_of(const std::vector<float>& values, const FlatScene& flat,
-                                  const std::vector<float>& packed) {
-  return &values == &flat.nodes && !packed.empty() ? packed : values;
-}
-
 /// Throws RunError that names the buffer that is too large. A buffer is one allocation: several for
 /// the leaves, the largest, would be chosen between in some forty places of the innermost loops.
-void require_fit(const Device& device, const FlatScene& flat, const std::vector<float>& packed) {
+/// Arrays that stay in a file take none of the device's memory.
+void require_fit(const Device& device, const SceneArrays& arrays, const SceneArrays& in_file) {
   const DeviceInfo& info = device.info();
   constexpr double megabytes = 1e-6;
   const char* largest = "";
   std::uint64_t largest_bytes = 0, all_bytes = 0;
-  const auto add = [&](const char* name, std::uint64_t bytes) {
-    all_bytes += bytes;
+  const auto add = [&]<class T>(const char* name, std::span<const T> array,
+                                std::span<const T> stays) {
+    const std::uint64_t bytes = array.size_bytes();
+    if (!device.is_cpu() || array.data() != stays.data()) all_bytes += bytes;
     if (bytes <= largest_bytes) return;
     largest = name;
     largest_bytes = bytes;
   };
 #define GROUP_BEGIN(Type, group)
 #define GROUP_END(Type)
-#define BUFFER(name, type, access) \
-  add(#name, contents(sent_of(flat.name, flat, packed)).size_bytes());
+#define BUFFER(name, type, access) add(#name, arrays.name, in_file.name);
   SCENE_GROUPS
 #undef GROUP_BEGIN
 #undef GROUP_END
@@ -168,29 +170,40 @@ std::vector<std::uint64_t> bytes_of_path(const PathNeeds& needs) {
   {                              \
     auto& buffers = this->group;
 #define BUFFER(name, type, access) \
-  buffers.name = Buffer<type>(device, contents(sent_of(flat.name, flat, packed)));
+  buffers.name = sent<type>(device, arrays.name, in_file.name, flat.in_file);
 #define GROUP_END(Type) }
 SceneBuffers::SceneBuffers(const Device& device, const FlatScene& flat, Encoding encoding)
     : encoding_(encoding == Encoding::automatic ? device.encoding() : encoding) {
-  const std::vector<float> packed =
-      encoding_ == Encoding::single ? packed_nodes(flat.nodes) : std::vector<float>{};
-  require_fit(device, flat, packed);
+  SceneArrays arrays = flat.arrays();
+  const SceneArrays in_file = flat.in_file ? *flat.in_file : SceneArrays{};
+  std::vector<float> packed;
+  if (encoding_ == Encoding::single) {
+    packed = packed_nodes(arrays.nodes);
+    arrays.nodes = packed;
+  }
+  require_fit(device, arrays, in_file);
   SCENE_GROUPS
 }
 #undef BUFFER
 #define BUFFER(name, type, access) \
-  if (!is_sent(&flat.name)) buffers.name = Buffer<type>(device, contents(flat.name));
+  if (!is_sent(#name)) buffers.name = sent<type>(device, arrays.name, in_file.name, flat.in_file);
 SceneBuffers::SceneBuffers(const Device& device, FlatScene&& flat) : encoding_(device.encoding()) {
+  SceneArrays arrays = flat.arrays();
+  const SceneArrays in_file = flat.in_file ? *flat.in_file : SceneArrays{};
   std::vector<float> packed;
   if (encoding_ == Encoding::single) {
-    packed = packed_nodes(flat.nodes);
+    packed = packed_nodes(arrays.nodes);
     flat.nodes = {};
+    arrays.nodes = packed;
   }
-  require_fit(device, flat, packed);
-  tree.nodes = sent_in_parts(device, packed.empty() ? flat.nodes : packed);
-  tree.leaves = sent_in_parts(device, flat.leaves);
-  const auto is_sent = [&flat](const void* array) {
-    return array == &flat.nodes || array == &flat.leaves;
+  require_fit(device, arrays, in_file);
+  const bool sends_own = !flat.in_file;
+  if (sends_own) {
+    tree.nodes = sent_in_parts(device, packed.empty() ? flat.nodes : packed);
+    tree.leaves = sent_in_parts(device, flat.leaves);
+  }
+  const auto is_sent = [sends_own](std::string_view array) {
+    return sends_own && (array == "nodes" || array == "leaves");
   };
   SCENE_GROUPS
 }

@@ -108,7 +108,7 @@ nlohmann::ordered_json scene_summary(const Scene& scene, const FlatScene& flat) 
   else
     out["bounds"] = {{"min", to_json(bounds.min)}, {"max", to_json(bounds.max)}};
   out["materials"] = scene.materials.size();
-  out["lights"] = light_count(flat);
+  out["lights"] = nullptr;
   out["objects"] = scene.objects.size();
   out["instances"] = scene.instances.size();
   out["moving"] = std::ranges::count_if(scene.instances,
@@ -119,9 +119,15 @@ nlohmann::ordered_json scene_summary(const Scene& scene, const FlatScene& flat) 
   out["samples_per_pixel"] = scene.view.sampler.samples_per_pixel;
   if (scene.view.sampler.noise > 0) out["noise"] = scene.view.sampler.noise;
   out["max_depth"] = scene.view.integrator.max_depth;
-  out["bytes"] = {{"host", model_bytes(scene)}, {"device", flat.device_bytes()}};
-  out["bvh"] = {{"nodes", flat.bvh_nodes}, {"depth", flat.bvh_depth}, {"sah", flat.bvh_sah}};
+  out["bytes"] = {{"host", model_bytes(scene)}};
+  tell_lowered(out, flat);
   return out;
+}
+
+void tell_lowered(nlohmann::ordered_json& summary, const FlatScene& flat) {
+  summary["lights"] = light_count(flat);
+  summary["bytes"]["device"] = flat.device_bytes();
+  summary["bvh"] = {{"nodes", flat.bvh_nodes}, {"depth", flat.bvh_depth}, {"sah", flat.bvh_sah}};
 }
 
 nlohmann::ordered_json run_summary(const RunSeconds& seconds, const RenderResult& result) {

@@ -22,6 +22,8 @@ std::uint64_t peak_process_bytes();
 
 /// Returns primitives, bounds, materials, lights, bytes, bvh (docs/cli.md).
 nlohmann::ordered_json scene_summary(const Scene& scene, const FlatScene& flat);
+/// Replaces what a summary says of the lowered scene: lights, bytes on devices and the tree.
+void tell_lowered(nlohmann::ordered_json& summary, const FlatScene& flat);
 
 struct RunSeconds {
   double load = 0, build = 0, compile = 0, render = 0, denoise = 0, write = 0, total = 0;

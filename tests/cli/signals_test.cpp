@@ -6,6 +6,8 @@
 #include <gtest/gtest.h>
 #include <signal.h>
 
+#include <fstream>
+
 #include "film/image.h"
 #include "program.h"
 #include "support/data.h"
@@ -16,6 +18,7 @@ namespace {
 namespace fs = std::filesystem;
 using test::Result;
 using testing::HasSubstr;
+using testing::Not;
 
 constexpr const char* endless = "16000000";  // samples
 
@@ -61,6 +64,41 @@ TEST(Signals, TheSecondEndsAtOnce) {
   const Result result = running.wait(60);
   EXPECT_TRUE(result.signal == SIGINT || result.signal == SIGTERM) << result.code << result.err;
   EXPECT_EQ(test::names_in(folder), std::vector<std::string>{"scene.pbrt"});
+}
+
+/// A scene that takes seconds to read, and is wrong at its end.
+fs::path folder_with_long_scene() {
+  std::string text, statements;
+  for (int i = 0; i < 100000; ++i) statements += "Identity\n";
+  for (int i = 0; i < 250; ++i) text += "Include \"statements.pbrt\"\n";
+  const fs::path folder =
+      test::folder_with_scene("Camera \"perspective\"\nWorldBegin\n" + text + "Nonsense\n");
+  std::ofstream(folder / "statements.pbrt") << statements;
+  return folder;
+}
+
+TEST(Signals, EndAtOnceWhileASceneIsRead) {
+  const fs::path folder = folder_with_long_scene();
+  const auto before = test::names_in(folder);
+  const auto ended = [&](std::vector<std::string> arguments, int signal) {
+    test::Running running(arguments, folder, {}, {}, test::Running::Stderr::terminal);
+    EXPECT_TRUE(running.wait_for_stderr("reading scene.pbrt: 1 s"));
+    running.send(signal);
+    return running.wait();
+  };
+  const Result picture = ended({"render", "scene.pbrt", "-o", "out.exr"}, SIGINT);
+  EXPECT_EQ(picture.code, 1) << picture.err;
+  EXPECT_THAT(picture.err,
+              HasSubstr("caplet: error: interrupted before anything was rendered; nothing is"));
+  EXPECT_THAT(picture.err, Not(HasSubstr("Nonsense")));
+  const Result film =
+      ended({"render", "scene.pbrt", "-o", "out.exr", "--film", "f.caplet"}, SIGUSR1);
+  EXPECT_EQ(film.code, 75) << film.err;
+  EXPECT_THAT(film.err, HasSubstr("caplet: warning: interrupted before anything was rendered"));
+  const Result tree = ended({"build", "scene.pbrt", "out.tree"}, SIGTERM);
+  EXPECT_EQ(tree.code, 1) << tree.err;
+  EXPECT_THAT(tree.err, HasSubstr("caplet: error: interrupted; nothing is written"));
+  EXPECT_EQ(test::names_in(folder), before);
 }
 
 TEST(NoDevice, IsAFailureNotAUsageError) {

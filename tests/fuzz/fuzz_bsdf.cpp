@@ -140,7 +140,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     Diagnostics diagnostics;
     validate(scene, diagnostics);
     diagnostics.finish();
-    const SceneArrays arrays({lower(scene), lower_view(scene)});
+    const caplet::test::SceneArrays arrays({lower(scene), lower_view(scene)});
     for (int i = 0; i < 16 && (i < 2 || !numbers.ended()); ++i) {
       float lambda[4];
       camera(arrays.groups(), scene, numbers, lambda);

@@ -90,7 +90,7 @@ Builder::Builder(std::string main_file, const ImageReader& images)
   building_.draft.scene.source = building_.draft.main_file;
 }
 
-Imported Builder::finish() {
+Imported Builder::finish(bool needs_light) {
   Draft& draft = building_.draft;
   states_.report_unclosed();
   if (!building_.in_world && !draft.diagnostics.has_errors())
@@ -101,7 +101,7 @@ Imported Builder::finish() {
   draft.scene.view.sampler.seed =
       building_.sampler_seed.value_or(building_.option_seed.value_or(0));
   const bool lit = is_lit(draft.scene);
-  if (building_.has_camera && !lit)
+  if (needs_light && building_.has_camera && !lit)
     draft.diagnostics.warning({draft.main_file}, "the scene has no light: its picture is black");
   Imported out(std::move(draft.scene));
   out.has_camera = building_.has_camera;

@@ -169,8 +169,9 @@ class Builder {
   Builder(std::string main_file, const ImageReader& images);
   Diagnostics& diagnostics() { return building_.draft.diagnostics; }
   Target target() { return {options_, transforms_, states_, scenes_}; }
-  /// Resolves what is left. Throws InputError with all errors.
-  Imported finish();
+  /// Resolves what is left. `needs_light`: warns of a scene that has a camera and no light. Throws
+  /// InputError with all errors.
+  Imported finish(bool needs_light = true);
 
  private:
   Building building_;
