@@ -99,10 +99,10 @@ _caplet_scenes() {
 }
 )sh";
 
-std::string extension_patterns() {
-  std::string out = "*" + replaced(scene_extensions(), " ", " | *");
-  return out;
-}
+/// Returns the extensions of scene files, and of trees in place of them.
+std::string file_extensions() { return scene_extensions() + " .tree"; }
+
+std::string extension_patterns() { return "*" + replaced(file_extensions(), " ", " | *"); }
 
 std::string bash_command(const CommandText& command) {
   std::string out = fmt::format("    {})\n      options={}\n      case $previous in\n",
@@ -183,8 +183,7 @@ std::string fish_values(const Values& values) {
   if (!values.list_words.empty())
     parts.push_back(fmt::format("(__fish_append , {})", joined(values.list_words)));
   if (values.devices) parts.emplace_back("(__caplet_devices)");
-  if (values.scenes)
-    parts.push_back(fmt::format("(__fish_complete_suffix {})", scene_extensions()));
+  if (values.scenes) parts.push_back(fmt::format("(__fish_complete_suffix {})", file_extensions()));
   if (values.folders && !values.files) parts.emplace_back("(__fish_complete_directories)");
   return joined(parts);
 }
@@ -260,7 +259,7 @@ _caplet_list() {
 }
 
 )sh";
-  std::string globs = replaced(scene_extensions(), " .", "|");
+  std::string globs = replaced(file_extensions(), " .", "|");
   if (globs.starts_with('.')) globs.erase(0, 1);
   out += fmt::format("_caplet_scenes() {{ _files -g '*.({})(-.)'; }}\n", globs);
   out +=

@@ -266,10 +266,10 @@ TEST(Texts, BashCompletesCommandsAndValues) {
 TEST(Texts, BashCompletesFiles) {
   const Bash bash;
   fs::create_directories(bash.folder() / "my scenes");
-  for (const char* name : {"my neuron.swc", "mesh.ply.gz", "my notes.txt"})
+  for (const char* name : {"my neuron.swc", "mesh.ply.gz", "m.tree", "my notes.txt"})
     test::write_file(bash.folder() / name, "");
   EXPECT_THAT(bash.offers({"render", "m"}),
-              UnorderedElementsAre("my neuron.swc", "my scenes", "mesh.ply.gz"));
+              UnorderedElementsAre("my neuron.swc", "my scenes", "mesh.ply.gz", "m.tree"));
   EXPECT_THAT(bash.offers({"render", "scene.pbrt", "my n"}), ElementsAre("my neuron.swc"));
   EXPECT_THAT(bash.offers({"render", "--stats", "my"}),
               UnorderedElementsAre("my neuron.swc", "my notes.txt", "my scenes"));
