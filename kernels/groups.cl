@@ -5,6 +5,7 @@
 #ifndef CAPLET_GROUPS_CL
 #define CAPLET_GROUPS_CL
 
+#include "math/leaves.cl"
 #include "shared/groups.h"
 #include "shared/records.h"
 
@@ -37,6 +38,21 @@ ALL_GROUPS
 #undef GROUP_END
 #undef TREE_TIME
 #define TREE_TIME
+
+// Returns where a tree's leaves lie.
+static inline Leaves leaves_of(const Tree* tree) {
+#ifdef CAPLET_LEAF_PART
+  const Leaves out = {tree->leaves, tree->leaves_1, tree->leaves_2, tree->leaves_3};
+  return out;
+#else
+  return tree->leaves;
+#endif
+}
+
+// Returns the leaf block that begins at `row`.
+static inline __global const float* leaf_block(const Tree* tree, uint row) {
+  return leaf_at(leaves_of(tree), (size_t)row * 8);
+}
 
 // Scene holds what sampling a light needs: its shape, its surfaces, its spectrum, and the materials
 // that let rays through it.

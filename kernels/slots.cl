@@ -23,10 +23,11 @@ static inline uint slot_place(uint slot) {
 }
 
 // Returns the id of the primitive at a slot.
-static inline uint primitive_at(__global const float* leaves, uint slot) {
+static inline uint primitive_at(const Tree* tree, uint slot) {
   const uint place = slot_place(slot);
-  if (any_linked_shape && place != slot) return as_uint(leaves[place & ~7u]) + (place & 7u);
-  return as_uint(leaves[place]);
+  if (any_linked_shape && place != slot)
+    return as_uint(*leaf_at(leaves_of(tree), place & ~7u)) + (place & 7u);
+  return as_uint(*leaf_at(leaves_of(tree), place));
 }
 
 // Returns the number of the geometry of a primitive.
@@ -38,18 +39,18 @@ static inline uint geometry_of(const Surfaces* surfaces, uint primitive) {
 
 // Returns the number of the geometry at a slot.
 static inline uint geometry_at(const Tree* tree, const Surfaces* surfaces, uint slot) {
-  return geometry_of(surfaces, primitive_at(tree->leaves, slot));
+  return geometry_of(surfaces, primitive_at(tree, slot));
 }
 
 // Returns the data of the primitive at a slot (shapes/fields.cl; linked capsules have a surface
 // function of their own).
-static inline __global const float* slot_data(__global const float* leaves, uint slot) {
-  return leaves + 8 + slot_place(slot);
+static inline __global const float* slot_data(const Tree* tree, uint slot) {
+  return leaf_at(leaves_of(tree), slot_place(slot)) + 8;
 }
 
 // Returns the u at both ends of the linked capsule of a chain at a slot.
-static inline __global const float* linked_u(__global const float* leaves, uint slot) {
-  return leaves + slot_place(slot) + CAPLET_LINK_U;
+static inline __global const float* linked_u(const Tree* tree, uint slot) {
+  return leaf_at(leaves_of(tree), slot_place(slot)) + CAPLET_LINK_U;
 }
 
 #endif

@@ -5,12 +5,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <memory>
 #include <string_view>
 
 #include "base/check.h"
 #include "base/memory.h"
 #include "lower/packed_nodes.h"
+#include "render/detail/leaf_parts.h"
 
 namespace caplet {
 
@@ -116,8 +118,24 @@ std::uint64_t send_packed(const Device& device, std::span<const float> nodes,
   return bytes;
 }
 
-/// Throws RunError that names the buffer that is too large. A buffer is one allocation: several for
-/// the leaves, the largest, would be chosen between in some forty places of the innermost loops.
+/// Where the arrays of a scene lie, and which of them in a file, with their leaves divided.
+struct Divided {
+  SceneArrays arrays, in_file;
+  std::size_t leaf_distance = 0;
+  Divided(const Device& device, const FlatScene& flat)
+      : arrays(flat.arrays()), in_file(flat.in_file ? *flat.in_file : SceneArrays{}) {
+    for (SceneArrays* of : {&in_file, &arrays}) {
+      const LeafParts divided = leaf_parts(device, of->leaves);
+      of->leaves = divided.parts[0];
+      of->leaves_1 = divided.parts[1];
+      of->leaves_2 = divided.parts[2];
+      of->leaves_3 = divided.parts[3];
+      leaf_distance = divided.distance;
+    }
+  }
+};
+
+/// Throws RunError that names the buffer that is too large.
 /// Arrays that stay in a file take none of the device's memory.
 void require_fit(const Device& device, const SceneArrays& arrays, const SceneArrays& in_file) {
   const DeviceInfo& info = device.info();
@@ -143,7 +161,7 @@ void require_fit(const Device& device, const SceneArrays& arrays, const SceneArr
       info.global_bytes - std::min(info.global_bytes, device.bytes_allocated());
   if (all_bytes <= left && largest_bytes <= info.max_allocation_bytes) return;
   throw RunError(fmt::format(
-      "the scene takes {:.0f} MB on a device, {:.0f} MB of them in one buffer ({}); device '{}' "
+      "the scene takes {:.0f} MB on a device, and {:.0f} MB in one buffer ({}); device '{}' "
       "has {:.0f} MB left, and allows "
       "{:.0f} MB in one buffer",
       static_cast<double>(all_bytes) * megabytes, static_cast<double>(largest_bytes) * megabytes,
@@ -174,8 +192,9 @@ std::vector<std::uint64_t> bytes_of_path(const PathNeeds& needs) {
 #define GROUP_END(Type) }
 SceneBuffers::SceneBuffers(const Device& device, const FlatScene& flat, Encoding encoding)
     : encoding_(encoding == Encoding::automatic ? device.encoding() : encoding) {
-  SceneArrays arrays = flat.arrays();
-  const SceneArrays in_file = flat.in_file ? *flat.in_file : SceneArrays{};
+  Divided divided(device, flat);
+  auto& [arrays, in_file, leaf_distance] = divided;
+  leaf_distance_ = leaf_distance;
   std::vector<float> packed;
   if (encoding_ == Encoding::single) {
     packed = packed_nodes(arrays.nodes);
@@ -188,8 +207,9 @@ SceneBuffers::SceneBuffers(const Device& device, const FlatScene& flat, Encoding
 #define BUFFER(name, type, access) \
   if (!is_sent(#name)) buffers.name = sent<type>(device, arrays.name, in_file.name, flat.in_file);
 SceneBuffers::SceneBuffers(const Device& device, FlatScene&& flat) : encoding_(device.encoding()) {
-  SceneArrays arrays = flat.arrays();
-  const SceneArrays in_file = flat.in_file ? *flat.in_file : SceneArrays{};
+  Divided divided(device, flat);
+  auto& [arrays, in_file, leaf_distance] = divided;
+  leaf_distance_ = leaf_distance;
   std::vector<float> packed;
   if (encoding_ == Encoding::single) {
     packed = packed_nodes(arrays.nodes);
@@ -197,15 +217,15 @@ SceneBuffers::SceneBuffers(const Device& device, FlatScene&& flat) : encoding_(d
     arrays.nodes = packed;
   }
   require_fit(device, arrays, in_file);
-  const bool sends_own = !flat.in_file;
-  if (sends_own) {
-    tree.nodes = sent_in_parts(device, packed.empty() ? flat.nodes : packed);
-    tree.leaves = sent_in_parts(device, flat.leaves);
-  }
-  const auto is_sent = [sends_own](std::string_view array) {
-    return sends_own && (array == "nodes" || array == "leaves");
+  // Parts of leaves overlap, and are sent before their memory is given back.
+  const bool sends_nodes = !flat.in_file, sends_leaves = sends_nodes && leaf_distance_ == 0;
+  if (sends_nodes) tree.nodes = sent_in_parts(device, packed.empty() ? flat.nodes : packed);
+  if (sends_leaves) tree.leaves = sent_in_parts(device, flat.leaves);
+  const auto is_sent = [=](std::string_view array) {
+    return array == "nodes" ? sends_nodes : array == "leaves" && sends_leaves;
   };
   SCENE_GROUPS
+  if (sends_nodes) flat.leaves = {};
 }
 #undef BUFFER
 #define BUFFER(name, type, access) buffers.name = Buffer<type>(device, contents(flat.name));
@@ -224,8 +244,12 @@ std::uint64_t SceneBuffers::update(const Device& device, const FlatScene& flat,
   std::uint64_t bytes = 0;
   const bool packs = encoding_ == Encoding::single;
   if (packs) bytes += send_packed(device, flat.nodes, changes.nodes, changes.all, tree.nodes);
-#define BUFFER(name, type, access)                                                             \
-  if (!packs || static_cast<const void*>(&flat.name) != static_cast<const void*>(&flat.nodes)) \
+  bytes += update_leaves(device, flat, changes.leaves, changes.all);
+  const auto is_done = [packs](std::string_view array) {
+    return array.starts_with("leaves") || (packs && array == "nodes");
+  };
+#define BUFFER(name, type, access) \
+  if (!is_done(#name))             \
     bytes += send<type>(device, contents(flat.name), changes.name, changes.all, buffers.name);
   SCENE_GROUPS
 #undef BUFFER
@@ -233,6 +257,39 @@ std::uint64_t SceneBuffers::update(const Device& device, const FlatScene& flat,
 }
 #undef GROUP_BEGIN
 #undef GROUP_END
+
+std::uint64_t SceneBuffers::update_leaves(const Device& device, const FlatScene& flat,
+                                          const ChangedRanges& changed, bool all) {
+  const LeafParts divided = leaf_parts(device, flat.leaves);
+  all |= divided.distance != leaf_distance_;
+  leaf_distance_ = divided.distance;
+  std::array<Buffer<float>*, 4> buffers{&tree.leaves, &tree.leaves_1, &tree.leaves_2,
+                                        &tree.leaves_3};
+  if (divided.distance == 0) {
+    if (all)
+      for (Buffer<float>* part : std::span(buffers).subspan(1))
+        *part = Buffer<float>(device, std::size_t{0});
+    return send<float>(device, flat.leaves, changed, all, tree.leaves);
+  }
+  std::uint64_t bytes = 0;
+  for (std::size_t i = 0; i < buffers.size(); ++i) {
+    const std::span<const float> part = divided.parts[i];
+    const std::size_t begin = i * divided.distance;
+    ChangedRanges own;
+    for (const ChangedRange& range : changed.joined(0)) {
+      const std::size_t from = std::max(range.begin, begin),
+                        to = std::min(range.end, begin + part.size());
+      if (from < to) own.add(from - begin, to - from);
+    }
+    const bool is_new = all || part.size() > buffers[i]->size();
+    if (is_new)
+      *buffers[i] = Buffer<float>(device, part);  // of this length, which is the longest
+    else
+      bytes += send<float>(device, part, own, false, *buffers[i]);
+    if (is_new) bytes += part.size_bytes();
+  }
+  return bytes;
+}
 
 void PathBuffers::provide(const Device& device, std::size_t paths, const PathNeeds& needs) {
   const PathPlaces places(needs);

@@ -60,9 +60,15 @@ struct SceneBuffers {
   /// with some room to grow.
   std::uint64_t update(const Device& device, const FlatScene& scene, const SceneChanges& changes);
   void bind(Bindings& bindings) const;
+  /// Returns the floats by which parts of the leaves begin one after the other, for which kernels
+  /// are built; 0: they are in one buffer.
+  std::size_t leaf_distance() const { return leaf_distance_; }
 
  private:
+  std::uint64_t update_leaves(const Device& device, const FlatScene& scene,
+                              const ChangedRanges& changed, bool all);
   Encoding encoding_;
+  std::size_t leaf_distance_ = 0;  // of parts of the leaves; 0: they are whole
 };
 
 /// SensorBuffers are the groups of a view.

@@ -49,7 +49,7 @@ DeviceScene::DeviceScene(const Device& device, FlatScene&& scene)
 
 DeviceScene::DeviceScene(const Device& device, const FlatScene& scene, SceneBuffers buffers)
     : device_(device),
-      options_(stage_options(scene, device)),
+      options_(stage_options(scene, device, buffers.leaf_distance())),
       buffers_(std::move(buffers)),
       kernels_(device, options_),
       world_(scene.world),
@@ -73,7 +73,8 @@ void DeviceScene::update(const FlatScene& scene, const SceneChanges& changes) {
   bvh_nodes_ = scene.bvh_nodes;
   // A kind that has disappeared may come back: kernels that have it are kept, so that no picture
   // waits for a compiler.
-  if (StageOptions options = options_.together_with(stage_options(scene, device_));
+  if (StageOptions options =
+          options_.together_with(stage_options(scene, device_, buffers_.leaf_distance()));
       options != options_) {
     kernels_ = Kernels(device_, options);
     options_ = std::move(options);

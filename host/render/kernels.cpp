@@ -17,6 +17,7 @@
 #include "lower/all_rows.h"
 #include "render/detail/known_rays.h"
 #include "render/detail/launch_policy.h"
+#include "render/detail/leaf_parts.h"
 #include "shared/shapes.h"
 
 namespace caplet {
@@ -141,21 +142,28 @@ std::string options_of(std::string_view source, std::string_view options) {
 }
 
 StageOptions stage_options(const FlatScene& scene, const Device& device) {
+  return stage_options(scene, device, leaf_parts(device, scene.arrays().leaves).distance);
+}
+
+StageOptions stage_options(const FlatScene& scene, const Device& device,
+                           std::size_t leaf_distance) {
   const bool all = for_all_rows();
-  StageOptions out{fmt::format("-DCAPLET_REAL_WIDTH={} -DCAPLET_LEAF_KIND_BITS={}{}{}{}{}{}",
-                               device.encoding() == Encoding::wide ? 8 : 1, scene.leaf_kind_bits,
-                               !scene.light_nodes.empty() ? " -DCAPLET_LIGHT_TREE" : "",
-                               scene.sky_is_unseen ? " -DCAPLET_UNSEEN_SKY" : "",
-                               scene.moves() ? " -DCAPLET_MOTION" : "",
-                               scene.has_chains || all ? " -DCAPLET_CHAINS" : "",
-                               scene.multiscatters() || all ? " -DCAPLET_MULTISCATTER" : ""),
-                   {{"shapes", shapes_on_trial(scene.shapes)},
-                    {"materials", scene.material_kinds()},
-                    {"textures", scene.texture_kinds()},
-                    {"lights", scene.light_kinds()},
-                    {"media", scene.medium_kinds()},
-                    {"samplers", 0},  // DeviceScene::prepare_for
-                    {"cameras", 0}}};
+  StageOptions out{
+      fmt::format("-DCAPLET_REAL_WIDTH={} -DCAPLET_LEAF_KIND_BITS={}{}{}{}{}{}{}",
+                  device.encoding() == Encoding::wide ? 8 : 1, scene.leaf_kind_bits,
+                  !scene.light_nodes.empty() ? " -DCAPLET_LIGHT_TREE" : "",
+                  scene.sky_is_unseen ? " -DCAPLET_UNSEEN_SKY" : "",
+                  scene.moves() ? " -DCAPLET_MOTION" : "",
+                  scene.has_chains || all ? " -DCAPLET_CHAINS" : "",
+                  scene.multiscatters() || all ? " -DCAPLET_MULTISCATTER" : "",
+                  leaf_distance > 0 ? fmt::format(" -DCAPLET_LEAF_PART={}UL", leaf_distance) : ""),
+      {{"shapes", shapes_on_trial(scene.shapes)},
+       {"materials", scene.material_kinds()},
+       {"textures", scene.texture_kinds()},
+       {"lights", scene.light_kinds()},
+       {"media", scene.medium_kinds()},
+       {"samplers", 0},  // DeviceScene::prepare_for
+       {"cameras", 0}}};
   if (all)
     for (auto& [list, rows] : out.rows) rows = ~std::uint64_t{0};
   // Programs without times have no shapes that move.

@@ -63,6 +63,8 @@ std::string options_of(std::string_view source, std::string_view options);
 /// Returns the options for a scene, or those for all rows of the lists (for_all_rows): pictures are
 /// the same. Throws InputError as for_all_rows does.
 StageOptions stage_options(const FlatScene& scene, const Device& device);
+/// Does the same for leaves that were divided (SceneBuffers::leaf_distance).
+StageOptions stage_options(const FlatScene& scene, const Device& device, std::size_t leaf_distance);
 
 /// Returns the OpenCL C of a stage, without `#include`s.
 std::string stage_source(Stage stage, const RowMasks& rows = {});

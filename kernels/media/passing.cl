@@ -23,7 +23,7 @@ static inline int material_passes(const Materials* materials, uint material) {
 // Returns whether the surface of a hit lets light pass.
 static inline int surface_passes(const Tree* tree, const Surfaces* surfaces,
                                  const Materials* materials, const HitRecord* hit) {
-  const uint primitive = primitive_at(tree->leaves, hit->slot);
+  const uint primitive = primitive_at(tree, hit->slot);
   __global const GeometryRecord* geometry = surfaces->geometries + geometry_of(surfaces, primitive);
   uint material = geometry->material;
   if (geometry->surface_begin != CAPLET_NONE)

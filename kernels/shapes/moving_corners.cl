@@ -6,6 +6,7 @@
 #ifndef CAPLET_SHAPES_MOVING_CORNERS_CL
 #define CAPLET_SHAPES_MOVING_CORNERS_CL
 
+#include "math/leaves.cl"
 #include "math/motion.cl"
 
 // KeyPair is the begin and the end of the segment of time that a time falls into, and where
@@ -17,14 +18,14 @@ typedef struct {
 } KeyPair;
 
 // The parameters are the fields of moving_triangle; the time is in [0, 1].
-static inline KeyPair triangle_keys(__global const float* leaves, uint begin, uint times,
-                                    uint segments, uint stride, float time) {
+static inline KeyPair triangle_keys(Leaves leaves, uint begin, uint times, uint segments,
+                                    uint stride, float time) {
   KeyPair keys;
-  const uint segment = motion_segment(leaves + times, segments, time, &keys.u);
+  const uint segment = motion_segment(leaf_at(leaves, times), segments, time, &keys.u);
   // At the end of a short last segment u may be beyond 1.
   keys.u = fmin(keys.u, 1.0f);
-  keys.from = leaves + begin + (size_t)stride * segment;
-  keys.to = keys.from + stride;
+  keys.from = leaf_at(leaves, begin + (size_t)stride * segment);
+  keys.to = leaf_at(leaves, begin + (size_t)stride * (segment + 1u));
   return keys;
 }
 

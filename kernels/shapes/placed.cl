@@ -16,8 +16,8 @@ static inline Affine placed_at(const Tree* tree, uint instance, uint matrix) {
   __global const InstanceRecord* placed = tree->instances + instance;
   if (placed->motion_segments == 0u)
     return affine_load(matrix == 0u ? placed->object_from_world : placed->world_from_object);
-  return motion_at(tree->leaves + placed->motion_begin, placed->motion_segments, 2u, matrix,
-                   tree->time);
+  return motion_at(leaf_at(leaves_of(tree), placed->motion_begin), placed->motion_segments, 2u,
+                   matrix, tree->time);
 }
 static inline Affine object_from_world(const Tree* tree, uint instance) {
   return placed_at(tree, instance, 0u);
@@ -36,7 +36,7 @@ static inline Affine world_from_object(const Tree* tree, uint instance) {
 
 // Returns the ray for the tree's shapes, at the tree's time.
 static inline ShapeRay shape_ray_of(const Tree* tree, float3 o, float3 d, float t_min) {
-  ShapeRay ray = shape_ray(o, d, t_min, tree->leaves);
+  ShapeRay ray = shape_ray(o, d, t_min, leaves_of(tree));
 #ifdef CAPLET_MOTION
   ray.time = tree->time;
 #endif

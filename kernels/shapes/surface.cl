@@ -52,7 +52,7 @@ static inline Surface surface_at(const Tree* tree, const Surfaces* surfaces, con
     o = affine_point(&to_object, o);
     d = affine_vector(&to_object, d);
   }
-  const uint primitive = primitive_at(tree->leaves, hit->slot);
+  const uint primitive = primitive_at(tree, hit->slot);
   const uint index = geometry_of(surfaces, primitive);
   const GeometryRecord geometry = surfaces->geometries[index];
   const int leaving = (hit->surface & CAPLET_LEAVING) != 0;
@@ -61,19 +61,19 @@ static inline Surface surface_at(const Tree* tree, const Surfaces* surfaces, con
   // chain_u is u at both ends of a capsule of a chain.
   __global const float* chain_u = 0;
   if (any_chain && (geometry.flags & CAPLET_GEOMETRY_CHAIN))
-    chain_u = kind_is_linked(geometry.shape) ? linked_u(tree->leaves, hit->slot)
+    chain_u = kind_is_linked(geometry.shape) ? linked_u(tree, hit->slot)
                                              : surfaces->mesh_uvs + geometry.uv_begin +
                                                    2u * (primitive - geometry.primitive_begin);
   const SurfaceQuery query = {
       surfaces,
-      tree->leaves,
+      leaves_of(tree),
       &geometry,
       primitive,
       surface,
-      slot_data(tree->leaves, hit->slot),
+      slot_data(tree, hit->slot),
       o + hit->t * d,
       backward,
-      geometry.uv_space != CAPLET_NONE ? tree->leaves + geometry.uv_space : 0,
+      geometry.uv_space != CAPLET_NONE ? leaf_at(leaves_of(tree), geometry.uv_space) : 0,
       d,
       chain_u,
       time_of(tree)};

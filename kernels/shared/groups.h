@@ -26,6 +26,10 @@
   BUFFER(nodes, float, IN)  /* CAPLET_NODE_FLOATS a node */      \
   BUFFER(leaves, float, IN) /* blocks of rows, shapes.def */     \
   BUFFER(instances, InstanceRecord, IN)                          \
+  /* further parts of leaves, on devices that allow no buffer of its size (math/leaves.cl) */ \
+  BUFFER(leaves_1, float, IN)                                    \
+  BUFFER(leaves_2, float, IN)                                    \
+  BUFFER(leaves_3, float, IN)                                    \
   TREE_TIME                                                      \
   GROUP_END(Tree)
 

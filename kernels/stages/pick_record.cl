@@ -26,7 +26,7 @@ static inline PickRecord pick_identity(const Tree* tree, const Surfaces* surface
   PickRecord out = {INFINITY, 0.0f, 0.0f, 0.0f, CAPLET_NONE,        CAPLET_NONE,
                     0,        0,    0,    0,    {0.0f, 0.0f, 0.0f}, {0.0f, 0.0f, 0.0f}};
   if (hit->slot == CAPLET_NONE) return out;
-  const uint primitive = primitive_at(tree->leaves, hit->slot);
+  const uint primitive = primitive_at(tree, hit->slot);
   __global const GeometryRecord* geometry = surfaces->geometries + geometry_of(surfaces, primitive);
   out.t = hit->t;
   out.object = out.shape = geometry->object;

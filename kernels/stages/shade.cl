@@ -202,13 +202,12 @@ static inline void stage_ahead(const Stage* g, uint item, uint count) {
   }
   if (item + 16u < count) {
     const uint slot = g->rays.path_hit[g->queues.queue[item + 16u]].slot;
-    if (slot != CAPLET_NONE) fetch_ahead(g->tree.leaves + (slot_place(slot) & ~7u));
+    if (slot != CAPLET_NONE) fetch_ahead(leaf_at(leaves_of(&g->tree), slot_place(slot) & ~7u));
   }
   if (item + 8u < count) {
     const uint slot = g->rays.path_hit[g->queues.queue[item + 8u]].slot;
     if (slot != CAPLET_NONE)
-      AHEAD(g->surfaces.primitive_geometry +
-            primitive_at(g->tree.leaves, slot) / CAPLET_PAGE_PRIMITIVES);
+      AHEAD(g->surfaces.primitive_geometry + primitive_at(&g->tree, slot) / CAPLET_PAGE_PRIMITIVES);
   }
 }
 #endif

@@ -20,7 +20,7 @@ typedef struct {
 } AlphaScene;
 
 static inline int alpha_stops(const AlphaScene* scene, const RayRecord* ray, const HitRecord* hit) {
-  const uint primitive = primitive_at(scene->tree.leaves, hit->slot);
+  const uint primitive = primitive_at(&scene->tree, hit->slot);
   const uint alpha = scene->surfaces.geometries[geometry_of(&scene->surfaces, primitive)].alpha;
   if (alpha == CAPLET_NONE) return 1;
   const Surface s = surface_at(&scene->tree, &scene->surfaces, ray, hit);

@@ -29,8 +29,7 @@ static inline int tie_is_before(const Tree* tree, uint slot, uint instance, uint
         other_instance == CAPLET_NONE ? 0u : tree->instances[other_instance].object + 1u;
     if (object != other) return object < other;
   }
-  const uint primitive = primitive_at(tree->leaves, slot),
-             other_primitive = primitive_at(tree->leaves, other_slot);
+  const uint primitive = primitive_at(tree, slot), other_primitive = primitive_at(tree, other_slot);
   if (primitive != other_primitive) return primitive < other_primitive;
   return instance < other_instance;
 }
@@ -121,7 +120,7 @@ static inline void test_leaf(const Tree* tree, uint kind, uint row, uint lane,
                              const ShapeRay* shape, uint instance, NearestHit* nearest) {
   real t;
   real_mask side;
-  __global const float* block = tree->leaves + (size_t)row * 8;
+  __global const float* block = leaf_block(tree, row);
   const real_mask ok =
       shape_hit(kind, shape, block, lane, &t, &side) & leaf_lanes_filled(kind, block, lane);
   keep_hits(tree, leaf_slot(kind, row, lane), shape, instance, ok, t, side, nearest);

@@ -95,7 +95,7 @@ static inline void list_add_csg(HitList* list, const ShapeRay* ray, __global con
 // Adds the crossings of a leaf block in the tree; not of one of instances.
 static inline void list_add_leaf(HitList* list, const ShapeRay* ray, uint kind, uint row,
                                  uint instance) {
-  __global const float* block = list->tree->leaves + (size_t)row * 8;
+  __global const float* block = leaf_block(list->tree, row);
   if (CAPLET_HAS_SHAPE(shape_csg) && kind == shape_csg) {
     list_add_csg(list, ray, block, row * 8, instance);
   } else {
@@ -149,7 +149,6 @@ static inline uint trace_list(const Tree* tree, uint root, RayRecord ray, uint c
   }
 #else
   __global const float* nodes = tree->nodes;
-  __global const float* leaves = tree->leaves;
   const float t_min = list.t_begin;
   const float3 world_o = (float3)(ray.ox, ray.oy, ray.oz),
                world_d = (float3)(ray.dx, ray.dy, ray.dz);
@@ -169,7 +168,7 @@ static inline uint trace_list(const Tree* tree, uint root, RayRecord ray, uint c
     } else {
       const uint kind = CAPLET_LEAF_KIND(current), row = CAPLET_LEAF_ROW(current);
       if (CAPLET_HAS_SHAPE(shape_instance) && kind == shape_instance) {
-        instance = ((__global const uint*)leaves)[(size_t)row * 8];
+        instance = ((__global const uint*)leaf_block(tree, row))[0];
         floor = top;
         current = (int)tree->instances[instance].root;
         if (ray_to_instance(tree, instance, world_o, world_d, t_min, &slab, &shape)) continue;

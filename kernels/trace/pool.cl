@@ -95,8 +95,7 @@ static inline void pool_visit(PooledRay* r, __global const float* nodes) {
 // Moves the ray into the instance that it is at. Below the entries of the instance's root lies one
 // that leads back.
 static inline void pool_enter_instance(PooledRay* r, const Stage* g, const Tree* tree) {
-  const uint instance =
-      ((__global const uint*)tree->leaves)[(size_t)CAPLET_LEAF_ROW(r->current) * 8];
+  const uint instance = ((__global const uint*)leaf_block(tree, CAPLET_LEAF_ROW(r->current)))[0];
   const Tree then = tree_at(tree, TRACED_TIME(g, r->item));
   const RayRecord ray = traced_ray(g, r->item);
   r->instance = instance;
@@ -170,9 +169,9 @@ static void trace_pool(const Stage* g, uint next, const uint end) {
     for (int i = 0; i < leaves; i++) {
       const uchar place = at_leaf[i];
       const PooledRay* r = &pool[place];
-      const int may = leaf_may_hit(CAPLET_LEAF_KIND(r->current), &r->near,
-                                   tree->leaves + (size_t)CAPLET_LEAF_ROW(r->current) * 8, r->t_min,
-                                   r->nearest.t);
+      const int may =
+          leaf_may_hit(CAPLET_LEAF_KIND(r->current), &r->near,
+                       leaf_block(tree, CAPLET_LEAF_ROW(r->current)), r->t_min, r->nearest.t);
       at_leaf[near] = place;
       going_on[count] = place;
       near += may;
@@ -204,7 +203,7 @@ static void trace_pool(const Stage* g, uint next, const uint end) {
       const int current = r->child[top], is_leaf = (int)((uint)current >> 31);
       r->current = current;
       __global const float* node = tree->nodes + (size_t)(uint)current * CAPLET_NODE_FLOATS;
-      __global const float* block = tree->leaves + (size_t)CAPLET_LEAF_ROW(current) * 8;
+      __global const float* block = leaf_block(tree, CAPLET_LEAF_ROW(current));
       fetch_ahead(is_leaf ? block : node);
       at_node[nodes] = at_leaf[leaves] = place;
       nodes += 1 - is_leaf;

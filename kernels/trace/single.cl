@@ -12,7 +12,7 @@
 // in memory meanwhile, because compilers leave volatile values there.
 static inline void rare_leaf(const Tree* tree, CAPLET_RAY_SPACE const RayRecord* ray, uint kind,
                              uint row, Walk* w, NearestHit* nearest) {
-  __global const float* block = tree->leaves + (size_t)row * 8;
+  __global const float* block = leaf_block(tree, row);
   volatile uint kept[8];
   kept[0] = w->top;
   kept[1] = w->bottom;
@@ -61,7 +61,7 @@ static inline HitRecord trace_ray_at(const Tree* tree, uint root,
     const int leaf = walk_next(tree, root, ray, &walk, &shape, stack, nearest.t, visit);
     if (leaf == CAPLET_WALK_ENDS) return hit_record(&nearest);
     const uint kind = CAPLET_LEAF_KIND(leaf), row = CAPLET_LEAF_ROW(leaf);
-    __global const float* block = tree->leaves + (size_t)row * 8;
+    __global const float* block = leaf_block(tree, row);
     if (has_rare_shape && shape_is_rare(kind)) {
       walk_forget(&walk, stack);
       rare_leaf(tree, ray, kind, row, &walk, &nearest);

@@ -63,13 +63,13 @@ static void STREAM_WALK(const Stage* g, uint first, const Tree* tree, uint root,
         l->at[top] = list;
         l->count[top] = end - list;
         top++;
-        fetch_ahead(child[k] < 0 ? tree->leaves + (size_t)CAPLET_LEAF_ROW(child[k]) * 8
+        fetch_ahead(child[k] < 0 ? leaf_block(tree, CAPLET_LEAF_ROW(child[k]))
                                  : tree->nodes + (size_t)(uint)child[k] * CAPLET_NODE_FLOATS);
       }
       continue;
     }
     const uint kind = CAPLET_LEAF_KIND(current), row = CAPLET_LEAF_ROW(current);
-    __global const float* block = tree->leaves + (size_t)row * 8;
+    __global const float* block = leaf_block(tree, row);
 #if WALK_MEETS_INSTANCES
     if (CAPLET_HAS_SHAPE(shape_instance) && kind == shape_instance) {
       stream_instance(g, first, tree, ((__global const uint*)block)[0], space, inner, nearest, l,

@@ -186,7 +186,6 @@ static inline int ray_to_instance(const Tree* tree, uint instance, float3 world_
 // on the order of traversal. Zero, infinite and NaN rays miss.
 static inline HitRecord trace_ray(const Tree* tree, uint root, RayRecord ray, const float enough) {
   __global const float* nodes = tree->nodes;
-  __global const float* leaves = tree->leaves;
   NearestHit nearest = nothing_before(ray.t_max);
   const float3 world_o = (float3)(ray.ox, ray.oy, ray.oz),
                world_d = (float3)(ray.dx, ray.dy, ray.dz);
@@ -207,7 +206,7 @@ static inline HitRecord trace_ray(const Tree* tree, uint root, RayRecord ray, co
     } else {
       const uint kind = CAPLET_LEAF_KIND(current), row = CAPLET_LEAF_ROW(current);
       if (CAPLET_HAS_SHAPE(shape_instance) && kind == shape_instance) {
-        instance = ((__global const uint*)leaves)[(size_t)row * 8];
+        instance = ((__global const uint*)leaf_block(tree, row))[0];
         floor = top;
         current = (int)tree->instances[instance].root;
         if (ray_to_instance(tree, instance, world_o, world_d, t_min, &slab, &shape)) continue;

@@ -161,7 +161,7 @@ static inline int walk_next(const Tree* tree, uint root, CAPLET_RAY_SPACE const 
       w->mask = 0;
       visit = next;
       if (of_instance) {
-        w->instance = ((__global const uint*)tree->leaves)[(size_t)CAPLET_LEAF_ROW(next) * 8];
+        w->instance = ((__global const uint*)leaf_block(tree, CAPLET_LEAF_ROW(next)))[0];
         w->floor = w->top;
         w->turns = 1;
         visit = (int)tree->instances[w->instance].root;

@@ -27,7 +27,7 @@ TEST(EndsAtOnce, RemovesWhatIsBeingWritten) {
     [[maybe_unused]] const auto* to = std::freopen(words.c_str(), "w", stderr);
     install_interrupt_handlers();
     { const EndsAtOnce other("not this\n", 3); }
-    ::raise(SIGHUP);  // only sets the flag
+    ::raise(SIGUSR1);  // only sets the flag
     const EndsAtOnce early("last words\n", 7);
     write_atomically(folder / "out", [](const std::filesystem::path& path) {
       std::ofstream(path) << "half" << std::flush;

@@ -84,6 +84,7 @@ void expect_same_files(const std::filesystem::path& a, const std::filesystem::pa
 
 TEST(Build, PicturesAreThoseOfTheScene) {
   const auto folder = folder_with_tree(rich_scene);
+  std::vector<std::string> told;
   const std::string layers = "all,crypto_object,crypto_material,crypto_asset";
   for (const auto& [scene, picture] : {std::pair("scene.pbrt", "a"), std::pair("a.tree", "b")}) {
     const test::Result done = test::run_program(
@@ -91,9 +92,12 @@ TEST(Build, PicturesAreThoseOfTheScene) {
          std::string(picture) + ".png", "--scale-bar", "--axes", "--outline", "2"},
         folder);
     EXPECT_EQ(done.code, 0) << done.err;
-    EXPECT_THAT(done.err, HasSubstr("scale bar"));
+    const std::string bar = done.err.substr(done.err.find("scale bar:"));
+    told.push_back(bar.substr(0, bar.find('\n')));
     EXPECT_THAT(done.err, Not(HasSubstr("warning")));
   }
+  EXPECT_THAT(told.at(0), HasSubstr("pixels"));
+  EXPECT_EQ(told.at(1), told.at(0));
   const LayeredImage picture = read_exr(folder / "a.exr");
   EXPECT_EQ(picture.data_width, 36);
   EXPECT_THAT(picture.metadata, testing::Contains(testing::Pair(testing::EndsWith("manifest"),
