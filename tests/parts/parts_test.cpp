@@ -10,6 +10,7 @@
 #include <numeric>
 #include <optional>
 #include <random>
+#include <utility>
 
 #include "import/import.h"
 #include "lower/live_scene.h"
@@ -172,28 +173,39 @@ TEST(PartsOfEdits, GrowAndShrink) {
   const Device device = test_device(Encoding::automatic);
   DeviceScene on_device(device, live.flat());
   Query query(on_device);
-  const std::vector<RayRecord> rays = rays_through(live.flat(), 2000);
+  std::vector<RayRecord> rays = rays_through(live.flat(), 2000);
   const auto expect_same = [&] {
     on_device.update(live.flat(), live.take_changes());
-    const std::vector<PickRecord> found = query.closest(rays);
+    const HitLists found = query.all(rays, 64);
     ::unsetenv("CAPLET_LEAF_PART");
-    EXPECT_TRUE(same_bits(found, Query(live.flat(), device).closest(rays)));
+    const HitLists expected = Query(live.flat(), device).all(rays, 64);
+    EXPECT_TRUE(same_bits(found.crossings, expected.crossings));
   };
   std::uint32_t shape = 0;  // the one of most capsules
   for (std::uint32_t i = 0; i < scene.shapes.size(); ++i)
     if (primitive_count(scene.shapes[i]) > primitive_count(scene.shapes[shape])) shape = i;
   const auto& capsules = std::get<CapsulesShape>(scene.shapes[shape].geometry);
   glm::dmat4 moved = scene.shapes[shape].world_from_object;
+  bool divided = false;
+  int round = 0;
   for (const bool is_divided : {false, true, true, false}) {
+    ++round;
     std::optional<PartsOf> limit;
     if (is_divided) limit.emplace(part_bytes);
     // Some capsules, in all parts; then all of them.
     for (std::size_t i = 0; i < capsules.p0.size(); i += capsules.p0.size() / 9) {
-      Capsule to{capsules.p0[i], capsules.p1[i], 3, 3};
-      to.p0.y += is_divided ? 20 : 10;
+      Capsule to{capsules.p0[i], capsules.p1[i], capsules.radius0[i], capsules.radius0[i]};
+      to.p0.y += static_cast<float>(round) * 0.01f;
       live.edit(CapsuleEdit{{{}, shape}, i, to});
+      const glm::dvec3 middle(moved * glm::dvec4(0.5f * (to.p0 + to.p1), 1));
+      rays.push_back(make_ray(middle + glm::dvec3(0, 0, 1), {0, 0, -1}));
     }
+    const std::uint64_t before = on_device.bytes_updated();
+    const bool was_divided = std::exchange(divided, is_divided);
     expect_same();
+    if (was_divided == is_divided) {
+      EXPECT_LT(on_device.bytes_updated() - before, 100000U) << "more than what has changed";
+    }
     if (is_divided) limit.emplace(part_bytes);
     moved[3][0] += 5;
     live.edit(TransformEdit{{{}, shape}, moved});

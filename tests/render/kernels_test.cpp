@@ -43,8 +43,9 @@ TEST(Kernels, TakeWhatTheyUse) {
     sum += static_cast<double>(buffer_count(stage));
     ++count;
   }
-  EXPECT_LE(sum / count, 16);
-  EXPECT_LE(buffer_count(Stage::sample_distance), 68u);
+  // Three of a tree's buffers are empty unless its leaves are divided.
+  EXPECT_LE(sum / count, 18);
+  EXPECT_LE(buffer_count(Stage::sample_distance), 71u);
   EXPECT_EQ(buffer_count(Stage::sort_prefix), 3u);  // the batch, keys and bins
 }
 
