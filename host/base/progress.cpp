@@ -14,6 +14,7 @@
 #include <utility>
 
 #include "base/status_line.h"
+#include "base/utf8.h"
 
 namespace caplet {
 
@@ -144,10 +145,14 @@ StepNotice::~StepNotice() {
 void StepNotice::run(const std::string& what) {
   using namespace std::chrono_literals;
   const auto start = std::chrono::steady_clock::now();
+  // The line must not wrap: only its last row could be cleared.
+  constexpr int around = 24;  // the most characters before and behind `what`
+  const auto most = static_cast<std::size_t>(std::max(terminal_columns() - around, 0));
+  const std::string shown = one_line(std::string_view(what).substr(0, most));
   std::unique_lock lock(mutex_);
   for (int seconds = 1; !changed_.wait_until(lock, start + seconds * 1s, [this] { return ended_; });
        ++seconds)
-    log::show_line(fmt::format("caplet: {}: {} s", what, seconds));
+    log::show_line(fmt::format("caplet: {}: {} s", shown, seconds));
   log::show_line("");
 }
 

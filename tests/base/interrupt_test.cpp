@@ -6,13 +6,16 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <csignal>
 #include <filesystem>
 #include <fstream>
+#include <thread>
 
 #include "base/atomic_file.h"
 #include "base/interrupt.h"
 #include "base/log.h"
+#include "base/progress.h"
 #include "base/status_line.h"
 #include "support/data.h"
 
@@ -43,6 +46,21 @@ TEST(EndsAtOnce, RemovesWhatIsBeingWritten) {
   std::getline(std::ifstream(words), said);
   EXPECT_EQ(said, "last words");
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder), {}), 1);
+}
+
+TEST(StatusLine, OfAStepIsOneRow) {
+  testing::internal::CaptureStderr();
+  {
+    const StepNotice notice("reading a\nb" + std::string(4000, 'c'), ProgressReporter::Style::bar);
+    std::this_thread::sleep_for(std::chrono::seconds(2));
+  }
+  const std::string said = testing::internal::GetCapturedStderr();
+  const std::size_t end = said.find("\x1b[K");
+  ASSERT_NE(end, std::string::npos);
+  EXPECT_EQ(said.find('\n'), std::string::npos);
+  EXPECT_EQ(said.substr(0, 20), "\rcaplet: reading a b");
+  EXPECT_EQ(said.substr(end - 5, 5), ": 1 s");
+  EXPECT_LE(end, 80U);  // no terminal: 80 columns
 }
 
 TEST(StatusLine, StaysUnderMessages) {
