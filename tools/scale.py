@@ -91,8 +91,8 @@ def main():
             stats = render(options.program, scene, folder, group)
             seconds = stats["seconds"]
             tree = folder / "tracks.tree"
-            run(group, program, "build", scene, tree, "--size", "1280x960", "--quiet")
-            of_tree = render(program, tree, folder, group)
+            run(group, options.program, "build", scene, tree, "--size", "1280x960", "--quiet")
+            of_tree = render(options.program, tree, folder, group)
             print(f"| {capsules:,} | {seconds['load']:.2f} | {seconds['build']:.2f} | {seconds['render']:.2f} | {seconds['total']:.2f} | "
                   f"{stats['peak_bytes'] / capsules:.1f} | {stats['peak_device_bytes'] / capsules:.1f} | {of_tree['seconds']['total']:.2f} | {first_sample(of_tree):.2f} |", flush=True)
             capsules *= 10
