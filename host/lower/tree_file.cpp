@@ -72,6 +72,25 @@ struct Header {
 static_assert(std::is_trivially_copyable_v<Header>);
 static_assert(offsetof(Header, notes) == 192, "no bytes between members, which nobody would write");
 
+/// Calls visit(of_scene, of_header) for each number of a scene that a header has.
+template <class Scene, class Of, class Visit>
+void visit_numbers(Scene& scene, Of& header, const Visit& visit) {
+  visit(scene.shapes, header.shapes);
+  visit(scene.primitive_count, header.primitive_count);
+  visit(scene.bvh_nodes, header.bvh_nodes);
+  visit(scene.bvh_sah, header.bvh_sah);
+  visit(scene.build_seconds, header.build_seconds);
+  visit(scene.leaf_kind_bits, header.leaf_kind_bits);
+  visit(scene.bvh_depth, header.bvh_depth);
+  visit(scene.sky_is_unseen, header.sky_is_unseen);
+  visit(scene.has_moving_operands, header.has_moving_operands);
+  visit(scene.has_chains, header.has_chains);
+}
+template <class To, class From>
+void set(To& to, const From& from) {
+  to = static_cast<To>(from);
+}
+
 std::string contract_key() { return content_hash(std::string(tree_format) + CAPLET_CONTRACT_KEY); }
 
 template <std::size_t N>
@@ -232,16 +251,7 @@ void write_tree(const fs::path& file, const FlatScene& scene, const TreeNotes& n
   header.header_bytes = sizeof(header);
   put(header.key, contract_key());
   put(header.fingerprint, fingerprint(scene));
-  header.shapes = scene.shapes;
-  header.primitive_count = scene.primitive_count;
-  header.bvh_nodes = scene.bvh_nodes;
-  header.bvh_sah = scene.bvh_sah;
-  header.build_seconds = scene.build_seconds;
-  header.leaf_kind_bits = scene.leaf_kind_bits;
-  header.bvh_depth = scene.bvh_depth;
-  header.sky_is_unseen = scene.sky_is_unseen;
-  header.has_moving_operands = scene.has_moving_operands;
-  header.has_chains = scene.has_chains;
+  visit_numbers(scene, header, [](auto& from, auto& to) { set(to, from); });
   Layout layout;
   for (std::size_t i = 0; i < notes.size(); ++i) header.notes[i] = layout.next(notes[i].size());
 #define BUFFER(name, type, access) header.arrays.name = layout.next(arrays.name.size_bytes());
@@ -279,16 +289,7 @@ TreeFile map_tree(const fs::path& path) {
   TreeFile out;
   out.fingerprint = text_of(header.fingerprint);
   FlatScene& scene = out.scene;
-  scene.shapes = header.shapes;
-  scene.primitive_count = header.primitive_count;
-  scene.bvh_nodes = header.bvh_nodes;
-  scene.bvh_sah = header.bvh_sah;
-  scene.build_seconds = header.build_seconds;
-  scene.leaf_kind_bits = header.leaf_kind_bits;
-  scene.bvh_depth = header.bvh_depth;
-  scene.sky_is_unseen = header.sky_is_unseen != 0;
-  scene.has_moving_operands = header.has_moving_operands != 0;
-  scene.has_chains = header.has_chains != 0;
+  visit_numbers(scene, header, [](auto& to, auto& from) { set(to, from); });
   for (std::size_t i = 0; i < out.notes.size(); ++i) {
     out.notes[i] = section_of(path, file, header.notes[i], 1);
     checksum.add(out.notes[i]);

@@ -118,25 +118,8 @@ std::uint64_t send_packed(const Device& device, std::span<const float> nodes,
   return bytes;
 }
 
-/// Where the arrays of a scene lie, and which of them in a file, with their leaves divided.
-struct Divided {
-  SceneArrays arrays, in_file;
-  std::size_t leaf_distance = 0;
-  Divided(const Device& device, const FlatScene& flat)
-      : arrays(flat.arrays()), in_file(flat.in_file ? *flat.in_file : SceneArrays{}) {
-    for (SceneArrays* of : {&in_file, &arrays}) {
-      const LeafParts divided = leaf_parts(device, of->leaves);
-      of->leaves = divided.parts[0];
-      of->leaves_1 = divided.parts[1];
-      of->leaves_2 = divided.parts[2];
-      of->leaves_3 = divided.parts[3];
-      leaf_distance = divided.distance;
-    }
-  }
-};
-
-/// Throws RunError that names the buffer that is too large.
-/// Arrays that stay in a file take none of the device's memory.
+/// Throws RunError that names the buffer that is too large. Arrays that stay in a file take none of
+/// the device's memory.
 void require_fit(const Device& device, const SceneArrays& arrays, const SceneArrays& in_file) {
   const DeviceInfo& info = device.info();
   constexpr double megabytes = 1e-6;
@@ -169,6 +152,31 @@ void require_fit(const Device& device, const SceneArrays& arrays, const SceneArr
       static_cast<double>(info.max_allocation_bytes) * megabytes));
 }
 
+/// The arrays that a device is sent: with nodes as it walks them, and leaves divided as it allows.
+struct SentArrays {
+  SceneArrays arrays, in_file;  // all of them, and those that lie in a file
+  std::vector<float> packed;    // nodes, where they are sent packed
+  std::size_t leaf_distance = 0;
+
+  /// Throws RunError when they do not fit.
+  SentArrays(const Device& device, const FlatScene& flat, Encoding encoding)
+      : arrays(flat.arrays()), in_file(flat.in_file ? *flat.in_file : SceneArrays{}) {
+    for (SceneArrays* of : {&in_file, &arrays}) {
+      const LeafParts divided = leaf_parts(device, of->leaves);
+      of->leaves = divided.parts[0];
+      of->leaves_1 = divided.parts[1];
+      of->leaves_2 = divided.parts[2];
+      of->leaves_3 = divided.parts[3];
+      leaf_distance = divided.distance;
+    }
+    if (encoding == Encoding::single) {
+      packed = packed_nodes(arrays.nodes);
+      arrays.nodes = packed;
+    }
+    require_fit(device, arrays, in_file);
+  }
+};
+
 /// Returns the bytes of one path in each buffer of the paths; ONE: nothing.
 std::vector<std::uint64_t> bytes_of_path(const PathNeeds& needs) {
   std::vector<std::uint64_t> out;
@@ -188,38 +196,25 @@ std::vector<std::uint64_t> bytes_of_path(const PathNeeds& needs) {
   {                              \
     auto& buffers = this->group;
 #define BUFFER(name, type, access) \
-  buffers.name = sent<type>(device, arrays.name, in_file.name, flat.in_file);
+  buffers.name = sent<type>(device, all.arrays.name, all.in_file.name, flat.in_file);
 #define GROUP_END(Type) }
 SceneBuffers::SceneBuffers(const Device& device, const FlatScene& flat, Encoding encoding)
     : encoding_(encoding == Encoding::automatic ? device.encoding() : encoding) {
-  Divided divided(device, flat);
-  auto& [arrays, in_file, leaf_distance] = divided;
-  leaf_distance_ = leaf_distance;
-  std::vector<float> packed;
-  if (encoding_ == Encoding::single) {
-    packed = packed_nodes(arrays.nodes);
-    arrays.nodes = packed;
-  }
-  require_fit(device, arrays, in_file);
+  const SentArrays all(device, flat, encoding_);
+  leaf_distance_ = all.leaf_distance;
   SCENE_GROUPS
 }
 #undef BUFFER
 #define BUFFER(name, type, access) \
-  if (!is_sent(#name)) buffers.name = sent<type>(device, arrays.name, in_file.name, flat.in_file);
+  if (!is_sent(#name))             \
+    buffers.name = sent<type>(device, all.arrays.name, all.in_file.name, flat.in_file);
 SceneBuffers::SceneBuffers(const Device& device, FlatScene&& flat) : encoding_(device.encoding()) {
-  Divided divided(device, flat);
-  auto& [arrays, in_file, leaf_distance] = divided;
-  leaf_distance_ = leaf_distance;
-  std::vector<float> packed;
-  if (encoding_ == Encoding::single) {
-    packed = packed_nodes(arrays.nodes);
-    flat.nodes = {};
-    arrays.nodes = packed;
-  }
-  require_fit(device, arrays, in_file);
+  SentArrays all(device, flat, encoding_);
+  leaf_distance_ = all.leaf_distance;
+  if (!all.packed.empty()) flat.nodes = {};
   // Parts of leaves overlap, and are sent before their memory is given back.
   const bool sends_nodes = !flat.in_file, sends_leaves = sends_nodes && leaf_distance_ == 0;
-  if (sends_nodes) tree.nodes = sent_in_parts(device, packed.empty() ? flat.nodes : packed);
+  if (sends_nodes) tree.nodes = sent_in_parts(device, all.packed.empty() ? flat.nodes : all.packed);
   if (sends_leaves) tree.leaves = sent_in_parts(device, flat.leaves);
   const auto is_sent = [=](std::string_view array) {
     return array == "nodes" ? sends_nodes : array == "leaves" && sends_leaves;

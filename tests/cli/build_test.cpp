@@ -29,6 +29,7 @@ MakeNamedMedium "fog" "string type" "homogeneous" "rgb sigma_a" [.02 .02 .02] "r
 MediumInterface "" "fog"
 LookAt 0 1 6  0 0 0  0 1 0
 Camera "perspective" "float fov" 45 "float clipplane" [0 0 1 .9] "string unit" "mm"
+  "float fileaxes" [0 1 0 0 0 1 1 0 0]
 Sampler "zsobol" "integer pixelsamples" 4 "integer seed" 7
 PixelFilter "gaussian" "float xradius" 1.25
 Integrator "volpath" "integer maxdepth" 7
@@ -38,6 +39,8 @@ MakeNamedMaterial "brass" "string type" "conductor" "float roughness" .2
 Texture "checks" "spectrum" "checkerboard"
 Material "diffuse" "texture reflectance" "checks"
 Shape "capsule" "point3 p0" [-1 0 0] "point3 p1" [1 0 0] "float radius" .4 "string name" "rod"
+Shape "capsule" "point3 p0" [-1.4 -.9 0] "point3 p1" [0 -.9 0] "float radius" .3
+Shape "capsule" "point3 p0" [0 -.9 0] "point3 p1" [1.4 -.9 0] "float radius" .3
 NamedMaterial "brass"
 Shape "sphere" "float radius" .5
 ObjectBegin "pair"
@@ -101,7 +104,7 @@ TEST(Build, PicturesAreThoseOfTheScene) {
   const LayeredImage picture = read_exr(folder / "a.exr");
   EXPECT_EQ(picture.data_width, 36);
   EXPECT_THAT(picture.metadata, testing::Contains(testing::Pair(testing::EndsWith("manifest"),
-                                                                HasSubstr("\"sphere 1\""))));
+                                                                HasSubstr("\"sphere 3\""))));
   expect_same_files(folder / "a.exr", folder / "b.exr");
   EXPECT_EQ(test::read_file(folder / "a.png"), test::read_file(folder / "b.png"));
 }
