@@ -120,6 +120,14 @@ TEST(Build, OneTreeHasManyPictures) {
                   .code,
               0);
   expect_same_files(folder / "a.exr", folder / "b.exr");
+  for (const auto& [scene, picture] :
+       {std::pair("scene.pbrt", "a.png"), std::pair("a.tree", "b.png")})
+    EXPECT_EQ(test::run_program({"render", scene, "-q", "--size", "400x300", "--crop",
+                                 "0,0,400,300", "--spp", "1", "--axes", "-o", picture},
+                                folder)
+                  .code,
+              0);
+  EXPECT_EQ(test::read_file(folder / "a.png"), test::read_file(folder / "b.png"));
   // Without a name it is that of the scene's film.
   EXPECT_EQ(test::run_program({"render", "a.tree", "-q", "--spp", "1"}, folder).code, 0);
   EXPECT_TRUE(std::filesystem::exists(folder / "rich.exr"));

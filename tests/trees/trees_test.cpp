@@ -119,6 +119,19 @@ TEST_F(Trees, KeepEachFlagByItself) {
   }
 }
 
+TEST_F(Trees, KnowThatInstancesMove) {
+  const FlatScene flat = lower(
+      import_scene(write_file("moves.pbrt",
+                              "Camera \"perspective\"\nWorldBegin\nLightSource \"infinite\"\n"
+                              "ObjectBegin \"a\"\nShape \"sphere\"\nObjectEnd\n"
+                              "ActiveTransform EndTime\nTranslate 1 0 0\nActiveTransform All\n"
+                              "ObjectInstance \"a\"\n"),
+                   FileImageReader()));
+  ASSERT_TRUE(flat.moves());
+  write_tree(file_, flat, notes);
+  expect_same(flat, map_tree(file_).scene);
+}
+
 TEST_F(Trees, RaysHitTheSame) {
   for (const char* name : {"gallery.pbrt", "instances.pbrt", "hair.pbrt"}) {
     SCOPED_TRACE(name);
