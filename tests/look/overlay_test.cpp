@@ -13,6 +13,7 @@
 #include <cstdlib>
 #include <glm/geometric.hpp>
 #include <map>
+#include <random>
 #include <set>
 #include <span>
 
@@ -413,6 +414,48 @@ TEST(Outline, LinesOfSeveralObjectsMeet) {
     EXPECT_EQ(red(on.picture, 9, 15) < 0.5f, is_four);    // between 3 and 4
     EXPECT_EQ(red(on.picture, 3, 3), 1) << is_four;
   }
+}
+
+// A leaning edge between two objects, with the number of one random sample in each pixel: the line
+// stays where the edge is.
+TEST(Outline, RunsWhereDepthsTellThatItDoes) {
+  const auto edge = [](double y) { return 20 + 0.3 * y; };
+  // What the nearer object fills of a pixel; close, for the edge leans little.
+  const auto part = [&](int x, int y) { return std::clamp(edge(y + 0.5) - x, 0.0, 1.0); };
+  Canvas on = canvas(
+      60, 40, {1, 1, 1}, [](int, int) { return 1.0f; },
+      [&](int x, int y) { return static_cast<float>(10 * part(x, y) + 20 * (1 - part(x, y))); });
+  std::mt19937 random(3);
+  for (int y = 0; y < 40; ++y)
+    for (int x = 0; x < 60; ++x)
+      on.layers.channels[2].uints[static_cast<std::size_t>(60 * y + x)] =
+          static_cast<double>(random() >> 8) * 0x1p-24 < part(x, y) ? 1 : 2;
+  draw_outline(on.picture, on.layers, 2);
+  for (int y = 2; y < 38; ++y) {
+    double dark = 0, place = 0;
+    for (int x = 0; x < 60; ++x) {
+      const double value = 1 - std::pow(double{red(on.picture, x, y)}, 1 / 2.2);
+      dark += value;
+      place += value * (x + 0.5);
+    }
+    EXPECT_NEAR(place / dark, edge(y + 0.5), 0.2) << y;  // with steps of whole pixels up to 0.5
+    EXPECT_NEAR(dark, 2 * std::hypot(1, 0.3), 0.25) << y;
+  }
+}
+
+// The sample that gives a covered pixel its number may have hit nothing, or what is behind it.
+TEST(Outline, NumbersOfSinglePixelsAreTheirNeighbours) {
+  Canvas on = canvas(
+      40, 20, {1, 1, 1}, [](int, int) { return 1.0f; }, [](int, int) { return 10.0f; });
+  auto& numbers = on.layers.channels[2].uints;
+  numbers[5 * 40 + 10] = 0xffffffffu;
+  numbers[12 * 40 + 20] = 3;
+  draw_outline(on.picture, on.layers, 2);
+  for (int i = 0; i < 800; ++i) EXPECT_EQ(red(on.picture, i % 40, i / 40), 1) << i;
+  // What is a pixel wide is no single pixel.
+  for (int x = 0; x < 40; ++x) numbers[static_cast<std::size_t>(10 * 40 + x)] = 5;
+  draw_outline(on.picture, on.layers, 1);
+  for (int x = 2; x < 38; ++x) EXPECT_LT(red(on.picture, x, 9), 0.5) << x;
 }
 
 TEST(Axes, PointWhereTheyPoint) {
