@@ -5,9 +5,15 @@
 #ifndef CAPLET_GROUPS_CL
 #define CAPLET_GROUPS_CL
 
-#include "math/leaves.cl"
+#include "math/floats.cl"
 #include "shared/groups.h"
 #include "shared/records.h"
+
+#ifdef CAPLET_PART
+#undef PARTS
+#define PARTS(name, type) \
+  BUFFER(name##_1, type, IN) BUFFER(name##_2, type, IN) BUFFER(name##_3, type, IN)
+#endif
 
 #define ONE(type) __global const type* restrict
 #define IN(type) __global const type* restrict
@@ -39,19 +45,35 @@ ALL_GROUPS
 #undef TREE_TIME
 #define TREE_TIME
 
-// Returns where a tree's leaves lie.
-static inline Leaves leaves_of(const Tree* tree) {
-#ifdef CAPLET_LEAF_PART
-  const Leaves out = {tree->leaves, tree->leaves_1, tree->leaves_2, tree->leaves_3};
-  return out;
+// <array>_of(group) returns where an array lies.
+#ifdef CAPLET_PART
+#define FLOATS_OF(Type, array)                                                                  \
+  static inline Floats array##_of(const Type* of) {                                             \
+    const Floats out = {(__global const float*)of->array, (__global const float*)of->array##_1, \
+                        (__global const float*)of->array##_2,                                   \
+                        (__global const float*)of->array##_3, 0};                               \
+    return out;                                                                                 \
+  }
 #else
-  return tree->leaves;
+#define FLOATS_OF(Type, array) \
+  static inline Floats array##_of(const Type* of) { return (__global const float*)of->array; }
 #endif
+FLOATS_OF(Tree, nodes)
+FLOATS_OF(Tree, leaves)
+FLOATS_OF(Materials, texels)
+FLOATS_OF(Lights, light_texels)
+FLOATS_OF(Lights, light_cdf)
+FLOATS_OF(Media, media_grids)
+#undef FLOATS_OF
+
+// Returns a node of those that wide traversal walks.
+static inline __global const float* node_at(Floats nodes, uint node) {
+  return floats_at(nodes, (size_t)node * CAPLET_NODE_FLOATS);
 }
 
 // Returns the leaf block that begins at `row`.
 static inline __global const float* leaf_block(const Tree* tree, uint row) {
-  return leaf_at(leaves_of(tree), (size_t)row * 8);
+  return floats_at(leaves_of(tree), (size_t)row * 8);
 }
 
 // Scene holds what sampling a light needs: its shape, its surfaces, its spectrum, and the materials

@@ -26,8 +26,8 @@ static inline uint slot_place(uint slot) {
 static inline uint primitive_at(const Tree* tree, uint slot) {
   const uint place = slot_place(slot);
   if (any_linked_shape && place != slot)
-    return as_uint(*leaf_at(leaves_of(tree), place & ~7u)) + (place & 7u);
-  return as_uint(*leaf_at(leaves_of(tree), place));
+    return as_uint(*floats_at(leaves_of(tree), place & ~7u)) + (place & 7u);
+  return as_uint(*floats_at(leaves_of(tree), place));
 }
 
 // Returns the number of the geometry of a primitive.
@@ -45,12 +45,12 @@ static inline uint geometry_at(const Tree* tree, const Surfaces* surfaces, uint 
 // Returns the data of the primitive at a slot (shapes/fields.cl; linked capsules have a surface
 // function of their own).
 static inline __global const float* slot_data(const Tree* tree, uint slot) {
-  return leaf_at(leaves_of(tree), slot_place(slot)) + 8;
+  return floats_at(leaves_of(tree), slot_place(slot)) + 8;
 }
 
 // Returns the u at both ends of the linked capsule of a chain at a slot.
 static inline __global const float* linked_u(const Tree* tree, uint slot) {
-  return leaf_at(leaves_of(tree), slot_place(slot)) + CAPLET_LINK_U;
+  return floats_at(leaves_of(tree), slot_place(slot)) + CAPLET_LINK_U;
 }
 
 #endif

@@ -12,7 +12,7 @@
 #include "base/check.h"
 #include "base/memory.h"
 #include "lower/packed_nodes.h"
-#include "render/detail/leaf_parts.h"
+#include "render/detail/array_parts.h"
 
 namespace caplet {
 
@@ -44,15 +44,6 @@ std::span<const T> contents(const std::vector<T>& values) {
 template <class T>
 std::span<const T> contents(const T& record) {
   return {&record, 1};
-}
-
-/// Sends an array. One that lies in a file stays there where the device is a CPU.
-template <class T>
-Buffer<T> sent(const Device& device, std::span<const T> array, std::span<const T> in_file,
-               const std::shared_ptr<const SceneArrays>& file) {
-  if (device.is_cpu() && !array.empty() && array.data() == in_file.data())
-    return {device, array, file};
-  return {device, array};
 }
 
 // Changes nearer to each other than this are sent as one: a call costs more than so many bytes.
@@ -118,62 +109,129 @@ std::uint64_t send_packed(const Device& device, std::span<const float> nodes,
   return bytes;
 }
 
-/// Throws RunError that names the buffer that is too large. Arrays that stay in a file take none of
-/// the device's memory.
-void require_fit(const Device& device, const SceneArrays& arrays, const SceneArrays& in_file) {
-  const DeviceInfo& info = device.info();
-  constexpr double megabytes = 1e-6;
-  const char* largest = "";
-  std::uint64_t largest_bytes = 0, all_bytes = 0;
-  const auto add = [&]<class T>(const char* name, std::span<const T> array,
-                                std::span<const T> stays) {
-    const std::uint64_t bytes = array.size_bytes();
-    if (!device.is_cpu() || array.data() != stays.data()) all_bytes += bytes;
-    if (bytes <= largest_bytes) return;
-    largest = name;
-    largest_bytes = bytes;
-  };
-#define GROUP_BEGIN(Type, group)
-#define GROUP_END(Type)
-#define BUFFER(name, type, access) add(#name, arrays.name, in_file.name);
-  SCENE_GROUPS
-#undef GROUP_BEGIN
-#undef GROUP_END
-#undef BUFFER
-  const std::uint64_t left =
-      info.global_bytes - std::min(info.global_bytes, device.bytes_allocated());
-  if (all_bytes <= left && largest_bytes <= info.max_allocation_bytes) return;
-  throw RunError(fmt::format(
-      "the scene takes {:.0f} MB on a device, and {:.0f} MB in one buffer ({}); device '{}' "
-      "has {:.0f} MB left, and allows "
-      "{:.0f} MB in one buffer",
-      static_cast<double>(all_bytes) * megabytes, static_cast<double>(largest_bytes) * megabytes,
-      largest, info.name, static_cast<double>(left) * megabytes,
-      static_cast<double>(info.max_allocation_bytes) * megabytes));
+/// Returns the floats of packed nodes that these changes of nodes change.
+ChangedRanges packed_ranges(const ChangedRanges& changed) {
+  constexpr std::size_t from_each = CAPLET_NODE_FLOATS, to_each = CAPLET_PACKED_NODE_FLOATS;
+  ChangedRanges out;
+  for (const ChangedRange& range : changed.joined(0)) {
+    const std::size_t first = range.begin / from_each,
+                      end = (range.end + from_each - 1) / from_each;
+    out.add(first * to_each, (end - first) * to_each);
+  }
+  return out;
 }
 
-/// The arrays that a device is sent: with nodes as it walks them, and leaves divided as it allows.
+/// Does as `send` for an array that may lie in parts, the first of which is `to`.
+template <class T>
+std::uint64_t send_parts(const Device& device, std::span<const T> now, const ChangedRanges& changed,
+                         bool all, std::size_t distance, Buffer<T>& to,
+                         std::array<Buffer<T>, array_parts - 1>& to_others) {
+  if (distance == 0) {
+    to_others = {};
+    return send<T>(device, now, changed, all, to);
+  }
+  std::uint64_t bytes = 0;
+  for (std::size_t i = 0; i < array_parts; ++i) {
+    const std::span<const T> part = array_part(now, distance, i);
+    Buffer<T>& buffer = i == 0 ? to : to_others[i - 1];
+    const std::size_t begin = i * distance;
+    ChangedRanges own;
+    for (const ChangedRange& range : changed.joined(0)) {
+      const std::size_t from = std::max(range.begin, begin),
+                        end = std::min(range.end, begin + part.size());
+      if (from < end) own.add(from - begin, end - from);
+    }
+    if (all || part.size() > buffer.size()) {
+      buffer = {};  // the old one makes room first
+      buffer = Buffer<T>(device, part);
+      bytes += part.size_bytes();
+    } else {
+      bytes += send<T>(device, part, own, false, buffer);
+    }
+  }
+  return bytes;
+}
+
+/// Returns whether an array may lie in parts.
+constexpr bool has_parts(std::string_view array) {
+  bool out = false;
+#define GROUP_BEGIN(Type, group)
+#define GROUP_END(Type)
+#define BUFFER(name, type, access)
+#undef PARTS
+#define PARTS(name, type) out |= array == #name;
+  SCENE_GROUPS
+#undef BUFFER
+#undef PARTS
+#define PARTS(name, type)
+#undef GROUP_BEGIN
+#undef GROUP_END
+  return out;
+}
+
+/// The arrays that a device is sent: with nodes as it walks them, and divided as it allows.
 struct SentArrays {
   SceneArrays arrays, in_file;  // all of them, and those that lie in a file
   std::vector<float> packed;    // nodes, where they are sent packed
-  std::size_t leaf_distance = 0;
+  std::size_t distance = 0;     // of parts
 
   /// Throws RunError when they do not fit.
   SentArrays(const Device& device, const FlatScene& flat, Encoding encoding)
       : arrays(flat.arrays()), in_file(flat.in_file ? *flat.in_file : SceneArrays{}) {
-    for (SceneArrays* of : {&in_file, &arrays}) {
-      const LeafParts divided = leaf_parts(device, of->leaves);
-      of->leaves = divided.parts[0];
-      of->leaves_1 = divided.parts[1];
-      of->leaves_2 = divided.parts[2];
-      of->leaves_3 = divided.parts[3];
-      leaf_distance = divided.distance;
-    }
+    const std::uint64_t most_bytes = most_buffer_bytes(device);
+    distance = caplet::part_distance(most_bytes, arrays, encoding);
     if (encoding == Encoding::single) {
       packed = packed_nodes(arrays.nodes);
       arrays.nodes = packed;
     }
-    require_fit(device, arrays, in_file);
+    require_fit(device, most_bytes);
+  }
+
+  /// Sends part `i` of an array. One that lies in a file stays there where the device is a CPU.
+  template <class T>
+  Buffer<T> sent(const Device& device, const FlatScene& flat, std::span<const T> array,
+                 std::span<const T> stays, std::size_t i) const {
+    const std::span<const T> part = array_part(array, distance, i);
+    if (device.is_cpu() && !part.empty() && array.data() == stays.data())
+      return {device, part, flat.in_file};
+    return {device, part};
+  }
+
+ private:
+  /// Throws RunError that names the buffer that is too large. Arrays that stay in a file take none
+  /// of the device's memory.
+  void require_fit(const Device& device, std::uint64_t most_bytes) const {
+    const DeviceInfo& info = device.info();
+    constexpr double megabytes = 1e-6;
+    const char* largest = "";
+    std::uint64_t largest_bytes = 0, all_bytes = 0;
+    const auto add = [&]<class T>(const char* name, std::span<const T> array,
+                                  std::span<const T> stays) {
+      const std::uint64_t bytes = array.size_bytes();
+      if (!device.is_cpu() || array.data() != stays.data()) all_bytes += bytes;
+      const std::uint64_t in_one =
+          has_parts(name) ? array_part(array, distance, 0).size_bytes() : bytes;
+      if (in_one <= largest_bytes) return;
+      largest = name;
+      largest_bytes = in_one;
+    };
+#define GROUP_BEGIN(Type, group)
+#define GROUP_END(Type)
+#define BUFFER(name, type, access) add(#name, arrays.name, in_file.name);
+    SCENE_GROUPS
+#undef GROUP_BEGIN
+#undef GROUP_END
+#undef BUFFER
+    const std::uint64_t left =
+        info.global_bytes - std::min(info.global_bytes, device.bytes_allocated());
+    if (all_bytes <= left && largest_bytes <= most_bytes) return;
+    throw RunError(fmt::format(
+        "the scene takes {:.0f} MB on a device, and {:.0f} MB in one buffer ({}); device '{}' "
+        "has {:.0f} MB left, and allows "
+        "{:.0f} MB in one buffer",
+        static_cast<double>(all_bytes) * megabytes, static_cast<double>(largest_bytes) * megabytes,
+        largest, info.name, static_cast<double>(left) * megabytes,
+        static_cast<double>(most_bytes) * megabytes));
   }
 };
 
@@ -196,32 +254,40 @@ std::vector<std::uint64_t> bytes_of_path(const PathNeeds& needs) {
   {                              \
     auto& buffers = this->group;
 #define BUFFER(name, type, access) \
-  buffers.name = sent<type>(device, all.arrays.name, all.in_file.name, flat.in_file);
+  if (!is_sent(#name))             \
+    buffers.name = all.sent<type>(device, flat, all.arrays.name, all.in_file.name, 0);
+#undef PARTS
+#define PARTS(name, type)                         \
+  if (part_distance_ > 0)                         \
+    for (std::size_t i = 1; i < array_parts; ++i) \
+      buffers.name##_parts[i - 1] =               \
+          all.sent<type>(device, flat, all.arrays.name, all.in_file.name, i);
 #define GROUP_END(Type) }
 SceneBuffers::SceneBuffers(const Device& device, const FlatScene& flat, Encoding encoding)
     : encoding_(encoding == Encoding::automatic ? device.encoding() : encoding) {
   const SentArrays all(device, flat, encoding_);
-  leaf_distance_ = all.leaf_distance;
+  part_distance_ = all.distance;
+  const auto is_sent = [](std::string_view) { return false; };
   SCENE_GROUPS
 }
-#undef BUFFER
-#define BUFFER(name, type, access) \
-  if (!is_sent(#name))             \
-    buffers.name = sent<type>(device, all.arrays.name, all.in_file.name, flat.in_file);
 SceneBuffers::SceneBuffers(const Device& device, FlatScene&& flat) : encoding_(device.encoding()) {
   SentArrays all(device, flat, encoding_);
-  leaf_distance_ = all.leaf_distance;
+  part_distance_ = all.distance;
   if (!all.packed.empty()) flat.nodes = {};
-  // Parts of leaves overlap, and are sent before their memory is given back.
-  const bool sends_nodes = !flat.in_file, sends_leaves = sends_nodes && leaf_distance_ == 0;
-  if (sends_nodes) tree.nodes = sent_in_parts(device, all.packed.empty() ? flat.nodes : all.packed);
-  if (sends_leaves) tree.leaves = sent_in_parts(device, flat.leaves);
+  // Parts overlap, and are sent before their memory is given back.
+  const bool gives_back = !flat.in_file, sends_first = gives_back && part_distance_ == 0;
+  if (sends_first) {
+    tree.nodes = sent_in_parts(device, all.packed.empty() ? flat.nodes : all.packed);
+    tree.leaves = sent_in_parts(device, flat.leaves);
+  }
   const auto is_sent = [=](std::string_view array) {
-    return array == "nodes" ? sends_nodes : array == "leaves" && sends_leaves;
+    return sends_first && (array == "nodes" || array == "leaves");
   };
   SCENE_GROUPS
-  if (sends_nodes) flat.leaves = {};
+  if (gives_back) flat.nodes = flat.leaves = {};
 }
+#undef PARTS
+#define PARTS(name, type)
 #undef BUFFER
 #define BUFFER(name, type, access) buffers.name = Buffer<type>(device, contents(flat.name));
 SensorBuffers::SensorBuffers(const Device& device, const FlatView& flat){VIEW_GROUPS}
@@ -236,55 +302,35 @@ PathBuffers::PathBuffers(const Device& device, std::size_t paths, std::size_t so
 
 std::uint64_t SceneBuffers::update(const Device& device, const FlatScene& flat,
                                    const SceneChanges& changes) {
+  const std::size_t distance =
+      caplet::part_distance(most_buffer_bytes(device), flat.arrays(), encoding_);
+  const bool all = changes.all || distance != part_distance_;
+  part_distance_ = distance;
   std::uint64_t bytes = 0;
   const bool packs = encoding_ == Encoding::single;
-  if (packs) bytes += send_packed(device, flat.nodes, changes.nodes, changes.all, tree.nodes);
-  bytes += update_leaves(device, flat, changes.leaves, changes.all);
-  const auto is_done = [packs](std::string_view array) {
-    return array.starts_with("leaves") || (packs && array == "nodes");
-  };
+  if (packs && distance == 0) {
+    tree.nodes_parts = {};
+    bytes += send_packed(device, flat.nodes, changes.nodes, all, tree.nodes);
+  } else if (packs) {
+    bytes += send_parts<float>(device, packed_nodes(flat.nodes), packed_ranges(changes.nodes), all,
+                               distance, tree.nodes, tree.nodes_parts);
+  }
 #define BUFFER(name, type, access) \
-  if (!is_done(#name))             \
-    bytes += send<type>(device, contents(flat.name), changes.name, changes.all, buffers.name);
+  if (!has_parts(#name))           \
+    bytes += send<type>(device, contents(flat.name), changes.name, all, buffers.name);
+#undef PARTS
+#define PARTS(name, type)                                                               \
+  if (!packs || std::string_view(#name) != "nodes")                                     \
+    bytes += send_parts<type>(device, contents(flat.name), changes.name, all, distance, \
+                              buffers.name, buffers.name##_parts);
   SCENE_GROUPS
 #undef BUFFER
+#undef PARTS
+#define PARTS(name, type)
   return bytes;
 }
 #undef GROUP_BEGIN
 #undef GROUP_END
-
-std::uint64_t SceneBuffers::update_leaves(const Device& device, const FlatScene& flat,
-                                          const ChangedRanges& changed, bool all) {
-  const LeafParts divided = leaf_parts(device, flat.leaves);
-  all |= divided.distance != leaf_distance_;
-  leaf_distance_ = divided.distance;
-  std::array<Buffer<float>*, 4> buffers{&tree.leaves, &tree.leaves_1, &tree.leaves_2,
-                                        &tree.leaves_3};
-  if (divided.distance == 0) {
-    if (all)
-      for (Buffer<float>* part : std::span(buffers).subspan(1))
-        *part = Buffer<float>(device, std::size_t{0});
-    return send<float>(device, flat.leaves, changed, all, tree.leaves);
-  }
-  std::uint64_t bytes = 0;
-  for (std::size_t i = 0; i < buffers.size(); ++i) {
-    const std::span<const float> part = divided.parts[i];
-    const std::size_t begin = i * divided.distance;
-    ChangedRanges own;
-    for (const ChangedRange& range : changed.joined(0)) {
-      const std::size_t from = std::max(range.begin, begin),
-                        to = std::min(range.end, begin + part.size());
-      if (from < to) own.add(from - begin, to - from);
-    }
-    const bool is_new = all || part.size() > buffers[i]->size();
-    if (is_new)
-      *buffers[i] = Buffer<float>(device, part);  // of this length, which is the longest
-    else
-      bytes += send<float>(device, part, own, false, *buffers[i]);
-    if (is_new) bytes += part.size_bytes();
-  }
-  return bytes;
-}
 
 void PathBuffers::provide(const Device& device, std::size_t paths, const PathNeeds& needs) {
   const PathPlaces places(needs);

@@ -6,6 +6,7 @@
 // buffers sort_prefix uses 2, extend 7 and shade 39.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -21,6 +22,8 @@ namespace caplet {
 
 #define GROUP_BEGIN(Type, group) struct Type##Buffers {
 #define BUFFER(name, type, access) Buffer<type> name;
+#undef PARTS
+#define PARTS(name, type) std::array<Buffer<type>, 3> name##_parts;  // those after the first
 #define GROUP_END(Type) \
   }                     \
   ;
@@ -28,6 +31,8 @@ ALL_GROUPS
 #undef GROUP_BEGIN
 #undef BUFFER
 #undef GROUP_END
+#undef PARTS
+#define PARTS(name, type)
 
 /// Bindings are the buffers that a kernel runs with, one pointer a group: `bindings.tree`,
 /// `bindings.surfaces`, ... Groups that it does not take may be null.
@@ -60,15 +65,13 @@ struct SceneBuffers {
   /// with some room to grow.
   std::uint64_t update(const Device& device, const FlatScene& scene, const SceneChanges& changes);
   void bind(Bindings& bindings) const;
-  /// Returns the floats by which parts of the leaves begin one after the other, for which kernels
-  /// are built; 0: they are in one buffer.
-  std::size_t leaf_distance() const { return leaf_distance_; }
+  /// Returns the elements by which parts of arrays begin one after the other, for which kernels
+  /// are built; 0: each array is in one buffer.
+  std::size_t part_distance() const { return part_distance_; }
 
  private:
-  std::uint64_t update_leaves(const Device& device, const FlatScene& scene,
-                              const ChangedRanges& changed, bool all);
   Encoding encoding_;
-  std::size_t leaf_distance_ = 0;  // of parts of the leaves; 0: they are whole
+  std::size_t part_distance_ = 0;
 };
 
 /// SensorBuffers are the groups of a view.

@@ -49,7 +49,7 @@ DeviceScene::DeviceScene(const Device& device, FlatScene&& scene)
 
 DeviceScene::DeviceScene(const Device& device, const FlatScene& scene, SceneBuffers buffers)
     : device_(device),
-      options_(stage_options(scene, device, buffers.leaf_distance())),
+      options_(stage_options(scene, device, buffers.part_distance())),
       buffers_(std::move(buffers)),
       kernels_(device, options_),
       world_(scene.world),
@@ -74,7 +74,7 @@ void DeviceScene::update(const FlatScene& scene, const SceneChanges& changes) {
   // A kind that has disappeared may come back: kernels that have it are kept, so that no picture
   // waits for a compiler.
   if (StageOptions options =
-          options_.together_with(stage_options(scene, device_, buffers_.leaf_distance()));
+          options_.together_with(stage_options(scene, device_, buffers_.part_distance()));
       options != options_) {
     kernels_ = Kernels(device_, options);
     options_ = std::move(options);

@@ -15,9 +15,9 @@
 #include "base/error.h"
 #include "device/cl_error.h"
 #include "lower/all_rows.h"
+#include "render/detail/array_parts.h"
 #include "render/detail/known_rays.h"
 #include "render/detail/launch_policy.h"
-#include "render/detail/leaf_parts.h"
 #include "shared/shapes.h"
 
 namespace caplet {
@@ -44,13 +44,17 @@ constexpr StageRow stage_rows[] = {
 const StageRow& row_of(Stage stage) { return stage_rows[static_cast<std::size_t>(stage)]; }
 
 /// Sets the buffers of a stage's groups and returns the number of the argument after them.
-cl_uint set_buffers(Stage stage, const Bindings& bindings, cl::Kernel& kernel) {
+cl_uint set_buffers(Stage stage, const Bindings& bindings, bool has_parts, cl::Kernel& kernel) {
   cl_uint index = 0;
 #define GROUP_BEGIN(Type, group)                \
   {                                             \
     CHECK_EQ_(bindings.group != nullptr, true); \
     const Type##Buffers& buffers = *bindings.group;
 #define BUFFER(name, type, access) kernel.setArg(index++, buffers.name.handle());
+#undef PARTS
+#define PARTS(name, type)                               \
+  for (const Buffer<type>& part : buffers.name##_parts) \
+    if (has_parts) kernel.setArg(index++, part.handle());
 #define GROUP_END(Type) }
   switch (stage) {
 #define STAGE(name, launch, is_used, groups) \
@@ -66,6 +70,8 @@ cl_uint set_buffers(Stage stage, const Bindings& bindings, cl::Kernel& kernel) {
 #undef GROUP_BEGIN
 #undef BUFFER
 #undef GROUP_END
+#undef PARTS
+#define PARTS(name, type)
   return index;
 }
 
@@ -142,11 +148,12 @@ std::string options_of(std::string_view source, std::string_view options) {
 }
 
 StageOptions stage_options(const FlatScene& scene, const Device& device) {
-  return stage_options(scene, device, leaf_parts(device, scene.arrays().leaves).distance);
+  return stage_options(scene, device,
+                       part_distance(most_buffer_bytes(device), scene.arrays(), device.encoding()));
 }
 
 StageOptions stage_options(const FlatScene& scene, const Device& device,
-                           std::size_t leaf_distance) {
+                           std::size_t part_distance) {
   const bool all = for_all_rows();
   StageOptions out{
       fmt::format("-DCAPLET_REAL_WIDTH={} -DCAPLET_LEAF_KIND_BITS={}{}{}{}{}{}{}",
@@ -156,14 +163,16 @@ StageOptions stage_options(const FlatScene& scene, const Device& device,
                   scene.moves() ? " -DCAPLET_MOTION" : "",
                   scene.has_chains || all ? " -DCAPLET_CHAINS" : "",
                   scene.multiscatters() || all ? " -DCAPLET_MULTISCATTER" : "",
-                  leaf_distance > 0 ? fmt::format(" -DCAPLET_LEAF_PART={}UL", leaf_distance) : ""),
+                  part_distance > 0 ? fmt::format(" -DCAPLET_PART={}UL", part_distance) : ""),
       {{"shapes", shapes_on_trial(scene.shapes)},
        {"materials", scene.material_kinds()},
        {"textures", scene.texture_kinds()},
        {"lights", scene.light_kinds()},
        {"media", scene.medium_kinds()},
        {"samplers", 0},  // DeviceScene::prepare_for
-       {"cameras", 0}}};
+       {"cameras", 0}},
+      false,
+      part_distance};
   if (all)
     for (auto& [list, rows] : out.rows) rows = ~std::uint64_t{0};
   // Programs without times have no shapes that move.
@@ -239,7 +248,7 @@ void Kernels::run(Stage stage, const Bindings& bindings, std::size_t count, std:
     compiled->kernel.setArg(index, narrow<cl_uint>(of_chunk));
   };
   set_arguments([&] {
-    index = set_buffers(stage, bindings, compiled->kernel);
+    index = set_buffers(stage, bindings, options_.part_distance > 0, compiled->kernel);
     set_end(end);
     compiled->kernel.setArg(index + 1, counter);
   });

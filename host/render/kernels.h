@@ -49,6 +49,7 @@ struct StageOptions {
   std::string compiler;  // its options: how traversal is shaped (Device::encoding)
   RowMasks rows;         // the kinds of shapes, materials, textures and lights that there are
   bool clip = false;     // views may have a clipping plane
+  std::size_t part_distance = 0;  // of the scene's arrays (SceneBuffers::part_distance)
 
   bool operator==(const StageOptions&) const = default;
   /// Returns options for these and `others`: kernels that were built for more kinds than there are
@@ -63,8 +64,8 @@ std::string options_of(std::string_view source, std::string_view options);
 /// Returns the options for a scene, or those for all rows of the lists (for_all_rows): pictures are
 /// the same. Throws InputError as for_all_rows does.
 StageOptions stage_options(const FlatScene& scene, const Device& device);
-/// Does the same for leaves that were divided (SceneBuffers::leaf_distance).
-StageOptions stage_options(const FlatScene& scene, const Device& device, std::size_t leaf_distance);
+/// Does the same for arrays that were divided so (SceneBuffers::part_distance).
+StageOptions stage_options(const FlatScene& scene, const Device& device, std::size_t part_distance);
 
 /// Returns the OpenCL C of a stage, without `#include`s.
 std::string stage_source(Stage stage, const RowMasks& rows = {});

@@ -10,6 +10,7 @@
 
 #include "base/check.h"
 #include "base/clock.h"
+#include "render/detail/array_parts.h"
 #include "render/detail/launch_policy.h"
 
 namespace caplet {
@@ -89,7 +90,7 @@ std::size_t chosen_batch_paths(const DeviceScene& scene, const FlatView& view,
   const PathNeeds needs = needs_of(scene, options.layers);
   return fitting_batch(wanted, PathBuffers::bytes_per_path(needs),
                        PathBuffers::largest_bytes_per_path(needs), all - std::min(all, taken),
-                       device.info().max_allocation_bytes);
+                       most_buffer_bytes(device));
 }
 
 /// Allocates buffers for `paths` paths, or for fewer where the device turns out to have less memory
@@ -118,8 +119,15 @@ Film DeviceFilm::read(int first, int rows) const {
   const std::size_t row_words =
       static_cast<std::size_t>(part.window.width) * part.words_per_pixel();
   std::vector<std::uint64_t> values(static_cast<std::size_t>(rows) * row_words);
-  words.RawBuffer::read(values.data(), static_cast<std::size_t>(first) * row_words * sizeof(ulong),
-                        values.size() * sizeof(ulong));
+  for (int row = first; row < first + rows;) {
+    const int buffer = row / rows_of_buffer,
+              end = std::min(first + rows, (buffer + 1) * rows_of_buffer);
+    const auto at = [&](int r, int from) { return static_cast<std::size_t>(r - from) * row_words; };
+    words[static_cast<std::size_t>(buffer)].RawBuffer::read(
+        values.data() + at(row, first), at(row, buffer * rows_of_buffer) * sizeof(ulong),
+        at(end, row) * sizeof(ulong));
+    row = end;
+  }
   const bool whole = part.window == layout.window;
   return Film(part, std::move(values), whole ? parts : std::vector<FilmPart>());
 }
@@ -154,11 +162,7 @@ void Renderer::reset(const FlatView& view) {
   layout.layers = layers_;
   layout.color_exponent = exponent_of(scene_.light_radiance());
   layout.length_exponent = exponent_of(extent_of(scene_.world(), view));
-  const std::size_t pixels = layout.window.pixels(), words = pixels * layout.words_per_pixel();
-  if (words != film_.words.size() || film_.words.handle()() == nullptr) {
-    film_ = {};  // the old one makes room first
-    film_.words = Buffer<ulong>(scene_.device(), words);
-  }
+  provide_film(layout);
   film_.layout = layout;
   film_.parts.clear();
   is_old_ = true;
@@ -171,9 +175,27 @@ void Renderer::reset(const FlatView& view) {
   scene_.kernels().compile(render_stages(needs));
 }
 
+void Renderer::provide_film(const FilmLayout& layout) {
+  const std::size_t row_words =
+      static_cast<std::size_t>(layout.window.width) * layout.words_per_pixel();
+  const std::uint64_t rows = most_buffer_bytes(scene_.device()) / (row_words * sizeof(ulong));
+  const int height = layout.window.height;
+  int each = static_cast<int>(std::clamp<std::uint64_t>(rows, 1, std::uint64_t(height)));
+  if (each < height && each >= 8) each = each / 8 * 8;  // lists of pixels go tile by tile
+  std::vector<std::size_t> sizes;                       // of the buffers
+  for (int row = 0; row < height; row += each)
+    sizes.push_back(static_cast<std::size_t>(std::min(each, height - row)) * row_words);
+  if (!std::ranges::equal(sizes, film_.words, {}, {}, &Buffer<ulong>::size)) {
+    film_ = {};  // the old one makes room first
+    for (const std::size_t size : sizes) film_.words.emplace_back(scene_.device(), size);
+  }
+  film_.rows_of_buffer = each;
+}
+
 // Clearing takes megabytes: it is left to the first pass if that covers the whole film.
 void Renderer::clear_film() const {
-  if (is_old_) film_.words.clear();
+  if (is_old_)
+    for (Buffer<ulong>& part : film_.words) part.clear();
   is_old_ = false;
 }
 
@@ -190,19 +212,28 @@ void Renderer::pass(const Window& window, std::uint32_t sample_begin, std::uint3
   add_part(film_.parts, {window, sample_begin, sample_count});
   if (window != film_.layout.window) clear_film();
   const bool first_pass = std::exchange(is_old_, false);
-  const std::size_t pixels = window.pixels(), per_batch = batch_paths_ / sample_count;
-  for (std::size_t first = 0; first < pixels; first += per_batch) {
-    const std::size_t count = std::min(per_batch, pixels - first);
-    BatchRecord record = batch_of(count, sample_count);
-    record.window_x = narrow<uint>(window.x);
-    record.window_y = narrow<uint>(window.y);
-    record.window_width = narrow<uint>(window.width);
-    record.window_height = narrow<uint>(window.height);
-    record.pixel_begin = narrow<uint>(first);
-    record.sample_begin = sample_begin;
-    record.first = first_pass ? 1 : 0;
-    batch(record);
-    if (batch_done) batch_done(first + count);
+  const std::size_t per_batch = batch_paths_ / sample_count;
+  std::size_t done = 0;
+  // The part of the window in each of the film's buffers, after the other.
+  for (Window part = window; part.y < window.y + window.height; part.y += part.height) {
+    const std::size_t buffer = film_buffer(part.y);
+    const int end = film_.layout.window.y + (static_cast<int>(buffer) + 1) * film_.rows_of_buffer;
+    part.height = std::min(window.y + window.height, end) - part.y;
+    const std::size_t pixels = part.pixels();
+    for (std::size_t first = 0; first < pixels; first += per_batch) {
+      const std::size_t count = std::min(per_batch, pixels - first);
+      BatchRecord record = batch_of(count, sample_count);
+      record.window_x = narrow<uint>(part.x);
+      record.window_y = narrow<uint>(part.y);
+      record.window_width = narrow<uint>(part.width);
+      record.window_height = narrow<uint>(part.height);
+      record.pixel_begin = narrow<uint>(first);
+      record.sample_begin = sample_begin;
+      record.first = first_pass ? 1 : 0;
+      batch(record, buffer);
+      if (batch_done) batch_done(done + first + count);
+    }
+    done += pixels;
   }
 }
 
@@ -218,21 +249,28 @@ void Renderer::pass(std::span<const PixelRecord> pixels, std::uint32_t sample_co
   const std::size_t room =
       1 + (per_batch * sizeof(PixelRecord) + sizeof(BatchRecord) - 1) / sizeof(BatchRecord);
   if (listed.size() < room) listed = Buffer<BatchRecord>(scene_.device(), room);
-  for (std::size_t first = 0; first < pixels.size(); first += per_batch) {
-    const std::span<const PixelRecord> now =
+  const auto buffer_of = [this](const PixelRecord& one) { return film_buffer(narrow<int>(one.y)); };
+  for (std::size_t first = 0; first < pixels.size();) {
+    const std::size_t buffer = buffer_of(pixels[first]);
+    const std::span<const PixelRecord> next =
         pixels.subspan(first, std::min(per_batch, pixels.size() - first));
-    std::vector<PixelRecord> records(now.begin(), now.end());
+    std::vector<PixelRecord> records;
+    for (const PixelRecord& one : next) {
+      if (buffer_of(one) != buffer) break;
+      records.push_back(one);
+    }
+    first += records.size();
     for (std::uint32_t done = 0; done < sample_count;) {
       const std::uint32_t samples = std::min(most_samples, sample_count - done);
       listed.RawBuffer::write(records.data(), sizeof(BatchRecord),
                               records.size() * sizeof(PixelRecord));
       BatchRecord record = batch_of(records.size(), samples);
       record.listed = 1;
-      batch(record);
+      batch(record, buffer);
       for (PixelRecord& each : records) each.sample_begin += samples;
       done += samples;
     }
-    if (batch_done) batch_done(first + now.size());
+    if (batch_done) batch_done(first);
   }
 }
 
@@ -255,13 +293,15 @@ BatchRecord Renderer::batch_of(std::size_t count, std::uint32_t sample_count) co
 }
 
 // kernels/stages/path.cl describes the algorithm.
-void Renderer::batch(const BatchRecord& record) {
+void Renderer::batch(BatchRecord record, std::size_t film_buffer) {
   Kernels& kernels = scene_.kernels();
   const LaunchPolicy policy = launch_policy_of(scene_.device());
   Bindings bindings = scene_.bindings();
   sensor_.bind(bindings);
   paths_.bind(bindings);
-  const FilmBuffers film{film_.words};
+  record.film_begin = narrow<uint>(film_buffer * static_cast<std::size_t>(film_.rows_of_buffer) *
+                                   static_cast<std::size_t>(film_.layout.window.width));
+  const FilmBuffers film{film_.words[film_buffer]};
   bindings.film = &film;
   paths_.batch.batch.write({&record, 1});
   std::array<uint, counter_count> counters{};

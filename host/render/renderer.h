@@ -27,9 +27,11 @@ struct RayCounts {
   std::uint64_t not_finite = 0;  // samples that count as black, as their radiance was not a number
 };
 
-/// DeviceFilm is a film in a device's memory, which copies share.
+/// DeviceFilm is a film in a device's memory, which copies share: in one buffer, or in several of
+/// so many rows each where the device allows none of its size.
 struct DeviceFilm {
-  Buffer<ulong> words;
+  std::vector<Buffer<ulong>> words;
+  int rows_of_buffer = 0;
   FilmLayout layout;
   std::vector<FilmPart> parts;
 
@@ -78,7 +80,9 @@ class Renderer {
  private:
   /// Returns a batch of `count` pixels with so many samples each, of no window.
   BatchRecord batch_of(std::size_t count, std::uint32_t sample_count) const;
-  void batch(const BatchRecord& record);
+  /// Makes the film of this layout, whose contents do not matter.
+  void provide_film(const FilmLayout& layout);
+  void batch(BatchRecord record, std::size_t film_buffer);
   /// These render the rounds of a batch until no path is left: the host queries the number in each
   /// round, or launches several rounds at a time for the most paths there may be.
   void rounds_by_host(Bindings& bindings, std::size_t paths);
@@ -92,6 +96,10 @@ class Renderer {
   void connect_and_sort(Bindings& bindings, Launched shadows, Launched next);
   void sort(const Bindings& bindings, Launched paths);
   void clear_film() const;
+  /// Returns the number of the film's buffer that has a row of the picture.
+  std::size_t film_buffer(int row) const {
+    return static_cast<std::size_t>((row - film_.layout.window.y) / film_.rows_of_buffer);
+  }
 
   DeviceScene& scene_;
   std::size_t batch_paths_;

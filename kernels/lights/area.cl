@@ -38,7 +38,7 @@ static inline __global const float* area_ball(const Lights* lights,
 
 // Returns the primitive's data (shapes/fields.cl).
 static inline __global const float* area_data(const Tree* tree, __global const LightRecord* light) {
-  return lane_data(leaf_at(leaves_of(tree), light->slot), 0);
+  return lane_data(floats_at(leaves_of(tree), light->slot), 0);
 }
 
 // Returns the factor by which areas with normal n (object space, unit) grow from object space to

@@ -22,7 +22,7 @@ static inline float4 environment_texel(const Picture* picture, int x, int y) {
     x = x < 0 ? x + width : x >= width ? x - width : x;
     y = clamp(y, 0, height - 1);
   }
-  return vload4((size_t)y * (size_t)width + (size_t)x, picture->texels);
+  return picture_texel(picture, (size_t)y * (size_t)width + (size_t)x);
 }
 
 // Returns the radiance (before the light's scale) at uv of the image, whose colours are under
@@ -56,14 +56,14 @@ static inline uint cdf_cell(__global const float* cdf, uint cells, float u) {
 }
 
 static inline __global const float* environment_row(const Picture* picture, uint row) {
-  return picture->cdf + (picture->height + 1u) + (size_t)row * (picture->width + 1u);
+  return floats_at(picture->cdf, (picture->height + 1u) + (size_t)row * (picture->width + 1u));
 }
 
 // Returns the density over the unit square of the image at cell (column, row).
 static inline float environment_density(const Picture* picture, uint column, uint row) {
-  __global const float* conditional = environment_row(picture, row);
-  return (picture->cdf[row + 1] - picture->cdf[row]) *
-         (conditional[column + 1] - conditional[column]) *
+  __global const float *conditional = environment_row(picture, row),
+                       *rows = floats_at(picture->cdf, 0);
+  return (rows[row + 1] - rows[row]) * (conditional[column + 1] - conditional[column]) *
          ((float)picture->width * (float)picture->height);
 }
 
@@ -78,11 +78,12 @@ static inline float environment_solid_angle_density(const Picture* picture, floa
 static inline float environment_sample(const Picture* picture, float2 u, float3* direction,
                                        float2* uv) {
   const uint width = picture->width, height = picture->height;
-  const uint row = cdf_cell(picture->cdf, height, u.y);
+  __global const float* rows = floats_at(picture->cdf, 0);
+  const uint row = cdf_cell(rows, height, u.y);
   __global const float* conditional = environment_row(picture, row);
   const uint column = cdf_cell(conditional, width, u.x);
   const float x_begin = conditional[column], x_step = conditional[column + 1] - x_begin;
-  const float y_begin = picture->cdf[row], y_step = picture->cdf[row + 1] - y_begin;
+  const float y_begin = rows[row], y_step = rows[row + 1] - y_begin;
   if (!(x_step > 0.0f && y_step > 0.0f)) return 0.0f;
   *uv = (float2)(((float)column + clamp((u.x - x_begin) / x_step, 0.0f, 1.0f)) / (float)width,
                  ((float)row + clamp((u.y - y_begin) / y_step, 0.0f, 1.0f)) / (float)height);

@@ -18,8 +18,9 @@ static inline int goniometric_light_sample(const Scene* scene, __global const Li
       lamp_weight(goniometric_position(data), goniometric_light_from_world(data), p, &w, s);
   if (!(weight > 0.0f)) return 0;
   const Picture picture = picture_of(&scene->lights, goniometric_picture(data));
-  return lamp_shines(scene, light, lambda,
-                     weight * picture.texels[picture_nearest(&picture, sphere_to_square(w))], s);
+  return lamp_shines(
+      scene, light, lambda,
+      weight * *floats_at(picture.texels, picture_nearest(&picture, sphere_to_square(w))), s);
 }
 
 #endif

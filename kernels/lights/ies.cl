@@ -20,7 +20,7 @@ static inline uint ies_cell(__global const float* angles, uint count, float angl
 
 static inline float ies_intensity(const Picture* profile, float3 w) {
   const uint polar_count = profile->height, azimuth_count = profile->width;
-  __global const float *polar = profile->texels, *azimuths = polar + polar_count,
+  __global const float *polar = floats_at(profile->texels, 0), *azimuths = polar + polar_count,
                        *values = azimuths + azimuth_count;
   const float theta = atan2(sqrt(w.x * w.x + w.y * w.y), -w.z);
   if (theta < polar[0] || theta > polar[polar_count - 1u]) return 0.0f;

@@ -61,15 +61,20 @@ static inline __global const float* light_data_of(const Lights* lights,
 
 // Picture is an image of a light (lights.def).
 typedef struct {
-  __global const float *texels, *cdf;
+  Floats texels, cdf;
   uint width, height, square;
 } Picture;
 
 static inline Picture picture_of(const Lights* lights, __global const float* field) {
-  const Picture picture = {lights->light_texels + as_uint(field[0]),
-                           lights->light_cdf + as_uint(field[1]), as_uint(field[2]),
+  const Picture picture = {floats_from(light_texels_of(lights), as_uint(field[0])),
+                           floats_from(light_cdf_of(lights), as_uint(field[1])), as_uint(field[2]),
                            as_uint(field[3]), as_uint(field[4])};
   return picture;
+}
+
+// Returns the four numbers of texel `i` (lights.def).
+static inline float4 picture_texel(const Picture* picture, size_t i) {
+  return vload4(0, floats_at(picture->texels, 4 * i));
 }
 
 // Returns the number of the texel that holds uv, which are within 0 and 1.

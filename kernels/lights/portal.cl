@@ -20,7 +20,7 @@ typedef struct {
 } PortalWindow;
 
 static inline ulong portal_sum_to(const Picture* picture, uint x, uint y) {
-  __global const float* at = picture->cdf + 2u * ((size_t)y * (picture->width + 1u) + x);
+  __global const float* at = floats_at(picture->cdf, 2u * ((size_t)y * (picture->width + 1u) + x));
   return ((ulong)as_uint(at[1]) << 32) | as_uint(at[0]);
 }
 
@@ -101,7 +101,7 @@ static inline float4 portal_texel(const Spectra* spectra, const Picture* picture
                                   float4 lambda) {
   if (picture->square) return light_spectrum(spectra, light, lambda, 1.0f);
   return sigmoid_illuminant(picture_illuminant(spectra, light),
-                            vload4((size_t)y * picture->width + x, picture->texels), lambda) *
+                            picture_texel(picture, (size_t)y * picture->width + x), lambda) *
          light->scale;
 }
 

@@ -21,7 +21,7 @@ static inline int projection_light_sample(const Scene* scene, __global const Lig
       0.5f + (float2)(w.x / w.z * projection_across(data), w.y / w.z * projection_down(data));
   if (!(uv.x >= 0.0f && uv.x <= 1.0f && uv.y >= 0.0f && uv.y <= 1.0f)) return 0;
   const Picture picture = picture_of(&scene->lights, projection_picture(data));
-  const float4 texel = vload4(picture_nearest(&picture, uv), picture.texels);
+  const float4 texel = picture_texel(&picture, picture_nearest(&picture, uv));
   if (!(texel.w > 0.0f)) return 0;
   s->radiance = sigmoid_illuminant(picture_illuminant(&scene->spectra, light), texel, lambda) *
                 (light->scale * weight);

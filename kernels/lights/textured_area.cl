@@ -24,10 +24,10 @@ static inline float4 textured_area_light_emitted(const Spectra* spectra, const L
   const size_t top = (size_t)clamp((int)low.y, 0, height - 1) * picture.width,
                bottom = (size_t)clamp((int)low.y + 1, 0, height - 1) * picture.width;
   __global const float* illuminant = picture_illuminant(spectra, light);
-  const float4 r00 = sigmoid_illuminant(illuminant, vload4(top + x0, picture.texels), lambda);
-  const float4 r10 = sigmoid_illuminant(illuminant, vload4(top + x1, picture.texels), lambda);
-  const float4 r01 = sigmoid_illuminant(illuminant, vload4(bottom + x0, picture.texels), lambda);
-  const float4 r11 = sigmoid_illuminant(illuminant, vload4(bottom + x1, picture.texels), lambda);
+  const float4 r00 = sigmoid_illuminant(illuminant, picture_texel(&picture, top + x0), lambda);
+  const float4 r10 = sigmoid_illuminant(illuminant, picture_texel(&picture, top + x1), lambda);
+  const float4 r01 = sigmoid_illuminant(illuminant, picture_texel(&picture, bottom + x0), lambda);
+  const float4 r11 = sigmoid_illuminant(illuminant, picture_texel(&picture, bottom + x1), lambda);
   return mix(mix(r00, r10, t.x), mix(r01, r11, t.x), t.y) * light->scale;
 }
 

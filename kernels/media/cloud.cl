@@ -12,7 +12,7 @@
 static inline MediumBox cloud_medium_box(const MediumView* m) {
   MediumBox box;
   box.place = cloud_medium_place(m->data);
-  box.majorants = m->grids + cloud_medium_majorants(m->data);
+  box.majorants = floats_from(m->grids, cloud_medium_majorants(m->data));
   box.size = 1;
   box.extinction = cloud_medium_scale(m->data) *
                    (spectrum_eval(m->spectra, cloud_medium_sigma_a(m->data), m->lambda) +

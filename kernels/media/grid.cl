@@ -6,6 +6,7 @@
 #ifndef CAPLET_MEDIA_GRID_CL
 #define CAPLET_MEDIA_GRID_CL
 
+#include "math/floats.cl"
 #include "math/vector.cl"
 
 // GridCells are the eight cells around a point, from the least in all coordinates on, x fastest:
@@ -34,9 +35,9 @@ static inline GridCells grid_cells(int3 size, float3 q) {
   return out;
 }
 
-static inline float grid_value(const GridCells* cells, __global const float* values) {
+static inline float grid_value(const GridCells* cells, Floats values) {
   float sum = 0.0f;
-  for (int i = 0; i < 8; ++i) sum += cells->weight[i] * values[cells->cell[i]];
+  for (int i = 0; i < 8; ++i) sum += cells->weight[i] * *floats_at(values, cells->cell[i]);
   return sum;
 }
 

@@ -13,7 +13,7 @@ typedef struct {
   float t, end;       // where the next stretch begins, and the last ends
   float3 next, step;  // t of the next plane across each axis, and from one to the next
   int3 cell, ahead;   // ahead: 1 or -1
-  __global const float* majorants;
+  Floats majorants;
   int size;
 } MajorantWalk;
 
@@ -62,7 +62,7 @@ static inline int majorants_next(MajorantWalk* w, float* t0, float* t1, float* m
     w->cell = clamp(w->cell, 0, size - 1);
     w->next = (float3)(INFINITY);
   }
-  *majorant = w->majorants[(w->cell.z * size + w->cell.y) * size + w->cell.x];
+  *majorant = *floats_at(w->majorants, (size_t)((w->cell.z * size + w->cell.y) * size + w->cell.x));
   *t0 = w->t;
   const float leave = walk_least(w->next);
   *t1 = fmax(fmin(leave, w->end), w->t);

@@ -37,7 +37,7 @@ enum {
 static inline MediumView medium_view(const Media* media, const Spectra* spectra, uint medium,
                                      float4 lambda) {
   const MediumView view = {spectra, media->media_data + media->mediums[medium].data,
-                           media->media_grids, lambda};
+                           media_grids_of(media), lambda};
   return view;
 }
 
@@ -94,7 +94,7 @@ static inline MediumBox medium_box(uint kind, const MediumView* view) {
 #include "rows/media.def"
 #undef MEDIUM
     default: {
-      const MediumBox nothing = {view->data, view->data, 1, (float4)(0.0f)};
+      const MediumBox nothing = {view->data, view->grids, 1, (float4)(0.0f)};
       return nothing;
     }
   }

@@ -15,7 +15,7 @@
 typedef struct {
   const Spectra* spectra;
   __global const float* data;
-  __global const float* grids;
+  Floats grids;
   float4 lambda;
 } MediumView;
 
@@ -30,7 +30,7 @@ typedef struct {
 // from the world.
 typedef struct {
   __global const float* place;
-  __global const float* majorants;
+  Floats majorants;
   int size;
   float4 extinction;
 } MediumBox;

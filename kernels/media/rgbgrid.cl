@@ -11,7 +11,7 @@
 static inline MediumBox rgbgrid_medium_box(const MediumView* m) {
   MediumBox box;
   box.place = rgbgrid_medium_place(m->data);
-  box.majorants = m->grids + rgbgrid_medium_majorants(m->data);
+  box.majorants = floats_from(m->grids, rgbgrid_medium_majorants(m->data));
   box.size = CAPLET_MAJORANT_CELLS;
   box.extinction = (float4)(rgbgrid_medium_scale(m->data));
   return box;
@@ -21,7 +21,7 @@ static inline float4 rgbgrid_value(const MediumView* m, const GridCells* cells, 
   float4 sum = (float4)(0.0f);
   for (int i = 0; i < 8; ++i) {
     if (!(cells->weight[i] > 0.0f)) continue;
-    const float4 texel = vload4(cells->cell[i], m->grids + grid);
+    const float4 texel = vload4(0, floats_at(m->grids, grid + 4 * cells->cell[i]));
     sum += cells->weight[i] * texel.w * sigmoid_polynomial(texel.x, texel.y, texel.z, m->lambda);
   }
   return sum;

@@ -96,7 +96,7 @@ static inline void csg_add(CsgLine* line, uint i, const CsgSpans* spans, uint la
 // Adds the crossings of the operands of one group with the ray `own`.
 static inline void csg_add_group(CsgLine* line, const ShapeRay* own, __global const uint* group,
                                  float shift) {
-  __global const float* block = leaf_at(own->leaves, group[1]);
+  __global const float* block = floats_at(own->leaves, group[1]);
 #if CAPLET_REAL_WIDTH == 8
   const uint kind = group[0], count = group[2], first = group[3];
   const Span span = solid_span(kind, own, block, 0);
@@ -144,7 +144,7 @@ static inline void csg_add_group(CsgLine* line, const ShapeRay* own, __global co
 // Computes the crossings of all operands of the csg shape at leaves[begin]. Returns 0 if there are
 // none.
 static inline int csg_start(const ShapeRay* ray, uint begin, CsgLine* line) {
-  __global const float* header = leaf_at(ray->leaves, begin);
+  __global const float* header = floats_at(ray->leaves, begin);
   __global const uint* numbers = (__global const uint*)header;
   const float3 d = (float3)(ray->dx, ray->dy, ray->dz);
   float3 o = (float3)(ray->ox, ray->oy, ray->oz) - load3(header);
@@ -180,8 +180,8 @@ static inline int csg_start(const ShapeRay* ray, uint begin, CsgLine* line) {
       group_o = affine_point(&in, group_o);
       group_d = affine_vector(&in, group_d);
 #else
-      group_o = transform_point(leaf_at(ray->leaves, group[4]), group_o);
-      group_d = transform_vector(leaf_at(ray->leaves, group[4]), group_d);
+      group_o = transform_point(floats_at(ray->leaves, group[4]), group_o);
+      group_d = transform_vector(floats_at(ray->leaves, group[4]), group_d);
 #endif
     }
 #ifdef CAPLET_MOTION

@@ -5,7 +5,7 @@
 #ifndef CAPLET_SHAPES_CSG_SPACE_CL
 #define CAPLET_SHAPES_CSG_SPACE_CL
 
-#include "math/leaves.cl"
+#include "math/floats.cl"
 #include "math/motion.cl"
 #include "math/vector.cl"
 
@@ -20,9 +20,9 @@ typedef struct {
 } CsgSpace;
 
 // Returns the space of the group whose row is `group` (csg.cl) at a time.
-static inline CsgSpace csg_space(Leaves leaves, __global const uint* group, float time) {
+static inline CsgSpace csg_space(Floats leaves, __global const uint* group, float time) {
   CsgSpace space;
-  space.matrices = leaf_at(leaves, group[4] != CAPLET_NONE ? group[4] : 0u);
+  space.matrices = floats_at(leaves, group[4] != CAPLET_NONE ? group[4] : 0u);
 #ifdef CAPLET_MOTION
   space.segments = group[6];
   space.time = time;

@@ -225,7 +225,7 @@ static inline void torus_patch_crossings(const ShapeRay* ray, __global const flo
 // --- Both ---
 
 static inline PatchCrossings patch_crossings(const ShapeRay* ray, uint begin) {
-  __global const float* data = leaf_at(ray->leaves, begin);
+  __global const float* data = floats_at(ray->leaves, begin);
   PatchCrossings out;
   out.on = out.leaving = 0u;
   if (as_uint(data[4]) == CAPLET_NONE)

@@ -6,7 +6,7 @@
 #ifndef CAPLET_SHAPES_MOVING_CORNERS_CL
 #define CAPLET_SHAPES_MOVING_CORNERS_CL
 
-#include "math/leaves.cl"
+#include "math/floats.cl"
 #include "math/motion.cl"
 
 // KeyPair is the begin and the end of the segment of time that a time falls into, and where
@@ -18,14 +18,14 @@ typedef struct {
 } KeyPair;
 
 // The parameters are the fields of moving_triangle; the time is in [0, 1].
-static inline KeyPair triangle_keys(Leaves leaves, uint begin, uint times, uint segments,
+static inline KeyPair triangle_keys(Floats leaves, uint begin, uint times, uint segments,
                                     uint stride, float time) {
   KeyPair keys;
-  const uint segment = motion_segment(leaf_at(leaves, times), segments, time, &keys.u);
+  const uint segment = motion_segment(floats_at(leaves, times), segments, time, &keys.u);
   // At the end of a short last segment u may be beyond 1.
   keys.u = fmin(keys.u, 1.0f);
-  keys.from = leaf_at(leaves, begin + (size_t)stride * segment);
-  keys.to = leaf_at(leaves, begin + (size_t)stride * (segment + 1u));
+  keys.from = floats_at(leaves, begin + (size_t)stride * segment);
+  keys.to = floats_at(leaves, begin + (size_t)stride * (segment + 1u));
   return keys;
 }
 

@@ -16,7 +16,7 @@ static inline Affine placed_at(const Tree* tree, uint instance, uint matrix) {
   __global const InstanceRecord* placed = tree->instances + instance;
   if (placed->motion_segments == 0u)
     return affine_load(matrix == 0u ? placed->object_from_world : placed->world_from_object);
-  return motion_at(leaf_at(leaves_of(tree), placed->motion_begin), placed->motion_segments, 2u,
+  return motion_at(floats_at(leaves_of(tree), placed->motion_begin), placed->motion_segments, 2u,
                    matrix, tree->time);
 }
 static inline Affine object_from_world(const Tree* tree, uint instance) {

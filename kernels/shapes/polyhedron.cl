@@ -18,7 +18,7 @@
 // planes.
 static inline int polyhedron_planes(const ShapeRay* ray, uint begin, float* t_enter, float* t_exit,
                                     int* surface_enter, int* surface_exit) {
-  __global const float* head = leaf_at(ray->leaves, begin);
+  __global const float* head = floats_at(ray->leaves, begin);
   const uint count = as_uint(head[3]);
   const float wx = ray->ox - head[0], wy = ray->oy - head[1], wz = ray->oz - head[2];
   const float shift = -(wx * ray->dx + wy * ray->dy + wz * ray->dz) * ray->inv_dd;

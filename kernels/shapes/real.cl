@@ -7,7 +7,7 @@
 #ifndef CAPLET_SHAPES_REAL_CL
 #define CAPLET_SHAPES_REAL_CL
 
-#include "math/leaves.cl"
+#include "math/floats.cl"
 #include "shared/kinds.h"
 
 #ifndef CAPLET_REAL_WIDTH
@@ -126,7 +126,7 @@ typedef struct {
   float inv_dd;  // 1 / |d|^2
   float ff_min;  // below this a squared direction component is rounding noise (2^-50 |d|^2)
   int sees_entering, sees_leaving;  // -1 or 0: crossings that count
-  Leaves leaves;                    // shapes of no fixed size keep data there
+  Floats leaves;                    // shapes of no fixed size keep data there
 #ifdef CAPLET_MOTION
   float time;  // when the ray sees the scene
 #endif
@@ -135,7 +135,7 @@ typedef struct {
 #endif
 } ShapeRay;
 
-static inline ShapeRay shape_ray(float3 o, float3 d, float t_min, Leaves leaves) {
+static inline ShapeRay shape_ray(float3 o, float3 d, float t_min, Floats leaves) {
   ShapeRay ray;
   ray.ox = o.x;
   ray.oy = o.y;

@@ -73,7 +73,7 @@ static inline Surface surface_at(const Tree* tree, const Surfaces* surfaces, con
       slot_data(tree, hit->slot),
       o + hit->t * d,
       backward,
-      geometry.uv_space != CAPLET_NONE ? leaf_at(leaves_of(tree), geometry.uv_space) : 0,
+      geometry.uv_space != CAPLET_NONE ? floats_at(leaves_of(tree), geometry.uv_space) : 0,
       d,
       chain_u,
       time_of(tree)};

@@ -20,8 +20,8 @@ typedef struct {
 // Finds the operand that surface q->surface belongs to: returns its shape kind, and the query for
 // surface_shape. Layout: csg.cl.
 static inline uint csg_operand(const SurfaceQuery* q, CsgOperand* operand, SurfaceQuery* own) {
-  const Leaves leaves = q->leaves;
-  __global const float* header = leaf_at(leaves, csg_begin(q->data));
+  const Floats leaves = q->leaves;
+  __global const float* header = floats_at(leaves, csg_begin(q->data));
   __global const uint* numbers = (__global const uint*)header;
   const uint groups = numbers[4];
   __global const uint* operands = numbers + 8 * (1 + groups);
@@ -43,14 +43,14 @@ static inline uint csg_operand(const SurfaceQuery* q, CsgOperand* operand, Surfa
   operand->placed = row[4] != CAPLET_NONE;
   operand->space = csg_space(leaves, row, q->time);
   own->surface = q->surface - begin;
-  own->data = lane_data(leaf_at(leaves, row[1]), found - row[3]);
+  own->data = lane_data(floats_at(leaves, row[1]), found - row[3]);
   own->x = q->x - operand->center;
   // This is row 0, which in a leaf holds the primitive's id.
   const uint space = as_uint(own->data[-8]);
-  own->space = space != CAPLET_NONE ? leaf_at(leaves, space) : 0;
+  own->space = space != CAPLET_NONE ? floats_at(leaves, space) : 0;
   own->fallback = operand->subtracted ? -q->fallback : q->fallback;
   own->chain_u =
-      any_chain && row[5] != CAPLET_NONE ? leaf_at(leaves, row[5]) + 2u * (found - row[3]) : 0;
+      any_chain && row[5] != CAPLET_NONE ? floats_at(leaves, row[5]) + 2u * (found - row[3]) : 0;
   if (operand->placed) {
     const Affine in = object_from_csg(&operand->space), out = csg_from_object(&operand->space);
     own->x = affine_point(&in, own->x);

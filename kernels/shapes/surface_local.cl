@@ -37,7 +37,7 @@ enum { any_chain = 0 };
 // in the space its data is stored in.
 typedef struct {
   const Surfaces* surfaces;
-  Leaves leaves;
+  Floats leaves;
   const GeometryRecord* geometry;
   uint primitive, surface;
   __global const float* data;  // shapes/fields.cl

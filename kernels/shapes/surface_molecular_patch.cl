@@ -37,7 +37,7 @@ static inline LocalSurface surface_torus_patch(const SurfaceQuery* q, __global c
 }
 
 static inline LocalSurface surface_molecular_patch(const SurfaceQuery* q) {
-  __global const float* data = leaf_at(q->leaves, molecular_patch_begin(q->data));
+  __global const float* data = floats_at(q->leaves, molecular_patch_begin(q->data));
   if (as_uint(data[4]) == CAPLET_NONE) return surface_torus_patch(q, data);
   LocalSurface s = sphere_point(q, load3(data), data[3], own_z(q->space), 0.0f);
   if (data[5] != 0.0f) s.ng = s.ns = -s.ng;

@@ -46,7 +46,7 @@ static inline float3 polyhedron_face_point(__global const float* planes, uint co
 }
 
 static inline LocalSurface surface_polyhedron(const SurfaceQuery* q) {
-  __global const float* head = leaf_at(q->leaves, polyhedron_begin(q->data));
+  __global const float* head = floats_at(q->leaves, polyhedron_begin(q->data));
   __global const float* planes = head + 8;
   const float3 center = load3(head), normal = load3(planes + 4u * q->surface);
   const uint count = as_uint(head[3]);

@@ -11,9 +11,14 @@
 //       only some renders have: STATE_LAYERS (BatchRecord.layer_floats a path), STATE_CONES,
 //       STATE_SIDES, STATE_MEDIA, STATE_TIMES
 //   GROUP_END(Type)
-// and writes GROUP_TREE, or ALL_GROUPS. Valid as OpenCL C 1.2 and as C++.
+// and writes GROUP_TREE, or ALL_GROUPS. Arrays of scenes that may lie in parts (math/floats.cl) are
+// rows BUFFER and PARTS(name, type); PARTS is nothing unless the including file defines it anew.
+// Valid as OpenCL C 1.2 and as C++.
 #ifndef CAPLET_SHARED_GROUPS_H
 #define CAPLET_SHARED_GROUPS_H
+
+#define PARTS(name, type)
+#define BUFFER_IN_PARTS(name, type) BUFFER(name, type, IN) PARTS(name, type)
 
 // --- The scene ---
 
@@ -23,13 +28,9 @@
 #define GROUP_TREE                                               \
   GROUP_BEGIN(Tree, tree)                                        \
   BUFFER(world, WorldRecord, ONE)                                 \
-  BUFFER(nodes, float, IN)  /* CAPLET_NODE_FLOATS a node */      \
-  BUFFER(leaves, float, IN) /* blocks of rows, shapes.def */     \
+  BUFFER_IN_PARTS(nodes, float)  /* CAPLET_NODE_FLOATS a node */ \
+  BUFFER_IN_PARTS(leaves, float) /* blocks of rows, shapes.def */ \
   BUFFER(instances, InstanceRecord, IN)                          \
-  /* further parts of leaves, on devices that allow no buffer of its size (math/leaves.cl) */ \
-  BUFFER(leaves_1, float, IN)                                    \
-  BUFFER(leaves_2, float, IN)                                    \
-  BUFFER(leaves_3, float, IN)                                    \
   TREE_TIME                                                      \
   GROUP_END(Tree)
 
@@ -59,7 +60,7 @@
   BUFFER(textures, TextureRecord, IN) \
   BUFFER(texture_data, float, IN)  /* textures.def */ \
   BUFFER(images, ImageRecord, IN) \
-  BUFFER(texels, uint, IN)  /* by ImageRecord */ \
+  BUFFER_IN_PARTS(texels, uint)  /* by ImageRecord */ \
   GROUP_END(Materials)
 
 #define GROUP_LIGHTS                                                                                            \
@@ -70,15 +71,15 @@
   BUFFER(light_alias, AliasRecord, IN)                                                                          \
   BUFFER(light_nodes, uint, IN)  /* of the light tree, CAPLET_LIGHT_NODE each (lights/tree.cl) */               \
   BUFFER(light_places, uint, IN) /* of each light and, behind them, of each of its nodes: where it stands in a node, or CAPLET_NONE */ \
-  BUFFER(light_texels, float, IN) /* of the lights' pictures (lights.def). In colour: 4 a texel, sigmoid c0 c1 c2, scale (times the illuminant) */ \
-  BUFFER(light_cdf, float, IN)    /* what they are sampled by (environment.cl, portal.cl) */ \
+  BUFFER_IN_PARTS(light_texels, float) /* of the lights' pictures (lights.def). In colour: 4 a texel, sigmoid c0 c1 c2, scale (times the illuminant) */ \
+  BUFFER_IN_PARTS(light_cdf, float)    /* what they are sampled by (environment.cl, portal.cl) */ \
   GROUP_END(Lights)
 
 #define GROUP_MEDIA                                                                     \
   GROUP_BEGIN(Media, media)                                                             \
   BUFFER(mediums, MediumRecord, IN)                                                     \
   BUFFER(media_data, float, IN)       /* media.def */                                   \
-  BUFFER(media_grids, float, IN)      /* by MediumRecords' data */                      \
+  BUFFER_IN_PARTS(media_grids, float) /* by MediumRecords' data */                      \
   BUFFER(boundaries, BoundaryRecord, IN)                                                \
   BUFFER(geometry_boundary, uint, IN) /* by number of the geometry; CAPLET_NONE: none */ \
   GROUP_END(Media)
@@ -201,7 +202,7 @@
 
 #define GROUP_FILM               \
   GROUP_BEGIN(Film, film)        \
-  /* BatchRecord.film_words a pixel: samples, then the sums of layers.def */ \
+  /* BatchRecord.film_words a pixel, from pixel film_begin on: samples, then the sums of layers.def */ \
   BUFFER(film, ulong, STATE)                                                  \
   GROUP_END(Film)
 

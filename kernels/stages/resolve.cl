@@ -101,7 +101,8 @@ static void stage_item(const Stage* g, uint item) {
   const PixelRecord pixel = batch_pixel(batch, number);
   const uint samples = samples_of_pixel(batch, number, pixel);
   if (samples == 0u) return;
-  const uint place = (pixel.y - view->crop_y) * view->crop_width + (pixel.x - view->crop_x);
+  const uint place =
+      (pixel.y - view->crop_y) * view->crop_width + (pixel.x - view->crop_x) - batch->film_begin;
   __global ulong* film = g->film.film + (size_t)place * batch->film_words;
   const int first = batch->first != 0u;
   if (left == 0u) *film = (first ? 0ul : *film) + sample_counts(pixel.sample_begin, samples);

@@ -202,7 +202,7 @@ static inline void stage_ahead(const Stage* g, uint item, uint count) {
   }
   if (item + 16u < count) {
     const uint slot = g->rays.path_hit[g->queues.queue[item + 16u]].slot;
-    if (slot != CAPLET_NONE) fetch_ahead(leaf_at(leaves_of(&g->tree), slot_place(slot) & ~7u));
+    if (slot != CAPLET_NONE) fetch_ahead(floats_at(leaves_of(&g->tree), slot_place(slot) & ~7u));
   }
   if (item + 8u < count) {
     const uint slot = g->rays.path_hit[g->queues.queue[item + 8u]].slot;

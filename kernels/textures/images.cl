@@ -14,12 +14,18 @@ static inline int repeated(int x, int n) {
   return x < 0 ? x + n : x;
 }
 
+// Returns where a level's numbers are: where its texels begin, width, height, format.
+static inline __global const uint* image_level(const Materials* materials,
+                                               __global const ImageRecord* image, uint level) {
+  return (__global const uint*)floats_at(texels_of(materials), image->levels_begin + 4u * level);
+}
+
 // Returns texel (x, y) of a level, which may lie beyond its edges: grey in all channels, or red,
 // green, blue and alpha.
 static inline float4 image_texel(const Materials* materials, __global const ImageRecord* image,
                                  uint level, uint wrap, int x, int y) {
-  __global const uint* texels = materials->texels;
-  __global const uint* of = texels + image->levels_begin + 4u * level;
+  const Floats texels = texels_of(materials);
+  __global const uint* of = image_level(materials, image, level);
   const int width = (int)of[1], height = (int)of[2];
   if (wrap == CAPLET_WRAP_REPEAT) {
     x = repeated(x, width);
@@ -33,18 +39,19 @@ static inline float4 image_texel(const Materials* materials, __global const Imag
   y = clamp(y, 0, height - 1);
   const uint channels = image->channels, at = ((uint)y * (uint)width + (uint)x) * channels;
   if (of[3] == CAPLET_TEXELS_FLOATS) {
-    __global const float* values = (__global const float*)(texels + of[0]) + at;
+    __global const float* values = floats_at(texels, (size_t)of[0] + at);
     if (channels == 1u) return (float4)(values[0]);
     return (float4)(values[0], values[1], values[2], channels == 4u ? values[3] : 1.0f);
   }
-  __global const float* decoded = (__global const float*)(texels + image->decode);
+  __global const float* decoded = floats_at(texels, image->decode);
   if (of[3] == CAPLET_TEXELS_NUMBERS) {
-    __global const ushort* numbers = (__global const ushort*)(texels + of[0]) + at;
+    __global const ushort* numbers =
+        (__global const ushort*)bytes_at(texels, of[0], (size_t)at * 2u);
     if (channels == 1u) return (float4)(decoded[numbers[0]]);
     return (float4)(decoded[numbers[0]], decoded[numbers[1]], decoded[numbers[2]],
                     channels == 4u ? decoded[numbers[3]] : 1.0f);
   }
-  __global const uchar* bytes = (__global const uchar*)(texels + of[0]) + at;
+  __global const uchar* bytes = bytes_at(texels, of[0], at);
   if (channels == 1u) return (float4)(decoded[bytes[0]]);
   return (float4)(decoded[bytes[0]], decoded[bytes[1]], decoded[bytes[2]],
                   channels == 4u ? (float)bytes[3] * (1.0f / 255.0f) : 1.0f);
@@ -61,7 +68,7 @@ static inline float2 image_st(float2 st, uint wrap) {
 // that of the last.
 static inline float4 image_bilinear(const Materials* materials, __global const ImageRecord* image,
                                     uint level, uint wrap, float2 st) {
-  __global const uint* of = materials->texels + image->levels_begin + 4u * level;
+  __global const uint* of = image_level(materials, image, level);
   const float x = st.x * (float)of[1] - 0.5f, y = st.y * (float)of[2] - 0.5f;
   const int x0 = (int)floor(x), y0 = (int)floor(y);
   const float u = x - floor(x), v = y - floor(y);
@@ -74,7 +81,7 @@ static inline float4 image_bilinear(const Materials* materials, __global const I
 
 static inline float4 image_point(const Materials* materials, __global const ImageRecord* image,
                                  uint level, uint wrap, float2 st) {
-  __global const uint* of = materials->texels + image->levels_begin + 4u * level;
+  __global const uint* of = image_level(materials, image, level);
   return image_texel(materials, image, level, wrap, (int)floor(st.x * (float)of[1]),
                      (int)floor(st.y * (float)of[2]));
 }
@@ -98,7 +105,7 @@ static inline float4 image_trilinear(const Materials* materials, __global const 
 static inline float4 image_filtered(const Materials* materials, __global const ImageRecord* image,
                                     uint filter, uint wrap, float max_anisotropy, float2 st,
                                     float2 dx, float2 dy) {
-  __global const uint* of = materials->texels + image->levels_begin;
+  __global const uint* of = image_level(materials, image, 0);
   const float2 size = (float2)((float)of[1], (float)of[2]);
   dx *= size;
   dy *= size;

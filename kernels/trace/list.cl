@@ -148,7 +148,7 @@ static inline uint trace_list(const Tree* tree, uint root, RayRecord ray, uint c
     t_best = list_end(&list, t_best);
   }
 #else
-  __global const float* nodes = tree->nodes;
+  const Floats nodes = nodes_of(tree);
   const float t_min = list.t_begin;
   const float3 world_o = (float3)(ray.ox, ray.oy, ray.oz),
                world_d = (float3)(ray.dx, ray.dy, ray.dz);
@@ -163,7 +163,7 @@ static inline uint trace_list(const Tree* tree, uint root, RayRecord ray, uint c
   int current = (int)root;
   for (;;) {
     if (current >= 0) {
-      __global const float* node = nodes + (uint)current * CAPLET_NODE_FLOATS;
+      __global const float* node = node_at(nodes, (uint)current);
       if (visit_node(node, &slab, t_min, t_best, stack, &top, &current)) continue;
     } else {
       const uint kind = CAPLET_LEAF_KIND(current), row = CAPLET_LEAF_ROW(current);

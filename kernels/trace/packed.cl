@@ -51,18 +51,18 @@ static inline BoxRay box_ray(float3 o, float3 d) {
   return r;
 }
 
-static inline __global const uint4* packed_node(__global const float* nodes, uint node) {
-  return (__global const uint4*)nodes + (size_t)node * (CAPLET_PACKED_NODE_FLOATS / 4);
+static inline __global const uint4* packed_node(Floats nodes, uint node) {
+  return (__global const uint4*)floats_at(nodes, (size_t)node * CAPLET_PACKED_NODE_FLOATS);
 }
 
-static inline int packed_child(__global const float* nodes, uint node, uint slot) {
-  return ((__global const int*)nodes)[(size_t)node * CAPLET_PACKED_NODE_FLOATS + 16u + slot];
+static inline int packed_child(Floats nodes, uint node, uint slot) {
+  return as_int(*floats_at(nodes, (size_t)node * CAPLET_PACKED_NODE_FLOATS + 16u + slot));
 }
 
 // Returns the children whose box a ray from `o` meets within [t_min, t_best]; bit slot ^ octant, so
 // that the children it (nearly) meets first are the lowest.
-static inline uint packed_node_hits(__global const float* nodes, uint node, const BoxRay* r,
-                                    float ox, float oy, float oz, float t_min, float t_best) {
+static inline uint packed_node_hits(Floats nodes, uint node, const BoxRay* r, float ox, float oy,
+                                    float oz, float t_min, float t_best) {
   __global const uint4* at = packed_node(nodes, node);
   const uint4 head = at[0], low = at[1], mixed = at[2], high = at[3];
   const float ax = as_float((head.w & 255u) << 23) * r->ix,

@@ -77,8 +77,8 @@ static inline int pool_begin(PooledRay* r, const Stage* g, const Tree* tree, uin
 
 // Puts the children of a node that the ray meets on its stack, nearest on top by the octant that
 // they lie in.
-static inline void pool_visit(PooledRay* r, __global const float* nodes) {
-  __global const float* node = nodes + (size_t)(uint)r->current * CAPLET_NODE_FLOATS;
+static inline void pool_visit(PooledRay* r, Floats nodes) {
+  __global const float* node = node_at(nodes, (uint)r->current);
   float8 near;
   const int8 boxes = boxes_met(node, &r->slab, r->t_min, r->nearest.t, &near);
   // Slot k holds the child that lies furthest along the octant k: seen along the ray they come in
@@ -161,7 +161,7 @@ static void trace_pool(const Stage* g, uint next, const uint end) {
   while (nodes + leaves > 0) {
     int count = 0;
     for (int i = 0; i < nodes; i++) {
-      pool_visit(&pool[at_node[i]], tree->nodes);
+      pool_visit(&pool[at_node[i]], nodes_of(tree));
       going_on[count++] = at_node[i];
     }
 #ifdef CAPLET_SHAPES_CAPSULE_CL
@@ -202,7 +202,7 @@ static void trace_pool(const Stage* g, uint next, const uint end) {
       r->top = top;
       const int current = r->child[top], is_leaf = (int)((uint)current >> 31);
       r->current = current;
-      __global const float* node = tree->nodes + (size_t)(uint)current * CAPLET_NODE_FLOATS;
+      __global const float* node = node_at(nodes_of(tree), (uint)current);
       __global const float* block = leaf_block(tree, CAPLET_LEAF_ROW(current));
       fetch_ahead(is_leaf ? block : node);
       at_node[nodes] = at_leaf[leaves] = place;

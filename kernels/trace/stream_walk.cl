@@ -28,7 +28,7 @@ static void STREAM_WALK(const Stage* g, uint first, const Tree* tree, uint root,
     top--;
     const int current = l->child[top], at = l->at[top], n = l->count[top];
     if (current >= 0) {
-      __global const float* node = tree->nodes + (size_t)(uint)current * CAPLET_NODE_FLOATS;
+      __global const float* node = node_at(nodes_of(tree), (uint)current);
       const float8 nx = vload8(0, node + near_x), ny = vload8(0, node + near_y),
                    nz = vload8(0, node + near_z);
       const float8 fx = vload8(0, node + far_x), fy = vload8(0, node + far_y),
@@ -64,7 +64,7 @@ static void STREAM_WALK(const Stage* g, uint first, const Tree* tree, uint root,
         l->count[top] = end - list;
         top++;
         fetch_ahead(child[k] < 0 ? leaf_block(tree, CAPLET_LEAF_ROW(child[k]))
-                                 : tree->nodes + (size_t)(uint)child[k] * CAPLET_NODE_FLOATS);
+                                 : node_at(nodes_of(tree), (uint)child[k]));
       }
       continue;
     }

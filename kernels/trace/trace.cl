@@ -185,7 +185,7 @@ static inline int ray_to_instance(const Tree* tree, uint instance, float3 world_
 // INFINITY: any). At equal t tie_is_before decides, so that the hit does not depend on the tree or
 // on the order of traversal. Zero, infinite and NaN rays miss.
 static inline HitRecord trace_ray(const Tree* tree, uint root, RayRecord ray, const float enough) {
-  __global const float* nodes = tree->nodes;
+  const Floats nodes = nodes_of(tree);
   NearestHit nearest = nothing_before(ray.t_max);
   const float3 world_o = (float3)(ray.ox, ray.oy, ray.oz),
                world_d = (float3)(ray.dx, ray.dy, ray.dz);
@@ -201,7 +201,7 @@ static inline HitRecord trace_ray(const Tree* tree, uint root, RayRecord ray, co
   int current = (int)root;
   for (;;) {
     if (current >= 0) {
-      __global const float* node = nodes + (uint)current * CAPLET_NODE_FLOATS;
+      __global const float* node = node_at(nodes, (uint)current);
       if (visit_node(node, &slab, t_min, nearest.t, stack, &top, &current)) continue;
     } else {
       const uint kind = CAPLET_LEAF_KIND(current), row = CAPLET_LEAF_ROW(current);

@@ -65,7 +65,7 @@ static inline uint walk_towards(const Tree* tree, const Walk* w, uint to, uint* 
   uint slot = 0, next = 0;
 #pragma unroll 1
   for (uint i = 0; i < CAPLET_WIDTH; i++) {
-    const uint child = (uint)packed_child(tree->nodes, w->node,
+    const uint child = (uint)packed_child(nodes_of(tree), w->node,
                                           i);  // of leaves and of none: greater than any node
     if (child <= to && child > next) {
       next = child;
@@ -138,7 +138,7 @@ static inline int walk_next(const Tree* tree, uint root, CAPLET_RAY_SPACE const 
     const int placed = CAPLET_HAS_SHAPE(shape_instance) && w->instance != CAPLET_NONE;
     if (visit >= 0) {
       w->node = (uint)visit;
-      w->mask = packed_node_hits(tree->nodes, w->node, &w->box, shape->ox, shape->oy, shape->oz,
+      w->mask = packed_node_hits(nodes_of(tree), w->node, &w->box, shape->ox, shape->oy, shape->oz,
                                  shape->t_min, t_best);
       visit = -1;
       if (again == w->node) {
@@ -153,7 +153,7 @@ static inline int walk_next(const Tree* tree, uint root, CAPLET_RAY_SPACE const 
     } else if (w->mask != 0) {
       const uint slot = lowest_bit(w->mask) ^ w->box.octant;
       w->mask &= w->mask - 1u;
-      const int next = packed_child(tree->nodes, w->node, slot);
+      const int next = packed_child(nodes_of(tree), w->node, slot);
       const int of_instance =
           CAPLET_HAS_SHAPE(shape_instance) && next < 0 && CAPLET_LEAF_KIND(next) == shape_instance;
       if (next < 0 && !of_instance) return next;

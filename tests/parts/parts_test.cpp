@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright Caplet authors
 //
-// Leaves in parts against the same leaves in one buffer: hits and pictures are the same to the bit.
+// Trees in parts against the same trees in one buffer: hits and pictures are the same to the bit.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <bit>
 #include <cstdlib>
 #include <cstring>
 #include <numeric>
@@ -15,8 +16,10 @@
 #include "import/import.h"
 #include "lower/live_scene.h"
 #include "lower/lower.h"
+#include "lower/packed_nodes.h"
 #include "lower/tree_file.h"
-#include "render/detail/leaf_parts.h"
+#include "parts_of.h"
+#include "render/detail/array_parts.h"
 #include "render/device_scene.h"
 #include "render/query.h"
 #include "render_scene.h"
@@ -26,20 +29,6 @@
 
 namespace caplet::test {
 namespace {
-
-/// While an instance exists, a part has so many bytes at most.
-class PartsOf {
- public:
-  explicit PartsOf(std::size_t bytes) {
-    ::setenv("CAPLET_LEAF_PART", std::to_string(bytes).c_str(), 1);
-  }
-  ~PartsOf() { ::unsetenv("CAPLET_LEAF_PART"); }
-  PartsOf(const PartsOf&) = delete;
-  PartsOf& operator=(const PartsOf&) = delete;
-};
-
-// All tests have parts of one size, so that they share kernels; leaves need from two to four.
-constexpr std::size_t part_bytes = 1310720;
 
 /// A scene; small ones with 60,000 capsules more.
 Scene scene_named(const std::string& name) {
@@ -69,45 +58,87 @@ bool same_bits(const std::vector<PickRecord>& a, const std::vector<PickRecord>& 
          std::memcmp(a.data(), b.data(), a.size() * sizeof(PickRecord)) == 0;
 }
 
+/// Returns how many parts an array of a scene lies in.
+std::size_t parts_of(const FlatScene& flat, const std::vector<float>& array) {
+  const std::size_t distance =
+      part_distance(most_buffer_bytes(test_device()), flat.arrays(), Encoding::wide);
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < array_parts; ++i)
+    if (!array_part(std::span(array), distance, i).empty()) ++count;
+  return count;
+}
+
 // --- How they are divided ---
 
-TEST(LeafParts, CoverTheLeavesAndOverlap) {
+TEST(ArrayParts, CoverTheArrayAndOverlap) {
   std::vector<float> leaves(1000000);
   std::iota(leaves.begin(), leaves.end(), 0.0f);
-  const Device& device = test_device();
-  EXPECT_EQ(leaf_parts(device, leaves).distance, 0U);
-  EXPECT_EQ(leaf_parts(device, leaves).parts[0].size(), leaves.size());
+  SceneArrays arrays;
+  arrays.leaves = leaves;
+  const auto distance_of = [&](std::uint64_t bytes) {
+    return part_distance(bytes, arrays, Encoding::wide);
+  };
+  EXPECT_EQ(array_part(arrays.leaves, 0, 0).size(), leaves.size());
+  EXPECT_TRUE(array_part(arrays.leaves, 0, 1).empty());
   for (const std::size_t bytes : {1100000U, 1500000U, 2000000U, 3999999U}) {
     SCOPED_TRACE(bytes);
-    const PartsOf limit(bytes);
-    const LeafParts divided = leaf_parts(device, leaves);
-    ASSERT_GT(divided.distance, 0U);
-    EXPECT_EQ(divided.distance % 1024, 0U) << "parts begin at pages";
+    const std::size_t distance = distance_of(bytes);
+    ASSERT_GT(distance, 0U);
+    EXPECT_EQ(distance % 1024, 0U) << "parts begin at pages";
     std::size_t end = 0;
     for (std::size_t i = 0; i < 4; ++i) {
-      const auto part = divided.parts[i];
+      const auto part = array_part(arrays.leaves, distance, i);
       EXPECT_LE(part.size_bytes(), bytes);
       if (part.empty()) continue;
-      EXPECT_EQ(part[0], static_cast<float>(i * divided.distance));
-      end = i * divided.distance + part.size();
+      EXPECT_EQ(part[0], static_cast<float>(i * distance));
+      end = i * distance + part.size();
       if (end < leaves.size()) {
-        EXPECT_GE(part.size(), divided.distance + divided.distance / 9);  // they overlap
+        EXPECT_GE(part.size(), distance + distance / 9);  // they overlap
       }
     }
     EXPECT_EQ(end, leaves.size());
   }
-  {
-    const PartsOf limit(4000000);
-    EXPECT_EQ(leaf_parts(device, leaves).distance, 0U) << "they fit";
-  }
+  EXPECT_EQ(distance_of(4000000), 0U) << "they fit";
+  EXPECT_EQ(distance_of(900000), 0U) << "four parts are too few";
+}
+
+// Packed nodes are shorter than those of the scene.
+TEST(ArrayParts, AreThoseOfTheNodesThatTheDeviceHas) {
+  const std::vector<float> nodes(std::size_t{CAPLET_NODE_FLOATS} * 10000);
+  SceneArrays arrays;
+  arrays.nodes = nodes;
+  const std::uint64_t packed = packed_nodes(nodes).size() * sizeof(float);
+  EXPECT_GT(part_distance(packed, arrays, Encoding::wide), 0U);
+  EXPECT_EQ(part_distance(packed, arrays, Encoding::single), 0U);
+  EXPECT_GT(part_distance(packed - 1, arrays, Encoding::single), 0U);
+}
+
+TEST(ArrayParts, AreAsTheVariableSays) {
+  const Device& device = test_device();
+  EXPECT_EQ(most_buffer_bytes(device), device.info().max_allocation_bytes);
   {
     const PartsOf limit(1048576);
-    EXPECT_EQ(leaf_parts(device, leaves).distance, 0U) << "four parts are too few";
+    EXPECT_EQ(most_buffer_bytes(device), 1048576U);
   }
-  ::setenv("CAPLET_LEAF_PART", "1048575", 1);
-  EXPECT_THAT(complaint([&] { leaf_parts(device, leaves); }),
-              testing::HasSubstr("CAPLET_LEAF_PART: '1048575' is no number of bytes"));
-  ::unsetenv("CAPLET_LEAF_PART");
+  ::setenv("CAPLET_BUFFER_BYTES", "99999999999999999", 1);
+  EXPECT_EQ(most_buffer_bytes(device), device.info().max_allocation_bytes);
+  ::setenv("CAPLET_BUFFER_BYTES", "1048575", 1);
+  EXPECT_THAT(complaint([&] { most_buffer_bytes(device); }),
+              testing::HasSubstr("CAPLET_BUFFER_BYTES: '1048575' is no number of bytes"));
+  ::unsetenv("CAPLET_BUFFER_BYTES");
+}
+
+// What has no parts is refused by name.
+TEST(ArrayParts, OthersAreRefused) {
+  FlatScene flat = lower(scene_named("gallery.pbrt"));
+  flat.surface_materials.resize(400000);
+  const PartsOf limit(part_bytes);
+  try {
+    const DeviceScene scene(test_device(), flat);
+    FAIL() << "it was sent";
+  } catch (const RunError& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("2 MB in one buffer (surface_materials)"));
+  }
 }
 
 // --- What rays see ---
@@ -126,7 +157,7 @@ TEST_P(Parts, AreHitAlike) {
     const HitLists expected = whole.all(rays, 64, times);
     const std::vector<PickRecord> nearest = whole.closest(rays, times);
     const PartsOf limit(part_bytes);
-    ASSERT_FALSE(leaf_parts(device, flat.leaves).parts[1].empty());
+    ASSERT_GT(parts_of(flat, flat.leaves), 1U);
     Query divided(flat, device);
     EXPECT_TRUE(same_bits(divided.closest(rays, times), nearest));
     const HitLists found = divided.all(rays, 64, times);
@@ -136,10 +167,10 @@ TEST_P(Parts, AreHitAlike) {
   }
 }
 
-TEST(LeafParts, SomeSceneHasFour) {
+TEST(ArrayParts, AreFourOfSomeScene) {
   const FlatScene flat = lower(scene_named("hair.pbrt"));
   const PartsOf limit(part_bytes);
-  EXPECT_FALSE(leaf_parts(test_device(), flat.leaves).parts[3].empty());
+  EXPECT_EQ(parts_of(flat, flat.leaves), 4U);
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, Parts,
@@ -149,6 +180,43 @@ INSTANTIATE_TEST_SUITE_P(Scenes, Parts,
                            const std::string text = name.param;
                            return text.substr(0, text.find('.'));
                          });
+
+/// Puts so many nodes before those of the scene.
+void move_nodes(FlatScene& flat, std::uint32_t count) {
+  for (std::size_t node = 0; node < flat.nodes.size(); node += CAPLET_NODE_FLOATS)
+    for (std::size_t i = 0; i < CAPLET_WIDTH; ++i) {
+      float& child = flat.nodes[node + CAPLET_NODE_CHILDREN + i];
+      const auto number = std::bit_cast<std::uint32_t>(child);
+      if (number >> 31 == 0) child = std::bit_cast<float>(number + count);
+    }
+  const std::vector<float> first(flat.nodes.begin(), flat.nodes.begin() + CAPLET_NODE_FLOATS);
+  std::vector<float> all;
+  for (std::uint32_t i = 0; i < count; ++i) all.insert(all.end(), first.begin(), first.end());
+  all.insert(all.end(), flat.nodes.begin(), flat.nodes.end());
+  flat.nodes = std::move(all);
+  flat.world.root += count;
+  for (InstanceRecord& instance : flat.instances) instance.root += count;
+}
+
+// Nodes have a fifth of the leaves' bytes: those of the scene are put into the second part.
+TEST(PartsOfNodes, AreHitAlike) {
+  for (const char* const name : {"hair.pbrt", "instances.pbrt"}) {
+    FlatScene flat = lower(scene_named(name));
+    const std::vector<RayRecord> rays = rays_through(flat, 2000);
+    const FlatScene before = flat;
+    move_nodes(flat, 14000);
+    for (const Encoding encoding : {Encoding::wide, Encoding::single}) {
+      const Device device = test_device(encoding);
+      Query whole(before, device);
+      const PartsOf limit(part_bytes);
+      ASSERT_GT(parts_of(flat, flat.nodes), 1U);
+      ASSERT_GT(parts_of(flat, packed_nodes(flat.nodes)), 1U);
+      Query divided(flat, device);
+      EXPECT_TRUE(same_bits(divided.closest(rays), whole.closest(rays)));
+      EXPECT_TRUE(same_bits(divided.all(rays, 64).crossings, whole.all(rays, 64).crossings));
+    }
+  }
+}
 
 TEST(PartsOfPictures, AreSeenAlike) {
   Scene scene = scene_named("gallery.pbrt");
@@ -177,7 +245,7 @@ TEST(PartsOfEdits, GrowAndShrink) {
   const auto expect_same = [&] {
     on_device.update(live.flat(), live.take_changes());
     const HitLists found = query.all(rays, 64);
-    ::unsetenv("CAPLET_LEAF_PART");
+    ::unsetenv("CAPLET_BUFFER_BYTES");
     const HitLists expected = Query(live.flat(), device).all(rays, 64);
     EXPECT_TRUE(same_bits(found.crossings, expected.crossings));
   };
@@ -226,7 +294,7 @@ TEST(PartsOfFiles, StayInTheirFileOnCpus) {
   EXPECT_LT(device.bytes_allocated() - before, 1U << 16);
   const std::vector<RayRecord> rays = rays_through(flat, 2000);
   const std::vector<PickRecord> found = Query(scene).closest(rays);
-  ::unsetenv("CAPLET_LEAF_PART");
+  ::unsetenv("CAPLET_BUFFER_BYTES");
   EXPECT_TRUE(same_bits(found, Query(flat, device).closest(rays)));
 }
 
@@ -240,7 +308,7 @@ TEST(PartsOfSessions, AreSentBeforeTheirMemoryIsGivenBack) {
   EXPECT_TRUE(spent.leaves.empty());
   const std::vector<RayRecord> rays = rays_through(flat, 2000);
   const std::vector<PickRecord> found = Query(scene).closest(rays);
-  ::unsetenv("CAPLET_LEAF_PART");
+  ::unsetenv("CAPLET_BUFFER_BYTES");
   EXPECT_TRUE(same_bits(found, Query(flat, device).closest(rays)));
 }
 

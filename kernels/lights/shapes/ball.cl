@@ -54,7 +54,7 @@ static inline int primitive_crossing(const Tree* tree, const Surfaces* surfaces,
   real t;
   real_mask side;
   const real_mask found =
-      any_shape_hit(geometry.shape, &ray, leaf_at(leaves_of(tree), slot - lane), lane, &t, &side);
+      any_shape_hit(geometry.shape, &ray, floats_at(leaves_of(tree), slot - lane), lane, &t, &side);
   float ts[CAPLET_REAL_WIDTH];
   int sides[CAPLET_REAL_WIDTH];
   real_store(t, ts);
