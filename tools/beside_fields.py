@@ -6,11 +6,12 @@
 usage: beside_fields.py CAPLET DATA OUT [NAME...]
 
 Left is Caplet's picture, right the other program's, of the same file at the same size: PyMOL (Debian's package `pymol`), MuJoCo's own
-renderer, VTK's tubes by PyVista, and FURY. Needs PyPI's mujoco, pyvista, fury, nibabel and pillow, OSMesa, and a display, as `xvfb-run -a`
+renderer, VTK by PyVista, and FURY. Needs Open Image Denoise, PyPI's mujoco, pyvista, fury, nibabel and pillow, OSMesa, and a display, as `xvfb-run -a`
 makes one. Prints the seconds that each command takes.
 """
 import os
 import pathlib
+import re
 import subprocess
 import sys
 import tempfile
@@ -44,7 +45,7 @@ def molecule(program, data, ours, theirs):
 def robot(program, data, ours, theirs):
     import mujoco
     file = data / "mjcf/mujoco/humanoid/humanoid.xml"
-    timed("caplet, robot", caplet, program, file, ours, "--camera", "side")
+    timed("caplet, robot", caplet, program, file, ours, "--camera", "side", "--denoise")
 
     def draw():
         model = mujoco.MjModel.from_xml_path(str(file))
@@ -109,10 +110,48 @@ def streamlines(program, data, ours, theirs):
     timed("FURY", draw)
 
 
+def lattice(program, data, ours, theirs):
+    import pyvista
+    file = pathlib.Path(__file__).parents[1] / "scenes/lattice.capsules"
+    timed("caplet, lattice", caplet, program, file, ours, "--view", "1,0.45,0.62", "--background", "white", "--outline", "1.2", "--depth-cue", "0.5")
+
+    def draw():
+        plotter = pyvista.Plotter(off_screen=True, window_size=SIZE)
+        plotter.set_background("white")
+        plotter.enable_anti_aliasing("ssaa")
+        for line in file.read_text().splitlines():
+            numbers = re.findall(r"-?[0-9.]+(?:e-?[0-9]+)?", line.split("#")[0])
+            if len(numbers) < 7:
+                continue
+            a, b, radius = np.array(numbers[:3], float), np.array(numbers[3:6], float), float(numbers[6])
+            ball = np.array_equal(a, b)
+            solid = pyvista.Sphere(radius=radius, center=a) if ball else pyvista.Tube(pointa=a, pointb=b, radius=radius)
+            plotter.add_mesh(solid, color="#4f8fc0" if ball else "#c87860", smooth_shading=True)
+        plotter.enable_ssao(radius=0.6)
+        plotter.view_vector((1, 0.45, 0.62), (0, 1, 0))
+        plotter.screenshot(theirs)
+    timed("PyVista", draw)
+
+
+def mesh(program, data, ours, theirs):
+    import pyvista
+    file = data / "meshes/2CylinderEngine/2CylinderEngine.glb"
+    timed("caplet, mesh", caplet, program, file, ours, "--view", "1,0.6,1.2", "--background", "white", "--denoise")
+
+    def draw():
+        plotter = pyvista.Plotter(off_screen=True, window_size=SIZE)
+        plotter.set_background("white")
+        plotter.enable_anti_aliasing("ssaa")
+        plotter.import_gltf(str(file))
+        plotter.view_vector((1, 0.6, 1.2), (0, 1, 0))
+        plotter.screenshot(theirs)
+    timed("PyVista", draw)
+
+
 def main(arguments):
     program, data, out = arguments[0], pathlib.Path(arguments[1]).resolve(), pathlib.Path(arguments[2])
     out.mkdir(parents=True, exist_ok=True)
-    for one in (molecule, robot, neuron, streamlines):
+    for one in (molecule, robot, neuron, streamlines, lattice, mesh):
         if arguments[3:] and one.__name__ not in arguments[3:]:
             continue
         with tempfile.TemporaryDirectory() as folder:

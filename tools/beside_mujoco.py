@@ -3,21 +3,24 @@
 # Copyright Caplet authors
 """Geoms and hits of robots beside the mujoco package.
 
-    tools/beside_mujoco.py [--build build/release] [--rays N] [--key NAME] FILE.xml|FILE.urdf...
+    tools/beside_mujoco.py [--build build/release] [--rays N] [--masks PIXELS] [--key NAME] FILE.xml|FILE.urdf...
 
 Of each file it compares every geom of MuJoCo with the shape of the same name (or number) that the importer made: its type, its
 sizes, where its corners, axis ends or vertices lie in the world (whichever end or corner it is: fitted solids have axes of either sign). With --rays N, as many random rays are asked of `caplet pick` and of
-mujoco.mj_ray, and their distances compared. Needs the packages mujoco, numpy and scipy, and the targets list_geoms and
-caplet.
+mujoco.mj_ray, and their distances compared. With --masks PIXELS, which geom each pixel of a square picture shows is compared with
+MuJoCo's renderer, for 20 states under random controls and each of the model's cameras. Needs the packages mujoco, numpy and scipy, and the targets list_geoms and
+caplet; for masks the Python package of the build, and OSMesa.
 """
 import argparse
 import json
+import os
 import pathlib
 import subprocess
 import sys
 import tempfile
 import xml.etree.ElementTree
 
+os.environ.setdefault("MUJOCO_GL", "osmesa")
 import mujoco
 import numpy as np
 
@@ -215,11 +218,58 @@ def rays(path, caplet, model, data, count, key):
     return own, other, 2 * radius
 
 
+def at_edges(geoms):
+    """Whether one of a pixel's eight neighbours shows another geom."""
+    padded, out = np.pad(geoms, 1, mode="edge"), np.zeros(geoms.shape, bool)
+    for y in range(3):
+        for x in range(3):
+            out |= padded[y:y + geoms.shape[0], x:x + geoms.shape[1]] != geoms
+    return out
+
+
+def masks(path, build, size, states=20, steps=100):
+    """By camera: pixels, those that show another geom than MuJoCo's renderer does, and those of them that are at no edge."""
+    sys.path.insert(0, str(build.resolve() / "python"))
+    import caplet
+    from caplet.bridges.mujoco import update_mujoco
+    model = model_of(path)
+    model.vis.global_.offwidth = model.vis.global_.offheight = size
+    model.vis.quality.numslices, model.vis.quality.numstacks = 128, 64  # of its meshes of round geoms
+    data, generator = mujoco.MjData(model), np.random.default_rng(1)
+    mujoco.mj_forward(model, data)
+    scene, shown = caplet.from_mujoco(model, data), mujoco.MjvOption()
+    shown.geomgroup[:] = [1, 1, 1, 0, 0, 0]
+    counts = {}
+    with mujoco.Renderer(model, size, size) as renderer:
+        renderer.enable_segmentation_rendering()
+        for _ in range(states):
+            data.ctrl[:] = generator.uniform(-1, 1, model.nu)
+            mujoco.mj_step(model, data, steps)
+            mujoco.mj_forward(model, data)
+            update_mujoco(scene, data)
+            for camera in range(model.ncam):
+                renderer.update_scene(data, camera=camera, scene_option=shown)
+                seen = renderer.render()
+                theirs = np.where(seen[..., 1] == int(mujoco.mjtObj.mjOBJ_GEOM), seen[..., 0], -1)
+                pose = np.eye(4)
+                pose[:3, :3] = data.cam_xmat[camera].reshape(3, 3) * (1, -1, -1)  # y down, z ahead
+                pose[:3, 3] = data.cam_xpos[camera]
+                pinhole = caplet.sensors.Pinhole(size, size, fx=size / 2 / np.tan(np.radians(model.cam_fovy[camera]) / 2))
+                ours = np.full((size, size), -1)
+                for shape in caplet.sensors.segment(scene, pinhole, pose, amodal=False):
+                    ours[shape["mask"]] = scene.info["geom"][shape["shape"]]
+                other = ours != theirs
+                count = counts.setdefault(model.camera(camera).name or f"camera {camera}", np.zeros(3, int))
+                count += (other.size, other.sum(), (other & ~(at_edges(ours) | at_edges(theirs))).sum())
+    return counts
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("files", nargs="+", type=pathlib.Path)
     parser.add_argument("--build", type=pathlib.Path, default=pathlib.Path("build/release"))
     parser.add_argument("--rays", type=int, default=0)
+    parser.add_argument("--masks", type=int, default=0)
     parser.add_argument("--key")
     asked = parser.parse_args()
     found = list((asked.build / "tests").rglob("list_geoms"))
@@ -239,6 +289,9 @@ def main():
         counts = ", ".join(f"{n} {kind}" for kind, n in sorted(kinds.items()))
         print(f"{label}: {counts}; at most {worst[0]:.1e} apart, capsule ends {worst[1]:.1e}"
               + (f"; {worst[2]} of alpha 0" if worst[2] else ""), flush=True)
+        if asked.masks:
+            for camera, (pixels, other, inside) in masks(path, asked.build, asked.masks).items():
+                print(f"  masks by '{camera}': {other} of {pixels} pixels are of another geom, {inside} of them at no edge", flush=True)
         if asked.rays and pair[0].nskin:
             print("  rays: left out, since MuJoCo's go through skins")
         elif asked.rays:

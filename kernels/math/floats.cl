@@ -20,7 +20,7 @@ typedef struct {
 // Returns where float `place` lies.
 static inline __global const float* floats_at(Floats floats, size_t place) {
   place += floats.begin;
-  const size_t part = place / CAPLET_PART;
+  const size_t part = min(place / CAPLET_PART, (size_t)3);  // the last one goes on to the end
   __global const float* const begin = part == 0   ? floats.part0
                                       : part == 1 ? floats.part1
                                       : part == 2 ? floats.part2

@@ -27,6 +27,7 @@ from driver_kit import exr  # noqa: E402
 # Forms that change no result: limits of memory, launches and queries, and commands that finish late.
 HARMLESS = {
     "blocks of 256 MB": "block=256M",
+    "blocks of 2 MB": "block=2M",
     "256 MB in all": "memory=256M",
     "groups of 64": "group=64",
     "32 KB of local memory": "local=32K",

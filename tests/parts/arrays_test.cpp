@@ -6,9 +6,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <fstream>
 #include <random>
 
+#include "base/check.h"
 #include "film/sample_plan.h"
 #include "import/import.h"
 #include "lower/lower.h"
@@ -134,6 +136,40 @@ Scene scene_of_arrays() {
 void expect_same(const Film& a, const Film& b) {
   ASSERT_EQ(a.words().size(), b.words().size());
   EXPECT_TRUE(std::ranges::equal(a.words(), b.words()));
+}
+
+// Each place of an array that fills four parts, their common ends and the last one's end.
+TEST(Floats, AreWhereTheyAreInOneBuffer) {
+  constexpr std::size_t distance = 1024, count = 4 * distance + distance / 8;
+  std::vector<std::uint32_t> numbers(count);
+  for (std::size_t i = 0; i < count; ++i) numbers[i] = static_cast<std::uint32_t>(0x01020304 * i);
+  const Device& device = test_device();
+  const Program program = Program::from_source(device, "floats", flatten_kernels(R"(
+#include "math/floats.cl"
+__kernel void floats(__global const float* a, __global const float* b, __global const float* c,
+                     __global const float* d, __global uint* out, uint count) {
+  const size_t i = get_global_id(0);
+  if (i >= count) return;
+  const Floats all = {a, b, c, d, 0};
+  out[3 * i] = as_uint(*floats_at(all, i));
+  out[3 * i + 1] = as_uint(*floats_at(floats_from(floats_from(all, i / 2), i / 4), i - i / 2 - i / 4));
+  out[3 * i + 2] = *bytes_at(all, i / 3, 4 * (i - i / 3) + i % 4);
+}
+)"),
+                                               "-DCAPLET_PART=1024UL");
+  std::array<Buffer<uint>, array_parts> parts;
+  for (std::size_t i = 0; i < array_parts; ++i)
+    parts.at(i) = Buffer<uint>(device, array_part(std::span<const uint>(numbers), distance, i));
+  Buffer<uint> out(device, 3 * count);
+  cl::Kernel kernel = program.kernel("floats");
+  set_arguments(device, kernel, parts[0], parts[1], parts[2], parts[3], out, narrow<uint>(count));
+  launch(device, kernel, count, 1);
+  const std::vector<uint> found = out.read();
+  for (std::size_t i = 0; i < count; ++i) {
+    ASSERT_EQ(found[3 * i], numbers[i]) << i;
+    ASSERT_EQ(found[3 * i + 1], numbers[i]) << i;
+    ASSERT_EQ(found[3 * i + 2], (numbers[i] >> (8 * (i % 4)) & 255u)) << i;
+  }
 }
 
 TEST(ArraysInParts, AreSeenAlike) {
