@@ -42,7 +42,8 @@ void run_convert(const ConvertFlags& options) {
   install_interrupt_handlers();
   const Scene scene = import_files(options.scenes, options.import_options);
   outputs.check_inputs();
-  write_scene(scene, output, interrupt_requested);
+  const FileImageWriter images;
+  write_scene(scene, output, interrupt_requested, &images);
   if (!is_stream(output)) log::info("wrote {}", output.string());
   if (!options.json) return;
   nlohmann::ordered_json told{{"wrote", output.string()}};

@@ -55,7 +55,7 @@ struct TextureWriter : IgnoresFields {
   void flag(const Field& field, bool value) { to.boolean(field.name, value); }
   void image(const Field& field, const std::shared_ptr<const TextureImage>& of) {
     if (!of) refuse(to.where(), "the texture has no image");
-    to.file(field.name, of->file, "the texture's image", stream);
+    to.image(field.name, *of, "the texture's image", stream);
     to.text("encoding", encoding_name(of->encoding));
   }
   void mapping(const TextureMapping& of) {
@@ -205,7 +205,7 @@ struct LightWriter {
     is_placed = true;
   }
   void image(const Field& field, const std::shared_ptr<const EnvironmentImage>& of) {
-    to.file(field.name, of->file, "the light's image", stream);
+    to.image(field.name, *of, "the light's image", stream);
   }
   void directions(const Field& field, const std::shared_ptr<const EnvironmentImage>& of) {
     image(field, of);
@@ -287,8 +287,8 @@ Statement material_statement(const Scene& scene, std::uint32_t material, const N
   std::visit([&](const auto& m) { m.fields(m, writer); }, model);
   if (displacement) out.texture("displacement", names.textures[*displacement]);
   if (normalmap)
-    out.file("normalmap", std::get<NormalmapTexture>(scene.textures[*normalmap].model).image->file,
-             "the material's normal map", stream);
+    out.image("normalmap", *std::get<NormalmapTexture>(scene.textures[*normalmap].model).image,
+              "the material's normal map", stream);
   return out;
 }
 
@@ -332,7 +332,7 @@ Statement area_statement(const AreaEmission& emission, const SourceLocation& whe
   const auto& [radiance, image, scale, power, two_sided, surfaces] = emission;
   Statement out("AreaLightSource \"diffuse\"", "light", where);
   if (image)
-    out.file("filename", image->file, "the area light's image", stream);
+    out.image("filename", *image, "the area light's image", stream);
   else
     out.spectrum("L", radiance);
   if (scale != 1) out.number("scale", scale);

@@ -316,7 +316,7 @@ class SceneWriter {
       if (backdrop->kind == Backdrop::Kind::color)
         out.numbers("float", "backgroundcolor", {c.x, c.y, c.z});
       if (backdrop->kind == Backdrop::Kind::image)
-        out.file("backgroundfile", backdrop->image->file, "the backdrop", stream_);
+        out.image("backgroundfile", *backdrop->image, "the backdrop", stream_);
     }
     out.write(stream_);
   }
@@ -514,23 +514,23 @@ class SceneWriter {
 
 }  // namespace pbrt_text
 
-void write_pbrt(const Scene& scene, const fs::path& folder,
+namespace {
+
+void write_text(const Scene& scene, const fs::path& folder,
                 const std::function<void(std::string_view)>& sink,
-                const std::function<bool()>& cancelled) {
+                const std::function<bool()>& cancelled, pbrt_text::ImageFiles* images) {
   Diagnostics diagnostics;
   validate(scene, diagnostics);
   diagnostics.finish();
   pbrt_text::Text text(sink);
-  pbrt_text::Stream stream{text, fs::weakly_canonical(fs::absolute(folder)), cancelled};
+  pbrt_text::Stream stream{text, fs::weakly_canonical(fs::absolute(folder)), cancelled, images};
   pbrt_text::SceneWriter(scene, stream).write();
   text.flush();
 }
 
-void write_scene(const Scene& scene, const fs::path& file, const std::function<bool()>& cancelled) {
-  if (file.extension() != ".pbrt" && !is_stream(file))
-    throw InputError(SourceLocation{file.string()},
-                     "scenes are written as pbrt text, to a file .pbrt");
-  const fs::path folder = is_stream(file) ? fs::path(".") : fs::absolute(file).parent_path();
+/// Writes the scene's text as a file.
+void write_file(const Scene& scene, const fs::path& file, const fs::path& folder,
+                const std::function<bool()>& cancelled, pbrt_text::ImageFiles* images) {
   write_atomically(file, [&](const fs::path& path) {
     struct Close {
       void operator()(std::FILE* open) const { std::fclose(open); }
@@ -541,14 +541,38 @@ void write_scene(const Scene& scene, const fs::path& file, const std::function<b
                      std::generic_category().message(errno) + ")");
     };
     if (!out) failed();
-    write_pbrt(
+    write_text(
         scene, folder,
         [&](std::string_view piece) {
           if (std::fwrite(piece.data(), 1, piece.size(), out.get()) != piece.size()) failed();
         },
-        cancelled);
+        cancelled, images);
     if (std::fclose(out.release()) != 0) failed();
   });
+}
+
+}  // namespace
+
+void write_pbrt(const Scene& scene, const fs::path& folder,
+                const std::function<void(std::string_view)>& sink,
+                const std::function<bool()>& cancelled) {
+  write_text(scene, folder, sink, cancelled, nullptr);
+}
+
+void write_scene(const Scene& scene, const fs::path& file, const std::function<bool()>& cancelled,
+                 const ImageWriter* images) {
+  if (file.extension() != ".pbrt" && !is_stream(file))
+    throw InputError(SourceLocation{file.string()},
+                     "scenes are written as pbrt text, to a file .pbrt");
+  const fs::path folder = is_stream(file) ? fs::path(".") : fs::absolute(file).parent_path();
+  std::optional<pbrt_text::ImageFiles> written;
+  if (images != nullptr && !is_stream(file)) written.emplace(*images, fs::absolute(file));
+  try {
+    write_file(scene, file, folder, cancelled, written ? &*written : nullptr);
+  } catch (...) {
+    if (written) written->remove();
+    throw;
+  }
 }
 
 }  // namespace caplet

@@ -107,6 +107,11 @@ void Statement::spectrum(const std::string& name, const Spectrum& value) {
   add("spectrum", name, all + "]");
 }
 
+void ImageFiles::remove() noexcept {
+  std::error_code ignored;
+  for (const std::filesystem::path& file : new_) std::filesystem::remove(file, ignored);
+}
+
 void Statement::file(const std::string& name, const std::string& path, const char* what,
                      const Stream& stream) {
   if (path.empty())

@@ -16,6 +16,7 @@
 #include "film/chromaticities.h"
 #include "scene/backdrop.h"
 #include "scene/image_reader.h"
+#include "scene/image_writer.h"
 #include "scene/spectrum.h"
 
 namespace caplet {
@@ -119,6 +120,13 @@ class FileImageReader : public ImageReader {
   /// everywhere. Negative values stay.
   TextureImage read_texture(const std::filesystem::path& path,
                             const ImageEncoding& encoding) const override;
+};
+
+/// Writes bytes in sRGB as PNG, and everything else as EXR of 32-bit floats, both atomically.
+class FileImageWriter : public ImageWriter {
+ public:
+  File write(const std::filesystem::path& stem, const TextureImage& image) const override;
+  File write(const std::filesystem::path& stem, const EnvironmentImage& image) const override;
 };
 
 }  // namespace caplet

@@ -251,7 +251,9 @@ std::string encode_png(int width, int height, int channels, const std::vector<st
   return failure_of("cannot be written", [&] {
     encode({.width = width,
             .height = height,
-            .type = channels == 4 ? PNG_COLOR_TYPE_RGB_ALPHA : PNG_COLOR_TYPE_RGB,
+            .type = channels == 4   ? PNG_COLOR_TYPE_RGB_ALPHA
+                    : channels == 3 ? PNG_COLOR_TYPE_RGB
+                                    : PNG_COLOR_TYPE_GRAY,
             .bits = 8,
             .row_bytes = static_cast<std::size_t>(width) * static_cast<std::size_t>(channels)},
            values.data(), out);

@@ -3,12 +3,14 @@
 #include "caplet/write.h"
 
 #include "export/export.h"
+#include "film/image.h"
 #include "library/detail/inside.h"
 
 namespace caplet::v0 {
 
 void write_scene(const Scene& scene, const std::filesystem::path& file) {
-  caplet::write_scene(*Inside::model(scene), file);
+  const FileImageWriter images;
+  caplet::write_scene(*Inside::model(scene), file, {}, &images);
 }
 
 }  // namespace caplet::v0

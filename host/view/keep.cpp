@@ -344,7 +344,8 @@ void Keeper::save(const Scene& scene, const fs::path& target, const std::string&
       throw RunError(fmt::format("{}: cannot be written: {}", copy_.string(), error.message()));
   }
   try {
-    write_scene(scene, target, cancelled);
+    const FileImageWriter images;
+    write_scene(scene, target, cancelled, &images);
   } catch (...) {
     if (copies) fs::remove(copy_, error);
     throw;

@@ -218,7 +218,7 @@ def test_a_color_bar_has_the_map(saved):
             scene.set_color_bar("depth", *wrong)
 
 
-def test_images_are_textures():
+def test_images_are_textures(tmp_path):
     image = np.zeros((2, 2, 3))
     image[0, 0], image[0, 1], image[1, 0], image[1, 1] = (0.6, 0.2, 0.2), (0.2, 0.6, 0.2), (0.2, 0.2, 0.6), (0.5, 0.5, 0.5)
     scene = caplet.Scene()
@@ -239,8 +239,12 @@ def test_images_are_textures():
     veil.add("disk", radius=99, alpha=textures.imagemap(pixels=half, is_float=True))
     veil.look_at((0, 0, 5), (0, 0, 0))
     assert caplet.render(veil, spp=16, size=(64, 64)).alpha.mean() == pytest.approx(188 / 255, abs=0.009)
-    with pytest.raises(caplet.InputError, match="read from no file"):
-        scene.save("scene.pbrt")
+    # What is saved has its images beside it.
+    file = tmp_path / "scene.pbrt"
+    scene.save(str(file))
+    assert {one.suffix for one in tmp_path.iterdir() if one != file} == {".exr"}
+    again = caplet.load(str(file))
+    assert np.array_equal(caplet.render(again, spp=4, size=(20, 20)).rgb, caplet.render(scene, spp=4, size=(20, 20)).rgb)
     for wrong in (np.zeros((2, 2, 2)), np.zeros((0, 2, 3)), np.full((2, 2), np.nan), np.full((2, 2), np.inf), np.zeros(3), "picture", np.zeros((2, 40000)),
                   np.zeros((2, 2), complex), None, [[1], [2, 3]], np.full((2, 2, 3), 1e300)):
         with pytest.raises(caplet.InputError, match="pixels"):

@@ -9,21 +9,51 @@
 #include <functional>
 #include <glm/vec3.hpp>
 #include <initializer_list>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "base/reading.h"
 #include "export/detail/text.h"
+#include "scene/image_writer.h"
 #include "scene/scene.h"
 
 namespace caplet::pbrt_text {
+
+/// Files that are written for images that are in none, each once.
+class ImageFiles {
+ public:
+  /// Files beside `scene`, whose names begin with its name.
+  ImageFiles(const ImageWriter& writer, const std::filesystem::path& scene)
+      : writer_(writer), stem_(scene.parent_path() / scene.stem()) {}
+  template <class Image>
+  std::string file_of(const Image& image) {
+    std::string& file = files_[&image];
+    if (file.empty()) {
+      const ImageWriter::File made = writer_.write(stem_, image);
+      if (made.is_new) new_.push_back(made.path);
+      file = made.path.string();
+    }
+    return file;
+  }
+  /// Removes the files that were not there before.
+  void remove() noexcept;
+
+ private:
+  const ImageWriter& writer_;
+  std::filesystem::path stem_;
+  std::map<const void*, std::string> files_;
+  std::vector<std::filesystem::path> new_;
+};
 
 /// The output of statements, and the colour space there.
 struct Stream {
   Text& text;
   std::filesystem::path folder;  // of the file, absolute
   std::function<bool()> cancelled;
+  ImageFiles* images = nullptr;  // null: images that are in no file are refused
   ColorSpace space = ColorSpace::srgb;
 
   /// Throws RunError when it is cancelled.
@@ -63,6 +93,14 @@ class Statement {
   /// InputError when it is empty.
   void file(const std::string& name, const std::string& path, const char* what,
             const Stream& stream);
+  /// Does the same for an image's file, which is written where it is in none, or in one that is
+  /// gone.
+  template <class Image>
+  void image(const std::string& name, const Image& image, const char* what, const Stream& stream) {
+    const bool is_written =
+        stream.images != nullptr && (image.file.empty() || !is_there(image.file, where_));
+    file(name, is_written ? stream.images->file_of(image) : image.file, what, stream);
+  }
   /// Adds `count` values that `write` writes one by one, when the statement is written.
   void list(const char* type, const std::string& name, std::size_t count,
             std::function<void(Text&, std::size_t)> write, std::optional<ColorSpace> space = {});

@@ -24,8 +24,8 @@ bool is_png(const std::filesystem::path& path);
 std::string read_png_linear(const std::filesystem::path& path, const SizeCheck& check, Pixels& out);
 std::string read_png_stored(const std::filesystem::path& path, const SizeCheck& check,
                             StoredPixels& out);
-/// Encodes `values`: sRGB, `channels` (3 or 4) bytes a pixel, row-major from the top; alpha is not
-/// multiplied in. `out`: the file's bytes.
+/// Encodes `values`: sRGB, `channels` (1, 3 or 4) bytes a pixel, row-major from the top; alpha is
+/// not multiplied in. `out`: the file's bytes.
 std::string encode_png(int width, int height, int channels, const std::vector<std::uint8_t>& values,
                        std::string& out);
 /// Encodes numbers of 16 bits, one a pixel, row-major from the top. `out`: the file's bytes.
