@@ -6,6 +6,7 @@
 #include <bit>
 
 #include "base/check.h"
+#include "render/detail/array_parts.h"
 
 namespace caplet {
 
@@ -17,18 +18,24 @@ constexpr std::size_t cpu_query_rays = 65536 - 64;
 constexpr std::size_t gpu_query_rays = std::size_t{1} << 20;
 constexpr std::size_t batch_hits = std::size_t{1} << 22;  // 64 MB
 
-std::size_t chosen(std::size_t wanted, std::size_t otherwise) {
-  return wanted ? wanted : otherwise;
+std::size_t chosen(std::size_t wanted, std::size_t otherwise, std::size_t most) {
+  return std::min(wanted ? wanted : otherwise, most);
+}
+
+/// Returns the records of a buffer at most, a power of two.
+std::size_t most_picks(const Device& device) {
+  return std::bit_floor(static_cast<std::size_t>(most_buffer_bytes(device) / sizeof(PickRecord)));
 }
 
 }  // namespace
 
 Query::Query(std::shared_ptr<DeviceScene> scene, const QueryOptions& options)
     : scene_(std::move(scene)),
-      batch_rays_(chosen(options.batch_rays, scene_->device().profile() == Profile::cpu
-                                                 ? cpu_query_rays
-                                                 : gpu_query_rays)),
-      batch_hits_(chosen(options.batch_hits, batch_hits)) {
+      batch_rays_(
+          chosen(options.batch_rays,
+                 scene_->device().profile() == Profile::cpu ? cpu_query_rays : gpu_query_rays,
+                 most_picks(scene_->device()))),
+      batch_hits_(chosen(options.batch_hits, batch_hits, most_picks(scene_->device()))) {
   query_.query = Buffer<QueryRecord>(scene_->device(), 1);
 }
 

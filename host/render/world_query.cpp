@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "base/check.h"
+#include "render/detail/array_parts.h"
 
 namespace caplet {
 
@@ -49,6 +50,8 @@ WorldQuery::WorldQuery(Worlds worlds, const Device& device, std::size_t batch_ra
   worlds_.take_changes();
   if (batch_rays_ == 0)
     batch_rays_ = device.profile() == Profile::cpu ? cpu_batch_rays : gpu_batch_rays;
+  batch_rays_ = std::min(batch_rays_,
+                         static_cast<std::size_t>(most_buffer_bytes(device) / sizeof(PickRecord)));
   query_buffers_.query = Buffer<QueryRecord>(device, 1);
   query_buffers_.query_times = Buffer<float>(device, 1);
 }

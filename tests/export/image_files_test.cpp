@@ -193,8 +193,8 @@ TEST(WrittenImages, TakeThePlaceOfFilesThatAreGone) {
 
 TEST(WrittenImages, AreRemovedWhereTheSceneFails) {
   Scene scene = made(R"(WorldBegin
-LightSource "infinite" "string filename" "square.exr"
-Material "diffuse"
+Texture "a" "spectrum" "imagemap" "string filename" "rgb.png"
+Material "diffuse" "texture reflectance" "a"
 Shape "sphere" "float radius" 1
 )");
   scene.materials.at(0).name = "two\x01lines";
@@ -204,7 +204,7 @@ Shape "sphere" "float radius" 1
   EXPECT_EQ(files_of(folder), std::set<std::string>{});
   scene.materials.at(0).name = "fine";
   EXPECT_THAT(complaint([&] { write_scene(scene, folder / "c.pbrt"); }),
-              testing::HasSubstr("the light's image was read from no file"));
+              testing::HasSubstr("the texture's image was read from no file"));
   write_scene(scene, folder / "c.pbrt", {}, &images);
   const std::set<std::string> before = files_of(folder);
   EXPECT_EQ(before.size(), 2U);

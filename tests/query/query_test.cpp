@@ -610,6 +610,8 @@ TEST(Query, CsgReportsItsOwnNameAndTheOperandsSurface) {
 TEST(RayOfPixel, IsTheDevicesCameraRay) {
   for (const char* name : {"scenes/capsules.pbrt", "tests/render/everything.pbrt"}) {
     Scene scene = scene_file(name);
+    scene.view.film.width = 320;
+    scene.view.film.height = 180;
     scene.view.film.crop = {8, 24, 5, 20};
     const FlatView flat = lower_view(scene);
     const std::string source = flatten_kernels(R"(
