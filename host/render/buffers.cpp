@@ -187,17 +187,19 @@ struct SentArrays {
     require_fit(device, most_bytes);
   }
 
-  /// Sends part `i` of an array. One that lies in a file stays there where the device is a CPU.
+  /// Sends part `i` of an array, or all of one without parts as the first. One that lies in a file
+  /// stays there where the device is a CPU.
   template <class T>
-  Buffer<T> sent(const Device& device, const FlatScene& flat, std::span<const T> array,
-                 std::span<const T> stays, std::size_t i) const {
-    const std::span<const T> part = array_part(array, distance, i);
+  Buffer<T> sent(const Device& device, const FlatScene& flat, const char* name,
+                 std::span<const T> array, std::span<const T> stays, std::size_t i) const {
+    const std::span<const T> part = array_part(array, distance_of(name), i);
     if (device.is_cpu() && !part.empty() && array.data() == stays.data())
       return {device, part, flat.in_file};
     return {device, part};
   }
 
  private:
+  std::size_t distance_of(const char* name) const { return has_parts(name) ? distance : 0; }
   /// Throws RunError that names the buffer that is too large. Arrays that stay in a file take none
   /// of the device's memory.
   void require_fit(const Device& device, std::uint64_t most_bytes) const {
@@ -209,8 +211,7 @@ struct SentArrays {
                                   std::span<const T> stays) {
       const std::uint64_t bytes = array.size_bytes();
       if (!device.is_cpu() || array.data() != stays.data()) all_bytes += bytes;
-      const std::uint64_t in_one =
-          has_parts(name) ? array_part(array, distance, 0).size_bytes() : bytes;
+      const std::uint64_t in_one = array_part(array, distance_of(name), 0).size_bytes();
       if (in_one <= largest_bytes) return;
       largest = name;
       largest_bytes = in_one;
@@ -255,13 +256,13 @@ std::vector<std::uint64_t> bytes_of_path(const PathNeeds& needs) {
     auto& buffers = this->group;
 #define BUFFER(name, type, access) \
   if (!is_sent(#name))             \
-    buffers.name = all.sent<type>(device, flat, all.arrays.name, all.in_file.name, 0);
+    buffers.name = all.sent<type>(device, flat, #name, all.arrays.name, all.in_file.name, 0);
 #undef PARTS
 #define PARTS(name, type)                         \
   if (part_distance_ > 0)                         \
     for (std::size_t i = 1; i < array_parts; ++i) \
       buffers.name##_parts[i - 1] =               \
-          all.sent<type>(device, flat, all.arrays.name, all.in_file.name, i);
+          all.sent<type>(device, flat, #name, all.arrays.name, all.in_file.name, i);
 #define GROUP_END(Type) }
 SceneBuffers::SceneBuffers(const Device& device, const FlatScene& flat, Encoding encoding)
     : encoding_(encoding == Encoding::automatic ? device.encoding() : encoding) {

@@ -128,6 +128,18 @@ TEST(ArrayParts, AreAsTheVariableSays) {
   ::unsetenv("CAPLET_BUFFER_BYTES");
 }
 
+// Arrays without parts are sent as they are, also where others are divided.
+TEST(ArrayParts, OthersAreWhole) {
+  FlatScene flat = lower(scene_named("gallery.pbrt"));
+  constexpr std::size_t most = part_bytes / sizeof(float);  // a part has up to 1,150 fewer
+  flat.surface_materials.resize(most);
+  const PartsOf limit(part_bytes);
+  ASSERT_GT(parts_of(flat, flat.leaves), 1U);
+  const DeviceScene scene(test_device(), flat);
+  EXPECT_EQ(scene.bindings().surfaces->surface_materials.size(), most);
+  EXPECT_LT(scene.bindings().tree->leaves.size(), most);
+}
+
 // What has no parts is refused by name.
 TEST(ArrayParts, OthersAreRefused) {
   FlatScene flat = lower(scene_named("gallery.pbrt"));
