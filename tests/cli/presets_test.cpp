@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "film/image.h"
 #include "program.h"
 #include "support/data.h"
 
@@ -61,8 +62,15 @@ TEST_F(Presets, TakeAFilesOwnCamera) {
       "LookAt 0 0 5  0 0 0  0 1 0\nCamera \"orthographic\" \"float screenwindow\" "
       "[-2.7297767 2.7297767 -1.8198511 1.8198511]\n" +
           std::string(test::small_scene).substr(std::string(test::small_scene).find("Film")));
-  EXPECT_EQ(picture({"--preset", "paper"}, "own.pbrt"),
-            picture({"--preset", "paper"}, "parallel.pbrt"));
+  // The window above is rounded, and so are depths, by which outlines run: a value may be the next
+  // one.
+  const auto bytes = [&](const char* file) {
+    picture({"--preset", "paper"}, file);
+    return FileImageReader().read_texture(folder_ / "p.png", {}).bytes;
+  };
+  const std::vector<std::uint8_t> own = bytes("own.pbrt"), parallel = bytes("parallel.pbrt");
+  ASSERT_EQ(own.size(), parallel.size());
+  for (std::size_t i = 0; i < own.size(); ++i) EXPECT_NEAR(own[i], parallel[i], 1) << i;
   EXPECT_NE(picture({"--preset", "paper", "--projection", "perspective"}, "own.pbrt"),
             picture({"--preset", "paper"}, "own.pbrt"));
 }
