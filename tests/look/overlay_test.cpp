@@ -443,6 +443,36 @@ TEST(Outline, RunsWhereDepthsTellThatItDoes) {
   }
 }
 
+// A column of pixels between two objects, of which the nearer one fills nine tenths.
+TEST(Outline, ColumnsOnAnEdgeAreOfTheNearerDepth) {
+  for (const std::uint32_t number : {1U, 2U, 3U, 0xffffffffU}) {
+    SCOPED_TRACE(number);
+    const bool is_third = number == 3;  // an object of its own, a pixel wide
+    Canvas on = canvas(
+        40, 20, {1, 1, 1}, [](int, int) { return 1.0f; },
+        [](int x, int) { return x < 20   ? 10.0f
+                                : x > 20 ? 20.0f
+                                         : 11.0f; });
+    for (int i = 0; i < 800; ++i)
+      on.layers.channels[2].uints[static_cast<std::size_t>(i)] = i % 40 < 20   ? 1
+                                                                 : i % 40 > 20 ? 2
+                                                                               : number;
+    draw_outline(on.picture, on.layers, 1);
+    double dark = 0, place = 0;
+    for (int x = 0; x < 40; ++x) {
+      const double value = 1 - std::pow(double{red(on.picture, x, 10)}, 1 / 2.2);
+      dark += value;
+      place += value * (x + 0.5);
+    }
+    if (is_third) {
+      EXPECT_GT(dark, 1.2) << "both of its sides have a line";
+    } else {
+      EXPECT_NEAR(place / dark, 20.9, 0.1);
+      EXPECT_NEAR(dark, 1, 0.1);
+    }
+  }
+}
+
 // The sample that gives a covered pixel its number may have hit nothing, or what is behind it.
 TEST(Outline, NumbersOfSinglePixelsAreTheirNeighbours) {
   Canvas on = canvas(

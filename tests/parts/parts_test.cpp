@@ -230,6 +230,20 @@ TEST(PartsOfNodes, AreHitAlike) {
   }
 }
 
+// Queries take as many rays at a time as fit into a buffer.
+TEST(PartsOfQueries, TakeNoLargerBuffers) {
+  const FlatScene flat = lower(scene_named("hair.pbrt"));
+  const Device device = test_device(Encoding::wide);
+  const std::vector<RayRecord> rays = rays_through(flat, 60000);
+  Query whole(flat, device);
+  const std::vector<PickRecord> expected = whole.closest(rays);
+  const PartsOf limit(part_bytes);
+  Query divided(flat, device);
+  const std::uint64_t before = device.bytes_allocated();
+  EXPECT_TRUE(same_bits(divided.closest(rays), expected));
+  EXPECT_LE(device.bytes_allocated() - before, 2 * part_bytes);  // rays, and what they meet
+}
+
 TEST(PartsOfPictures, AreSeenAlike) {
   Scene scene = scene_named("gallery.pbrt");
   scene.view.film.width = 60;
