@@ -6,8 +6,8 @@
 usage: beside_fields.py CAPLET DATA OUT [NAME...]
 
 Left is Caplet's picture, right the other program's, of the same file at the same size: PyMOL (Debian's package `pymol`), MuJoCo's own
-renderer, VTK by PyVista, and FURY. Needs Open Image Denoise, PyPI's mujoco, pyvista, fury, nibabel and pillow, OSMesa, and a display, as `xvfb-run -a`
-makes one. Prints the seconds that each command takes.
+renderer, VTK by PyVista, and FURY. Needs Open Image Denoise, PyPI's mujoco, pyvista, fury, nibabel and pillow, OSMesa, and a display,
+as `xvfb-run -a` makes one. Prints the seconds that each command takes.
 """
 import os
 import pathlib
@@ -58,6 +58,15 @@ def robot(program, data, ours, theirs):
     timed("MuJoCo", draw)
 
 
+def _plotter():
+    """PyVista's window, white and smooth."""
+    import pyvista
+    plotter = pyvista.Plotter(off_screen=True, window_size=SIZE)
+    plotter.set_background("white")
+    plotter.enable_anti_aliasing("ssaa")
+    return plotter
+
+
 def _branches(file):
     """Runs of points of a neuron, from each branch's first point to its last."""
     rows = {int(r[0]): r for r in (line.split() for line in open(file) if line.strip() and not line.startswith("#"))}
@@ -81,8 +90,7 @@ def neuron(program, data, ours, theirs):
     timed("caplet, neuron", caplet, program, file, ours, "--background", "white", "--view", "front", "--orthographic")
 
     def draw():
-        plotter = pyvista.Plotter(off_screen=True, window_size=SIZE)
-        plotter.set_background("white")
+        plotter = _plotter()
         for points in _branches(file):
             line = pyvista.lines_from_points(points[:, :3])
             line["radius"] = points[:, 3]
@@ -116,9 +124,7 @@ def lattice(program, data, ours, theirs):
     timed("caplet, lattice", caplet, program, file, ours, "--view", "1,0.45,0.62", "--background", "white", "--outline", "1.2", "--depth-cue", "0.5")
 
     def draw():
-        plotter = pyvista.Plotter(off_screen=True, window_size=SIZE)
-        plotter.set_background("white")
-        plotter.enable_anti_aliasing("ssaa")
+        plotter = _plotter()
         for line in file.read_text().splitlines():
             numbers = re.findall(r"-?[0-9.]+(?:e-?[0-9]+)?", line.split("#")[0])
             if len(numbers) < 7:
@@ -134,14 +140,11 @@ def lattice(program, data, ours, theirs):
 
 
 def mesh(program, data, ours, theirs):
-    import pyvista
     file = data / "meshes/2CylinderEngine/2CylinderEngine.glb"
     timed("caplet, mesh", caplet, program, file, ours, "--view", "1,0.6,1.2", "--background", "white", "--denoise")
 
     def draw():
-        plotter = pyvista.Plotter(off_screen=True, window_size=SIZE)
-        plotter.set_background("white")
-        plotter.enable_anti_aliasing("ssaa")
+        plotter = _plotter()
         plotter.import_gltf(str(file))
         plotter.view_vector((1, 0.6, 1.2), (0, 1, 0))
         plotter.screenshot(theirs)

@@ -71,7 +71,9 @@
   BUFFER(light_alias, AliasRecord, IN)                                                                          \
   BUFFER(light_nodes, uint, IN)  /* of the light tree, CAPLET_LIGHT_NODE each (lights/tree.cl) */               \
   BUFFER(light_places, uint, IN) /* of each light and, behind them, of each of its nodes: where it stands in a node, or CAPLET_NONE */ \
-  BUFFER_IN_PARTS(light_texels, float) /* of the lights' pictures (lights.def). In colour: 4 a texel, sigmoid c0 c1 c2, scale (times the illuminant) */ \
+  /* of the lights' pictures (lights.def). In colour: 4 a texel, sigmoid c0 c1 c2, scale (times the */          \
+  /* illuminant) */                                                                                             \
+  BUFFER_IN_PARTS(light_texels, float)                                                                          \
   BUFFER_IN_PARTS(light_cdf, float)    /* what they are sampled by (environment.cl, portal.cl) */ \
   GROUP_END(Lights)
 

@@ -239,7 +239,7 @@ def test_images_are_textures(tmp_path):
     veil.add("disk", radius=99, alpha=textures.imagemap(pixels=half, is_float=True))
     veil.look_at((0, 0, 5), (0, 0, 0))
     assert caplet.render(veil, spp=16, size=(64, 64)).alpha.mean() == pytest.approx(188 / 255, abs=0.009)
-    # What is saved has its images beside it.
+    # Saving writes the images beside the scene.
     file = tmp_path / "scene.pbrt"
     scene.save(str(file))
     assert {one.suffix for one in tmp_path.iterdir() if one != file} == {".exr"}

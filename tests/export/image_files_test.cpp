@@ -74,7 +74,7 @@ class MadeImages : public ImageReader {
 Scene made(const std::string& text) {
   const fs::path folder = temporary_folder();
   for (const char* const name :
-       {"grey.png", "rgb.png", "rgba.png", "float-grey.exr", "float-rgb.exr", "float-rgba.exr",
+       {"grey.png", "rgb.png", "rgba.png", "float-grey.png", "float-rgb.png", "float-rgba.png",
         "wide-rgb.png", "wide-float-rgb.exr", "table-rgb.png", "table-rgba.png", "sky.exr",
         "square.exr", "wide-square.exr"})
     std::ofstream(folder / name) << "no image";
@@ -87,7 +87,23 @@ std::set<std::string> files_of(const fs::path& folder) {
   return out;
 }
 
-class WrittenImages : public testing::TestWithParam<const char*> {};
+/// A scene of textures of one, three and four channels, whose names begin so.
+std::string of_channels(const std::string& prefix) {
+  const auto texture = [&](const char* name, const char* type, const std::string& image) {
+    return std::string("Texture \"") + name + "\" \"" + type +
+           "\" \"imagemap\" \"string filename\" \"" + prefix + image;
+  };
+  return "WorldBegin\n" + texture("a", "float", "grey.png\" \"string encoding\" \"linear\"\n") +
+         texture("b", "spectrum", "rgb.png\"\n") +
+         texture("c", "spectrum", "rgba.png\" \"string encoding\" \"gamma 1.8\"\n") +
+         R"(Material "coateddiffuse" "texture roughness" "a" "texture reflectance" "b"
+Shape "sphere" "float radius" 1
+Material "diffuse" "texture reflectance" "c"
+Shape "sphere" "float radius" 2
+)";
+}
+
+class WrittenImages : public testing::TestWithParam<std::string> {};
 
 TEST_P(WrittenImages, AreReadAsTheSameValues) {
   const Scene scene = made(GetParam());
@@ -114,25 +130,7 @@ TEST_P(WrittenImages, AreReadAsTheSameValues) {
 
 INSTANTIATE_TEST_SUITE_P(
     Kinds, WrittenImages,
-    testing::Values(R"(WorldBegin
-Texture "a" "float" "imagemap" "string filename" "grey.png" "string encoding" "linear"
-Texture "b" "spectrum" "imagemap" "string filename" "rgb.png"
-Texture "c" "spectrum" "imagemap" "string filename" "rgba.png" "string encoding" "gamma 1.8"
-Material "coateddiffuse" "texture roughness" "a" "texture reflectance" "b"
-Shape "sphere" "float radius" 1
-Material "diffuse" "texture reflectance" "c"
-Shape "sphere" "float radius" 2
-)",
-                    R"(WorldBegin
-Texture "a" "float" "imagemap" "string filename" "float-grey.exr"
-Texture "b" "spectrum" "imagemap" "string filename" "float-rgb.exr"
-Texture "c" "spectrum" "imagemap" "string filename" "float-rgba.exr"
-Material "coateddiffuse" "texture roughness" "a" "texture reflectance" "b"
-Shape "sphere" "float radius" 1
-Material "diffuse" "texture reflectance" "c"
-Shape "sphere" "float radius" 2
-)",
-                    R"(WorldBegin
+    testing::Values(of_channels(""), of_channels("float-"), R"(WorldBegin
 Texture "a" "spectrum" "imagemap" "string filename" "wide-float-rgb.exr"
 Material "diffuse" "texture reflectance" "a" "string normalmap" "rgb.png"
 Shape "sphere" "float radius" 1

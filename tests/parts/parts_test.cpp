@@ -261,10 +261,12 @@ TEST(PartsOfPictures, AreSeenAlike) {
 }
 
 // The device gets parts when leaves outgrow one buffer, and one buffer again when they fit.
-TEST(PartsOfEdits, GrowAndShrink) {
+class PartsOfEdits : public testing::TestWithParam<Encoding> {};
+
+TEST_P(PartsOfEdits, GrowAndShrink) {
   Scene scene = scene_named("neuron.swc");
   LiveScene live(scene);
-  const Device device = test_device(Encoding::automatic);
+  const Device device = test_device(GetParam());
   DeviceScene on_device(device, live.flat());
   Query query(on_device);
   std::vector<RayRecord> rays = rays_through(live.flat(), 2000);
@@ -289,7 +291,9 @@ TEST(PartsOfEdits, GrowAndShrink) {
     // Some capsules, in all parts; then all of them.
     for (std::size_t i = 0; i < capsules.p0.size(); i += capsules.p0.size() / 9) {
       Capsule to{capsules.p0[i], capsules.p1[i], capsules.radius0[i], capsules.radius0[i]};
-      to.p0.y += static_cast<float>(round) * 0.01f;
+      const glm::vec3 away(0, static_cast<float>(3 * round), 0);  // out of the boxes of before
+      to.p0 += away;
+      to.p1 += away;
       live.edit(CapsuleEdit{{{}, shape}, i, to});
       const glm::dvec3 middle(moved * glm::dvec4(0.5f * (to.p0 + to.p1), 1));
       rays.push_back(make_ray(middle + glm::dvec3(0, 0, 1), {0, 0, -1}));
@@ -306,6 +310,9 @@ TEST(PartsOfEdits, GrowAndShrink) {
     expect_same();
   }
 }
+
+INSTANTIATE_TEST_SUITE_P(Encodings, PartsOfEdits,
+                         testing::Values(Encoding::wide, Encoding::single));
 
 TEST(PartsOfFiles, StayInTheirFileOnCpus) {
   const Device device = test_device(Encoding::wide);
