@@ -314,6 +314,36 @@ TEST(Cartoons, HaveTheirColors) {
   EXPECT_EQ(balls.materials[atoms.materials.at(1)].name, "coil");
 }
 
+// Ten residues of one chain, but not nine and nine of two.
+TEST(Cartoons, AreTheDefaultOfPolymers) {
+  const auto first = [](const std::string& text, const ImportOptions& options = {}) {
+    return import_scene(test::write_file("p.pdb", text), test::NoImages(), options)
+        .shapes.at(0)
+        .name;
+  };
+  const auto chain = [](char name, int count, double y) {
+    return test::lines_of(test::backbone(count, -57, -47), name, 1, "ALA", {0, y, 0});
+  };
+  EXPECT_EQ(first(chain('A', 10, 0)), "chain A ALA 1");
+  EXPECT_EQ(first(chain('A', 9, 0) + chain('B', 10, 50)), "chain A ALA 1");
+  EXPECT_EQ(first(chain('A', 9, 0) + chain('B', 9, 50)), "chain A atoms");
+  std::string rna;
+  for (int i = 1; i <= 10; ++i)
+    rna += test::pdb_line(i, "P", "A", 'R', i, {6.0 * i, 0, 0}, 0, ' ', "P");
+  EXPECT_EQ(first(rna), "chain R A 1");
+  for (const char* by : {"chain", "residue", "secondary", "distance from name N"})
+    EXPECT_EQ(first(chain('A', 10, 0), {{{"color", by}}}), "chain A ALA 1") << by;
+  std::vector<std::pair<char, double>> places;
+  for (int i = 0; i < 10; ++i) places.emplace_back('A', 3.8 * i);
+  EXPECT_EQ(first(calphas(places), {{{"color", "bfactor"}}}), "chain A GLY 1");
+  // These colours tell atoms apart.
+  EXPECT_EQ(first(chain('A', 10, 0), {{{"color", "element"}}}), "chain A atoms");
+  EXPECT_EQ(first(chain('A', 10, 0), {{{"select", "//A/2-11"}}}), "chain A atoms");
+  const std::string pqr = "ATOM 1 CA ALA 1 0 0 0 0.5 1.7\n";
+  EXPECT_EQ(import_scene(test::write_file("p.pqr", pqr), test::NoImages(), {}).shapes.at(0).name,
+            "molecule atoms");
+}
+
 TEST(Cartoons, NeedAPolymer) {
   const std::string ion =
       "HETATM    1 ZN    ZN A   1       0.000   0.000   0.000  1.00  1.00          ZN\n";

@@ -123,7 +123,8 @@ TEST(Contents, AreCounted) {
 
 TEST(Assemblies, AreInstancesOfTheirChains) {
   CAPLET_NEEDS_DATA();
-  const Scene scene = scene_of(test::data_folder() / "mol/pdb/1M4X.pdb", {{{"assembly", "1"}}});
+  const Scene scene = scene_of(test::data_folder() / "mol/pdb/1M4X.pdb",
+                               {{{"assembly", "1"}, {"style", "spheres"}}});
   EXPECT_EQ(scene.shapes.size(), 0u);
   ASSERT_EQ(scene.objects.size(), 1u);
   EXPECT_EQ(counts_of(scene.objects[0].shapes).balls, 9693u);

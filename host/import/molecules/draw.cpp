@@ -39,7 +39,9 @@ namespace caplet {
 namespace {
 
 constexpr std::size_t kMostInDetail =
-    2000;                       // atoms; larger molecules are drawn as spheres by default
+    2000;  // atoms; larger molecules are drawn as spheres by default
+constexpr std::size_t kLeastOfCartoon =
+    10;                         // residues; chains of as many are drawn as cartoons by default
 constexpr float kBall = 0.25F;  // of the van der Waals radius
 constexpr float kBondRadius = 0.12F, kStickRadius = 0.2F, kTraceRadius = 0.45F;  // angstroms
 constexpr float kThinTrace = 0.25F, kThickTrace = 1.1F;  // radii at the least and greatest b factor
@@ -470,6 +472,24 @@ void move_atoms(Molecule& molecule, const std::string& path, std::uint32_t numbe
   molecule.frames = narrow<std::uint32_t>(frames);
 }
 
+/// Returns whether a chain has enough of a backbone to be drawn as a cartoon by default.
+bool has_polymer(const Molecule& molecule) {
+  std::vector<std::size_t> residues(molecule.chains.size(), 0);
+  return std::ranges::any_of(molecule.residues, [&](const Residue& r) {
+    return guide_atom(molecule, r) >= 0 && ++residues[r.chain] == kLeastOfCartoon;
+  });
+}
+
+/// Returns the style of a molecule without --style. Polymers are cartoons, as in ChimeraX and
+/// Mol*, unless the colours tell atoms apart.
+MoleculeStyle automatic_style(const Molecule& molecule, const ImportOptions& options) {
+  const std::string color = options.text("color").value_or("");
+  if (color != "element" && color != "charge" && has_polymer(molecule))
+    return MoleculeStyle::cartoon;
+  return molecule.atoms.size() > kMostInDetail ? MoleculeStyle::spheres
+                                               : MoleculeStyle::ball_and_stick;
+}
+
 /// Throws InputError where the file lacks what the style or the colours need.
 void check_asked(const Molecule& molecule, const Representation& as) {
   const auto [style, by] = std::pair(as.style, as.by);
@@ -529,9 +549,8 @@ Imported import_molecule(const std::filesystem::path& path, const ImportOptions&
   if (const std::optional<std::string> file = options.text("components"))
     for (auto& [name, bonds] : component_bonds_of(read_text(*file, {"--components"}), *file))
       molecule.components.insert_or_assign(name, std::move(bonds));
-  const std::vector<Representation> representations = asked_representations(
-      options, molecule.atoms.size() > kMostInDetail ? MoleculeStyle::spheres
-                                                     : MoleculeStyle::ball_and_stick);
+  const std::vector<Representation> representations =
+      asked_representations(options, automatic_style(molecule, options));
   for (const Representation& as : representations) check_asked(molecule, as);
   if (options.text("range") && std::ranges::none_of(representations, [](const Representation& as) {
         return shows_values(as.by);
