@@ -331,15 +331,8 @@ Scene presented(Imported file) {
     throw InputError(SourceLocation{scene.source},
                      "the scene is empty: it has no shapes, no light and no camera");
   if (!can_be_framed(scene)) return std::move(scene);
-  const Camera camera = scene.view.camera;
-  if (file.is_lit)
-    frame_camera(scene);
-  else
-    add_presentation(scene);
-  if (file.has_camera) {
-    scene.view.camera = camera;
-    scene.automatic_camera = false;
-  }
+  if (!file.has_camera) frame_camera(scene);
+  if (!file.is_lit) add_studio_light(scene);
   return std::move(scene);
 }
 

@@ -37,9 +37,9 @@ struct Ball {
 };
 
 /// Balls are spheres whose hull contains every shape: a capsule's ends, balls themselves, the
-/// corners of the bounds of anything else. Without shapes it is the unit ball, as in
-/// bounds_or_unit_of. Those of capsules take no memory: they are made again wherever they are
-/// needed. It refers to the scene.
+/// corners of the bounds of anything else and of each instance's object. Without shapes it is the
+/// unit ball, as in bounds_or_unit_of. Those of capsules take no memory: they are made again
+/// wherever they are needed. It refers to the scene.
 class Balls {
  public:
   explicit Balls(const Scene& scene) {
@@ -47,12 +47,7 @@ class Balls {
         std::ranges::all_of(scene.shapes, &Shape::is_backdrop) && scene.instances.empty();
     for (const Shape& shape : scene.shapes)
       if (!shape.is_backdrop || is_empty) add(shape);
-    if (!scene.instances.empty()) {
-      Scene placed;
-      placed.objects = scene.objects;
-      placed.instances = scene.instances;
-      add_corners(bounds_of(placed));
-    }
+    add_instances(scene);
     if (size_ == 0) add({glm::dvec3(0), 1});
   }
 
@@ -113,12 +108,29 @@ class Balls {
     ++size_;
   }
 
-  void add_corners(const Bounds& bounds) {
+  void add_corners(const Bounds& bounds, const glm::dmat4& world = glm::dmat4(1)) {
     if (bounds.empty()) return;
     for (int corner = 0; corner < 8; ++corner)
-      add({{corner & 1 ? bounds.max.x : bounds.min.x, corner & 2 ? bounds.max.y : bounds.min.y,
-            corner & 4 ? bounds.max.z : bounds.min.z},
+      add({place(world, {corner & 1 ? bounds.max.x : bounds.min.x,
+                         corner & 2 ? bounds.max.y : bounds.min.y,
+                         corner & 4 ? bounds.max.z : bounds.min.z}),
            0});
+  }
+
+  void add_instances(const Scene& scene) {
+    std::vector<Bounds> of_objects(scene.objects.size());
+    Scene moving;
+    for (std::size_t i = 0; i < scene.objects.size(); ++i)
+      for (const Shape& shape : scene.objects[i].shapes) of_objects[i].extend(bounds_of(shape));
+    for (const Instance& instance : scene.instances) {
+      if (instance.motion.empty())
+        add_corners(of_objects[instance.object], instance.world_from_object);
+      else
+        moving.instances.push_back(instance);
+    }
+    if (moving.instances.empty()) return;
+    moving.objects = scene.objects;
+    add_corners(bounds_of(moving));
   }
 
   void add(const Shape& shape) {
@@ -351,12 +363,16 @@ bool is_lit(const Scene& scene) {
          });
 }
 
-void add_presentation(Scene& scene) {
-  frame_camera(scene);
+void add_studio_light(Scene& scene) {
   InfiniteLight light;
   light.image = studio_image();
   light.world_from_light = around(scene.view.camera);
   scene.lights.push_back({light, 1, {}, {}, {scene.source, 0, 0}});
+}
+
+void add_presentation(Scene& scene) {
+  frame_camera(scene);
+  add_studio_light(scene);
 }
 
 void move_camera(Scene& scene, const Camera& to) {

@@ -11,11 +11,14 @@
 
 namespace caplet {
 
-/// Frames the camera to the scene's shapes (frame_camera) and adds soft studio light around it: one
-/// infinite image light with a large key light from the upper left, a fill from the right, a rim
-/// light from behind and a dim, slightly cool background. At infinity it adds no shape and lights
-/// scenes of any size alike: a white surface that faces the key is displayed near 1. The scene must
-/// have shapes with materials and no lights; y is taken as up.
+/// Adds soft studio light around the scene's camera: one infinite image light with a large key
+/// light from the upper left, a fill from the right, a rim light from behind and a dim, slightly
+/// cool background. At infinity it adds no shape and lights scenes of any size alike: a white
+/// surface that faces the key is displayed near 1. The scene must have no lights.
+void add_studio_light(Scene& scene);
+
+/// Frames the camera to the scene's shapes (frame_camera) and adds studio light around it; y is
+/// taken as up.
 void add_presentation(Scene& scene);
 
 /// Returns whether the scene has a light or an emissive shape.

@@ -41,6 +41,12 @@ TEST(EmbreeGraph, CamerasLookFromTo) {
   EXPECT_EQ(glm::dvec3(camera[3]), glm::dvec3(1, 2, 3));
   EXPECT_LT(glm::length(glm::dvec3(camera[2]) - glm::dvec3(1, 0, 0)), 1e-12);
   EXPECT_LT(glm::length(glm::dvec3(camera[1]) - glm::dvec3(0, 0, 1)), 1e-12);
+  // The studio light is around this camera: x toward the viewer, y to its right, z up.
+  ASSERT_EQ(scene.lights.size(), 1U);
+  const glm::dmat3& light = std::get<InfiniteLight>(scene.lights[0].model).world_from_light;
+  EXPECT_LT(glm::length(light[0] - glm::dvec3(-1, 0, 0)), 1e-12);
+  EXPECT_LT(glm::length(light[1] - glm::dvec3(camera[0])), 1e-12);
+  EXPECT_LT(glm::length(light[2] - glm::dvec3(0, 0, 1)), 1e-12);
 }
 
 // XML's comments and white space stand anywhere between elements, and say nothing.

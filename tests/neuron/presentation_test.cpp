@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/ext/matrix_transform.hpp>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 #include <numbers>
@@ -113,6 +114,38 @@ TEST(FramingAgain, FollowsTheFilmAlone) {
   scene.view.film.width = 960;
   frame_camera(scene);
   EXPECT_EQ(scene.view.camera.world_from_camera, before.world_from_camera);
+}
+
+// Small boxes placed over a ball are framed as the capsules of no length in their middles are,
+// not as the bounds of all of them.
+TEST(FramingInstances, IsAsTightAsThatOfShapes) {
+  std::mt19937 random(4);
+  std::normal_distribution<double> normal;
+  Scene placed;
+  placed.materials.push_back({DiffuseMaterial{}, "m", {}});
+  Shape shape;
+  shape.geometry = BoxShape{glm::vec3(-1e-3F), glm::vec3(1e-3F)};
+  placed.objects.push_back({"o", {shape}, {}});
+  CapsulesShape points;
+  for (int i = 0; i < 400; ++i) {
+    const glm::vec3 at(glm::normalize(glm::dvec3(normal(random), normal(random), normal(random))) *
+                       glm::dvec3(3, 2, 1));
+    Instance instance;
+    instance.world_from_object = glm::translate(glm::dmat4(1), glm::dvec3(at));
+    placed.instances.push_back(instance);
+    points.p0.push_back(at);
+    points.p1.push_back(at);
+    points.radius0.push_back(1e-3F);
+  }
+  placed.view.film.width = 320;
+  placed.view.film.height = 240;
+  add_presentation(placed);
+  const Scene expected = capsules_scene(points, 320, 240);
+  const glm::dmat4 &seen = placed.view.camera.world_from_camera,
+                   &wanted = expected.view.camera.world_from_camera;
+  // A corner lies 1.7e-3 from the middle, a plane of the view at least 18 degrees from its axis.
+  for (int i = 0; i < 4; ++i)
+    EXPECT_LT(glm::distance(glm::dvec3(seen[i]), glm::dvec3(wanted[i])), 0.01) << i;
 }
 
 TEST(FramingDirection, FlatScenesAreSeenFaceOn) {
