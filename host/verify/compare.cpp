@@ -72,8 +72,44 @@ bool has_thin_wall(const reference::Csg& csg, const LocalRay& local) {
 /// Returns whether both answers are right: the ray begins at the surface, the line touches it or
 /// passes a rim, all within the bound. For csg shapes, it is enough that this holds for one of
 /// their solids.
+/// Patches reach beyond their borders by up to the bound, so beyond a corner of the angle a by the
+/// bound over sin(a / 2). Returns the greatest of these factors, at least 1. Borders of tori meet
+/// at right angles.
+double reach_of_corners(const reference::MolecularPatch& patch) {
+  double least_sine = 1;
+  const auto& planes = patch.planes;
+  for (std::size_t i = 0; i < planes.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j) {
+      const dvec3 &a = planes[i].normal, &b = planes[j].normal, across = glm::cross(a, b);
+      const double cosine = glm::dot(a, b), squared = glm::dot(across, across);
+      if (!(squared > 0)) continue;
+      const dvec3 foot = ((planes[i].offset - cosine * planes[j].offset) * a +
+                          (planes[j].offset - cosine * planes[i].offset) * b) /
+                         squared;
+      const double room = (patch.minor * patch.minor - glm::dot(foot, foot)) / squared;
+      for (const double side : {-1.0, 1.0}) {
+        if (!(room >= 0)) continue;
+        const dvec3 corner = foot + side * std::sqrt(room) * across;
+        const bool is_of_patch =
+            std::ranges::all_of(planes, [&](const reference::MolecularPatch::Plane& plane) {
+              return glm::dot(plane.normal, corner) <= plane.offset + 1e-6 * patch.minor;
+            });
+        if (!is_of_patch) continue;
+        const dvec3 up = glm::normalize(corner), along_a = glm::cross(up, a),
+                    along_b = glm::cross(up, b);
+        const double cosine_of_normals =
+            glm::dot(along_a, along_b) / (glm::length(along_a) * glm::length(along_b));
+        least_sine = std::min(least_sine, std::sqrt(std::max(0.0, 0.5 * (1 + cosine_of_normals))));
+      }
+    }
+  return 1 / std::max(1e-6, least_sine);
+}
+
 bool is_grazing(const LocalRay& local) {
   if (begins_at(local)) return true;
+  if (const auto* patch = std::get_if<reference::MolecularPatch>(local.primitive))
+    return reference::comes_within(*local.primitive, local.ray,
+                                   local.bound * reach_of_corners(*patch));
   const auto* csg = std::get_if<reference::Csg>(local.primitive);
   if (!csg) return reference::comes_within(*local.primitive, local.ray, local.bound);
   for (const reference::CsgOperand& operand : csg->body->operands) {

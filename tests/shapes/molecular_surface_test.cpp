@@ -307,6 +307,22 @@ TEST(MolecularSurface, TwoBallsHaveTheAreasOfTextbooks) {
   check_two(2, 0.5, 1.7, 0.3);  // the circle lies beyond the small ball's centre
 }
 
+// Where the two halves of a tube meet, no patch of no extent is left by the rounding of angles.
+TEST(MolecularSurface, EqualBallsHaveTwoHalvesOfATube) {
+  std::mt19937 random(8);
+  std::normal_distribution<float> normal;
+  for (int i = 0; i < 200; ++i) {
+    Molecule two{"equal", {}, {}, 1.4};
+    two.add({0, 0, 0}, 1.7F);
+    two.add(2.5F * glm::normalize(glm::vec3(normal(random), normal(random), normal(random))), 1.7F);
+    const SurfacePatches surface = two.surface();
+    ASSERT_EQ(surface.tori.size(), 2u) << i;
+    // Each is as wide as the contact's angle: sin = 1.25 / 3.1.
+    for (const auto& patch : surface.tori)
+      EXPECT_NEAR(patch.theta_max - patch.theta_min, std::asin(1.25 / 3.1), 1e-6) << i;
+  }
+}
+
 TEST(MolecularSurface, BallsApartAreSpheres) {
   Molecule two{"apart", {}, {}, 1};
   two.add({0, 0, 0}, 1);

@@ -372,15 +372,21 @@ class ArcPatches {
                                            at_first,
                                            0,
                                            {}};
+    if (beyond == 0) {
+      add_between(whole, at_other, middle, other_.ball);
+      add_between(whole, middle, at_first, first_);
+      return;
+    }
     add_between(whole, at_other, std::min(middle, half_turn - beyond), other_.ball);
     add_between(whole, std::max(at_other, half_turn + beyond), middle, other_.ball);
     add_between(whole, middle, std::min(at_first, half_turn - beyond), first_);
     add_between(whole, std::max(middle, half_turn + beyond), at_first, first_);
   }
 
+  /// Adds nothing where only the rounding of angles near pi, some 1e-15, is between the ends.
   void add_between(const SurfacePatches::TorusPatch& whole, double from, double to,
                    std::uint32_t ball) {
-    if (!(from < to)) return;
+    if (!(to - from > 1e-14)) return;
     SurfacePatches::TorusPatch patch = whole;
     patch.theta_min = from;
     patch.theta_max = to;
