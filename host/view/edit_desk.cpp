@@ -65,6 +65,9 @@ void EditDesk::prepare_greeting(bool read_only) {
   for (const post::OverlayRow& row : post::overlay_rows())
     out["overlays"].push_back({{"name", row.name}, {"values", row.values}, {"help", row.help}});
   out["home"] = camera_text(films_.look());
+  const Scene& scene = live_.scene();
+  if (scene.automatic_camera)  // it fits films of these sides alone
+    out["home"]["framed"] = {scene.view.film.width, scene.view.film.height};
   out["backdrop"] = backdrop_text(live_.scene().view.film.backdrop);
   out["exposure"] = exposure_text(live_.scene().view.film.exposure);
   out["read_only"] = read_only;

@@ -483,6 +483,26 @@ def redraws(program, scenes, out):
         assert shown.find("option-color").get_attribute("value") == ""
 
 
+def wholes(program, scenes, out):
+    """A file without a camera is seen whole in windows of any sides: its camera was made for a wide picture."""
+    folder = out / "whole"
+    folder.mkdir(exist_ok=True)
+    (folder / "row.xyz").write_text("5\n\n" + "".join(f"C {2 * i} 0 0\n" for i in range(5)))
+    with page_test.viewer(program, folder / "row.xyz", "--spp", "2") as served, page(served.address) as shown:
+        def share():
+            """Of the width, how much the row takes; 0 where it reaches an edge."""
+            width, height, rgba = shown.pixels()
+            seen = [x for x in range(width) if max(rgba[4 * x::4 * width]) > 100]
+            return 0 if not seen or seen[0] == 0 or seen[-1] == width - 1 else (seen[-1] - seen[0]) / width
+        # Of the program's picture the row takes 0.95; here its bounds, which are larger, take the width.
+        shown.until("the whole row", lambda: shown.samples() >= 2 and 0.7 < share() < 0.97)
+        shown.driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", {"width": 390, "height": 844, "deviceScaleFactor": 1, "mobile": True})
+        shown.until("less than the row", lambda: share() == 0 and shown.samples() >= 2)
+        shown.press("0")
+        shown.until("the whole row on a phone", lambda: shown.samples() >= 2 and 0.7 < share() < 0.97)
+        shown.driver.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
+
+
 LAYOUT = """const box = (id) => document.getElementById(id).getBoundingClientRect(), tops = [...document.querySelectorAll('#bar button')].filter((b) => b.checkVisibility()).map((b) => b.getBoundingClientRect().top);
     const stage = box('stage'), covered = ['file-tools', 'view-tools', 'rail', 'line', 'under', 'hint'].map(box).reduce((sum, b) => sum + b.width * b.height, 0);
     return { rows: new Set(tops.map(Math.round)).size, share: covered / stage.width / stage.height, panel: document.getElementById('panel').checkVisibility(), stage: stage.width, tops: tops.length };"""
@@ -732,7 +752,7 @@ def modules(program, scenes, out):
         assert abs(x - box["width"] / 2) < 1 and abs(y - box["height"] / 2) < 1, (x, y, box)
 
 
-CASES = [modules, tools, measures, inspects, numbers, never_waits, links, paths, clips, times, controls, redraws, labels, figure, screens]
+CASES = [modules, tools, measures, inspects, numbers, never_waits, links, paths, clips, times, controls, redraws, wholes, labels, figure, screens]
 
 
 if __name__ == "__main__":

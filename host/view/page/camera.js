@@ -55,6 +55,16 @@ export class Camera {
     this.eye = add(this.eye, by);
     this.target = add(this.target, by);
   }
+  // Steps back until the box between two corners lies in a view of these sides.
+  hold([low, high], sides) {
+    const edge = sides.map((side) => Math.tan(this.fov / 2) * side / Math.min(...sides)), axes = [this.right, this.up, this.forward].map(unit);
+    let from = 0;
+    for (let k = 0; k < 8; ++k) {
+      const at = sub([0, 1, 2].map((i) => (k >> i & 1 ? high : low)[i]), this.eye), [x, y, z] = axes.map((axis) => dot(at, axis));
+      from = Math.max(from, ...[x / edge[0], y / edge[1]].map((depth) => Math.abs(depth) - (this.parallel ? this.distance() : z)));
+    }
+    this.eye = sub(this.eye, mul(axes[2], from));
+  }
   dolly(factor) { this.eye = add(this.target, mul(sub(this.eye, this.target), factor)); }
   // Looks along `forward`, with `up` upward if possible, from a distance at which a ball fills the picture.
   look(forward, up, center, radius) {

@@ -210,13 +210,11 @@ function begin(message) {
     if (restarted) { choose(null, false); looked = ""; }  // the new program must know what this page looks at
     else camera_of(scene.camera);
   } else {
-    camera = new Camera(scene.camera);
+    camera = of_scene(scene.camera);
     // Orbiting turns about the world axis that is nearest to the picture's up.
     const up = unit(camera.up), axis = up.map(Math.abs).indexOf(Math.max(...up.map(Math.abs)));
     world_up = [0, 0, 0];
     world_up[axis] = Math.sign(up[axis]);
-    const along = dot(sub(center, camera.eye), unit(camera.forward));
-    if (!camera.parallel) camera.target = add(camera.eye, mul(unit(camera.forward), along > 0 ? along : radius));
     past = []; future = []; chosen.clear();
     view_of_link();
   }
@@ -236,6 +234,16 @@ function begin(message) {
   redraw.told(scene.options);
   look();
   draw();
+}
+
+// The program chose the camera of scenes without one for a picture of other sides: here it shows the whole scene too.
+function of_scene(from) {
+  const camera = new Camera(from), along = dot(sub(center, camera.eye), unit(camera.forward));
+  if (!camera.parallel) camera.target = add(camera.eye, mul(unit(camera.forward), along > 0 ? along : radius));
+  const { framed, ...home } = scene.home;
+  const sides = [stage.clientWidth, stage.clientHeight], is_less = (i) => framed && sides[i] / Math.min(...sides) < framed[i] / Math.min(...framed);
+  if ((is_less(0) || is_less(1)) && (from === scene.home || JSON.stringify(from) === JSON.stringify(home))) camera.hold(scene.bounds, sides);
+  return camera;
 }
 
 // Absent: the program has no denoiser.
@@ -296,7 +304,7 @@ function look() {
 function remember() { past.push(camera.copy()); future = []; if (past.length > 1000) past.shift(); }
 function change(what) { remember(); what(); look(); }
 function undo(from, to) { if (!from.length) return; to.push(camera.copy()); camera = from.pop(); look(); }
-const home = () => change(() => { const target = camera.target; camera = new Camera(scene.home); if (!camera.parallel) camera.target = target; });
+const home = () => change(() => { camera = of_scene(scene.home); });
 const fit = () => change(() => camera.fit(center, radius));
 // Frames what is selected, or everything.
 function frame() {
