@@ -120,14 +120,9 @@ std::size_t ImportOptions::choice(const std::string& name,
                                   std::size_t otherwise) const {
   const std::optional<std::string> asked = text(name);
   if (!asked) return otherwise;
-  std::string known;
-  std::size_t i = 0;
-  for (const char* choice : choices) {
-    if (*asked == choice) return i;
-    known += (known.empty() ? "" : ", ") + std::string(choice);
-    ++i;
-  }
-  throw InputError({"--" + name}, "'" + *asked + "' is none of: " + known);
+  const auto* const found = std::ranges::find(choices, *asked);
+  if (found != choices.end()) return static_cast<std::size_t>(found - choices.begin());
+  throw InputError({"--" + name}, none_of(*asked, {choices.begin(), choices.end()}));
 }
 
 bool ImportOptions::yes(const std::string& name, bool otherwise) const {

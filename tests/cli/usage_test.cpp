@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <fstream>
 #include <string>
 #include <vector>
 
@@ -38,8 +39,29 @@ TEST_F(Usage, UnknownThingsAreNamedWithTheNearest) {
           "unknown option '--noize'; the nearest is '--noise'");
   refused({"render", "scene.pbrt", "--sise=64x64"},
           "unknown option '--sise'; the nearest is '--size'");
+  // This tells more than that SCENE is missing.
+  refused({"render", "--denoize"}, "unknown option '--denoize'; the nearest is '--denoise'");
+  refused({"render"}, "SCENE is required");
   refused({"devices", "all"}, "devices: unexpected argument 'all'");
   refused({"help", "pik"}, "help: there is no command 'pik'; the nearest is 'pick'");
+}
+
+TEST_F(Usage, MissingValuesAreNamed) {
+  refused({"render", "scene.pbrt", "--size"}, "--size: its value WxH is missing");
+  refused({"render", "scene.pbrt", "--turntable"}, "--turntable: its value N is missing");
+}
+
+TEST_F(Usage, MisspeltValuesAreToldTheNearest) {
+  std::ofstream(folder_ / "a.xyz") << "1\n\nC 0 0 0\n";
+  for (const auto& [option, message] :
+       {std::pair("--style=stiks",
+                  "--style: 'stiks' is none of: ball-and-stick, spheres, sticks, "
+                  "trace, cartoon, surface, accessible; the nearest is 'sticks'"),
+        std::pair("--color=chian",
+                  "--color: 'chian' is none of: element, chain, residue, bfactor, "
+                  "secondary, charge, distance from ATOMS; the nearest is 'chain'")})
+    EXPECT_THAT(run({"render", "a.xyz", option}).err,
+                StartsWith(std::string("caplet: error: ") + message + "\n"));
 }
 
 TEST_F(Usage, HelpIsThatOfTheOption) {

@@ -64,9 +64,11 @@ std::optional<AskedColor> asked_color(const ImportOptions& options) {
   if (text->starts_with("distance"))
     throw InputError({"--color"}, "'distance from' and a selection of atoms are needed");
   const auto* const found = std::ranges::find(color_names, *text);
-  if (found == color_names.end())
-    throw InputError({"--color"}, fmt::format("'{}' is none of: {}, distance from ATOMS", *text,
-                                              fmt::join(color_names, ", ")));
+  if (found == color_names.end()) {
+    std::vector<std::string> known(color_names.begin(), color_names.end());
+    known.emplace_back("distance from ATOMS");
+    throw InputError({"--color"}, none_of(*text, known));
+  }
   return AskedColor{static_cast<MoleculeColor>(found - color_names.begin()), ""};
 }
 

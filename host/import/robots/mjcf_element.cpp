@@ -4,6 +4,7 @@
 // Attributes of MJCF, with the defaults of their classes.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 #include <glm/trigonometric.hpp>
@@ -64,14 +65,10 @@ std::size_t Element::choice(const char* name, std::initializer_list<const char*>
                             std::size_t otherwise) const {
   const pugi::xml_attribute found = attribute(name);
   if (!found) return otherwise;
-  std::size_t i = 0;
-  std::string known;
-  for (const char* choice : choices) {
-    if (std::string_view(found.value()) == choice) return i;
-    known += (known.empty() ? "" : ", ") + std::string(choice);
-    ++i;
-  }
-  fail(fmt::format("{}: {} is none of: {}", name, quoted(std::string_view(found.value())), known));
+  const std::string_view value = found.value();
+  const auto* const at = std::ranges::find(choices, value);
+  if (at != choices.end()) return static_cast<std::size_t>(at - choices.begin());
+  fail(fmt::format("{}: {}", name, none_of(value, {choices.begin(), choices.end()})));
 }
 
 bool Element::yes(const char* name, bool otherwise) const {
