@@ -69,13 +69,10 @@ bool has_thin_wall(const reference::Csg& csg, const LocalRay& local) {
   return false;
 }
 
-/// Returns whether both answers are right: the ray begins at the surface, the line touches it or
-/// passes a rim, all within the bound. For csg shapes, it is enough that this holds for one of
-/// their solids.
 /// Patches reach beyond their borders by up to the bound, so beyond a corner of the angle a by the
-/// bound over sin(a / 2). Returns the greatest of these factors, at least 1. Borders of tori meet
-/// at right angles.
-double reach_of_corners(const reference::MolecularPatch& patch) {
+/// bound over sin(a / 2). Returns the greatest of these factors, at least 1; corners that another
+/// border cuts off by less than the bound count too. Borders of tori meet at right angles.
+double reach_of_corners(const reference::MolecularPatch& patch, double bound) {
   double least_sine = 1;
   const auto& planes = patch.planes;
   for (std::size_t i = 0; i < planes.size(); ++i)
@@ -92,7 +89,7 @@ double reach_of_corners(const reference::MolecularPatch& patch) {
         const dvec3 corner = foot + side * std::sqrt(room) * across;
         const bool is_of_patch =
             std::ranges::all_of(planes, [&](const reference::MolecularPatch::Plane& plane) {
-              return glm::dot(plane.normal, corner) <= plane.offset + 1e-6 * patch.minor;
+              return glm::dot(plane.normal, corner) <= plane.offset + bound;
             });
         if (!is_of_patch) continue;
         const dvec3 up = glm::normalize(corner), along_a = glm::cross(up, a),
@@ -105,11 +102,14 @@ double reach_of_corners(const reference::MolecularPatch& patch) {
   return 1 / std::max(1e-6, least_sine);
 }
 
+/// Returns whether both answers are right: the ray begins at the surface, the line touches it or
+/// passes a rim, all within the bound. For csg shapes, it is enough that this holds for one of
+/// their solids.
 bool is_grazing(const LocalRay& local) {
   if (begins_at(local)) return true;
   if (const auto* patch = std::get_if<reference::MolecularPatch>(local.primitive))
     return reference::comes_within(*local.primitive, local.ray,
-                                   local.bound * reach_of_corners(*patch));
+                                   local.bound * reach_of_corners(*patch, local.bound));
   const auto* csg = std::get_if<reference::Csg>(local.primitive);
   if (!csg) return reference::comes_within(*local.primitive, local.ray, local.bound);
   for (const reference::CsgOperand& operand : csg->body->operands) {
