@@ -178,10 +178,24 @@ class Session:
         self._native.resume(image._film)
 
 
-def _count(value, name, most):
-    if isinstance(value, bool) or int(value) != value or not 1 <= value <= most:
-        raise InputError(f"{name}: a whole number from 1 to {most} is needed, not {value!r}")
+def _count(value, name, most, least=1):
+    try:
+        is_good = not isinstance(value, (bool, str)) and int(value) == value and least <= value <= most
+    except (TypeError, ValueError, OverflowError):
+        is_good = False
+    if not is_good:
+        raise InputError(f"{name}: a whole number from {least} to {most} is needed, not {value!r}")
     return int(value)
+
+
+def _range(samples):
+    """The first of (A, B), and how many there are before B."""
+    try:
+        begin, end = samples
+    except (TypeError, ValueError):
+        raise InputError(f"samples: (A, B) is needed, for samples A to B - 1 of every pixel, not {samples!r}; how many there are is spp") from None
+    begin = _count(begin, "samples: A", (1 << 24) - 1, 0)
+    return begin, _count(end, "samples: B", 1 << 24, begin + 1) - begin
 
 
 def _in_display(noise_space):
@@ -201,7 +215,7 @@ def render(scene, spp=None, size=None, device=None, seed=None, time_limit=None, 
     """
     native = _scene(scene)._native.copy()
     if seed is not None:
-        native.seed = _count(seed + 1, "seed", 1 << 32) - 1
+        native.seed = _count(seed, "seed", (1 << 32) - 1, 0)
     if size is not None:
         native.set_size(*arrays.size(size))
     native.widen_to_least()
@@ -209,8 +223,7 @@ def render(scene, spp=None, size=None, device=None, seed=None, time_limit=None, 
     if samples is not None:
         if spp is not None:
             raise InputError("spp: does not go with samples")
-        first = _count(samples[0] + 1, "samples", 1 << 24) - 1
-        spp = _count(samples[1] - first, "samples", 1 << 24)
+        first, spp = _range(samples)
     session = Session.__new__(Session)
     session._native = _caplet.Session(native, _devices(device), bool(cryptomatte), bool(deep))
     session._cancelled, session._size = False, None
@@ -316,7 +329,7 @@ def verify(scene=None, rays=1_000_000, devices=None, seed=0):
     """A device's hits beside those of a host reference that finds them by another method; without a scene, on hard ones of all shapes."""
     native = None if scene is None else _scene(scene)._native
     choice = "" if devices is None else str(devices)
-    return Report(*_caplet.verify(native, choice, _count(rays, "rays", 1 << 40), int(seed)))
+    return Report(*_caplet.verify(native, choice, _count(rays, "rays", 1 << 40), _count(seed, "seed", (1 << 64) - 1, 0)))
 
 
 def devices():

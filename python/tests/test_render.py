@@ -199,9 +199,16 @@ def test_shares_add_to_one_render(ball, tmp_path):
     ball.set_material(0, materials.conductor(alpha=0.3))
     with pytest.raises(caplet.InputError, match="another scene"):
         caplet.Session(ball).resume(late)
-    for wrong in ((3, 3), (-1, 2), (4, 2), (0.5, 2)):
-        with pytest.raises(caplet.InputError, match="samples"):
+    for wrong in ((3, 3), (-1, 2), (4, 2), (0.5, 2), ("a", 2), (0, 1 << 25)):
+        with pytest.raises(caplet.InputError, match="samples: [AB]: a whole number from "):
             caplet.render(ball, samples=wrong)
+    for wrong in (3, (1, 2, 3), "four"):
+        with pytest.raises(caplet.InputError, match=r"samples: \(A, B\) is needed.* how many there are is spp"):
+            caplet.render(ball, samples=wrong)
+    for name in ("spp", "seed"):
+        for wrong in ("many", -1, 1.5, float("nan"), True, [1]):
+            with pytest.raises(caplet.InputError, match=f"{name}: a whole number from . to "):
+                caplet.render(ball, **{name: wrong})
     with pytest.raises(caplet.InputError, match="spp"):
         caplet.render(ball, spp=3, samples=(0, 3))
 
