@@ -2,6 +2,9 @@
 // Copyright Caplet authors
 #include "base/spelling.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
 
 namespace caplet {
@@ -37,6 +40,11 @@ std::string nearest_name(std::string_view name, const std::vector<std::string>& 
       best_distance = d;
     }
   return best;
+}
+
+std::string none_of(std::string_view name, const std::vector<std::string>& known) {
+  return fmt::format("'{}' is none of: {}; the nearest is '{}'", name, fmt::join(known, ", "),
+                     nearest_name(name, known));
 }
 
 std::string lower_case(std::string text) {

@@ -21,6 +21,7 @@
 #include "import/import.h"
 #include "import/picture_options.h"
 #include "present/film_window.h"
+#include "render/host_threads.h"
 
 namespace caplet::cli {
 
@@ -143,7 +144,22 @@ std::vector<Device> choose_devices(const std::string& choice, Encoding encoding)
   return with_device_flag([&] { return Device::choose_several(choice, encoding); });
 }
 
+namespace {
+
+void add_threads(CLI::App& command) {
+  command
+      .add_option_function<unsigned>(
+          "--threads", limit_host_threads,
+          "Threads on processors: of PoCL's device, and of what is done beside it")
+      ->type_name("N")
+      ->check(CLI::Range(1U, 65536U))
+      ->default_str("as many as processors");
+}
+
+}  // namespace
+
 void add_device(CLI::App& command, std::string& choice) {
+  add_threads(command);
   command
       .add_option(
           "--device", choice,
@@ -153,6 +169,7 @@ void add_device(CLI::App& command, std::string& choice) {
 }
 
 void add_devices_option(CLI::App& command, std::string& choice) {
+  add_threads(command);
   command
       .add_option("--device", choice,
                   "OpenCL device: index, cpu, gpu, bundled or part of its name (see `caplet "

@@ -70,9 +70,7 @@ void apply_preset(CLI::App& command, const std::string& name) {
     }
     return;
   }
-  throw InputError(SourceLocation{"--preset"},
-                   fmt::format("'{}' is none of {}; the nearest is '{}'", name,
-                               fmt::join(names(), ", "), nearest_name(name, names())));
+  throw InputError(SourceLocation{"--preset"}, none_of(name, names()));
 }
 
 }  // namespace caplet::cli

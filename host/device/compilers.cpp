@@ -30,6 +30,7 @@
 #include "base/interrupt.h"
 #include "base/log.h"
 #include "base/memory.h"
+#include "base/threads.h"
 #include "device/bundled.h"
 #include "device/cache.h"
 #include "device/detail/programs.h"
@@ -121,8 +122,7 @@ CompiledKernel compile(const Device& device, const CompileJob& job) {
 namespace {
 
 std::size_t default_count() {
-  std::size_t out =
-      std::clamp<std::size_t>(std::thread::hardware_concurrency(), 1, most_by_default);
+  std::size_t out = std::clamp<std::size_t>(usable_threads(), 1, most_by_default);
   if (const auto free = free_memory()) out = std::min<std::size_t>(out, 1 + *free / process_bytes);
   return out;
 }

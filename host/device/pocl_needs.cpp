@@ -13,9 +13,11 @@
 #include <cstdlib>
 #include <cstring>
 #include <mutex>
+#include <string>
 
 #include "base/environment.h"
 #include "base/log.h"
+#include "base/threads.h"
 
 namespace caplet {
 
@@ -69,6 +71,13 @@ void replace_topology() {
            fmt::format("pack:1 [numa(memory={})] core:{} pu:1", memory, processors).c_str(), 1);
 }
 
+void limit_device() {
+  // PoCL before and since 5.
+  if (const unsigned most = thread_limit(); most > 0)
+    for (const char* name : {"POCL_MAX_PTHREAD_COUNT", "POCL_CPU_MAX_CU_COUNT"})
+      ::setenv(name, std::to_string(most).c_str(), 1);
+}
+
 }  // namespace
 
 void prepare_for_pocl() {
@@ -76,6 +85,7 @@ void prepare_for_pocl() {
   std::call_once(once, [] {
     replace_cache();
     replace_topology();
+    limit_device();
   });
 }
 

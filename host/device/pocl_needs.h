@@ -15,8 +15,9 @@ namespace caplet {
 
 /// Call this before the first OpenCL call of a process; later calls do nothing. Sets environment
 /// variables where something is missing: POCL_CACHE_DIR to a temporary folder of this user,
-/// HWLOC_SYNTHETIC to the processors and the memory that the kernel reports. Warns of a missing
-/// /sys, which every PoCL needs.
+/// HWLOC_SYNTHETIC to the processors and the memory that the kernel reports; and
+/// POCL_MAX_PTHREAD_COUNT and POCL_CPU_MAX_CU_COUNT to thread_limit(), where there is one. Warns of
+/// a missing /sys, which every PoCL needs.
 void prepare_for_pocl();
 
 /// Warns, once, of PoCL's own cache folder where another one takes its place. Call this when PoCL

@@ -12,10 +12,10 @@
 #include <functional>
 #include <limits>
 #include <string_view>
-#include <thread>
 #include <utility>
 
 #include "base/error.h"
+#include "base/threads.h"
 #include "film/image.h"
 #include "scene/spectrum.h"
 
@@ -286,7 +286,7 @@ void save_film(const std::filesystem::path& path, const SavedFilm& saved, double
   };
   write_exr(path, image,
             compression_for(layout.window.pixels() * words * sizeof(std::uint64_t), seconds,
-                            std::thread::hardware_concurrency()));
+                            usable_threads()));
 }
 
 SavedFilm load_film(const std::filesystem::path& path) {

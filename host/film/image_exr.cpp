@@ -25,12 +25,12 @@
 #include <cstring>
 #include <limits>
 #include <optional>
-#include <thread>
 #include <utility>
 
 #include "base/atomic_file.h"
 #include "base/check.h"
 #include "base/error.h"
+#include "base/threads.h"
 #include "base/utf8.h"
 #include "film/chromaticities.h"
 #include "film/detail/checked_file.h"
@@ -44,12 +44,10 @@ namespace fs = std::filesystem;
 
 namespace {
 
-unsigned usable_cores() { return std::max(1u, std::thread::hardware_concurrency()); }
-
 /// Compression and decompression use all cores; OpenEXR starts with none of its own.
 int thread_count() {
   static const int count = [] {
-    const int cores = static_cast<int>(usable_cores());
+    const int cores = static_cast<int>(usable_threads());
     Imf::setGlobalThreadCount(cores);
     return cores;
   }();
@@ -268,8 +266,8 @@ int band_rows(int width, std::size_t channels) {
   constexpr std::size_t wanted_bytes = std::size_t{1} << 25, block_rows = 16;
   const std::size_t row_bytes =
       std::max<std::size_t>(1, static_cast<std::size_t>(width) * channels * sizeof(float));
-  const std::size_t blocks =
-      std::max(wanted_bytes / (row_bytes * block_rows), std::min<std::size_t>(16, usable_cores()));
+  const std::size_t blocks = std::max(wanted_bytes / (row_bytes * block_rows),
+                                      std::min<std::size_t>(16, usable_threads()));
   return narrow<int>(block_rows * blocks);
 }
 

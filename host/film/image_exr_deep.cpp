@@ -12,10 +12,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <thread>
 
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "base/threads.h"
 #include "base/utf8.h"
 #include "film/deep.h"
 #include "film/detail/checked_file.h"
@@ -97,9 +97,8 @@ void write_deep_exr(const std::filesystem::path& path, const FilmLayout& layout,
     write_atomically(path, [&](const std::filesystem::path& temporary) {
       CheckedFile stream(temporary, path);
       {
-        Imf::DeepScanLineOutputFile file(
-            stream, header_of(layout, attributes),
-            static_cast<int>(std::max(1u, std::thread::hardware_concurrency())));
+        Imf::DeepScanLineOutputFile file(stream, header_of(layout, attributes),
+                                         static_cast<int>(usable_threads()));
         const int step = band_rows(layout.window.width, 2 * layout.words_per_pixel());
         for (int first = 0; first < layout.window.height; first += step) {
           const int count = std::min(step, layout.window.height - first);

@@ -121,11 +121,12 @@ void check_known(const ImportOptions& options, const std::vector<const Format*>&
       refuse_option(name, formats_of_files);
 }
 
-/// Returns the options that the format knows.
+/// Returns the options that the format knows. Only an importer can tell where an apical dendrite
+/// is.
 ImportOptions known_to(const Format& format, const ImportOptions& options) {
   std::map<std::string, std::string> values;
   for (const auto& [name, value] : options.values())
-    if (knows(format, name)) values.emplace(name, value);
+    if (knows(format, name) || (name == "up" && value == "apical")) values.emplace(name, value);
   ImportOptions out(std::move(values));
   out.file = options.file;
   out.files = options.files;

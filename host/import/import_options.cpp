@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "base/spelling.h"
 #include "import/detail/text_file.h"
 
 namespace caplet {
@@ -70,7 +71,8 @@ const std::vector<ImportOptionRow>& import_option_rows() {
        "direction toward the viewer; "
        "frames everything",
        Of::picture},
-      {"up", "x|y|z|-x|-y|-z", "The axis of the file that is up", Of::picture},
+      {"up", "x|y|z|-x|-y|-z|apical",
+       "The axis of the file that is up, or a neuron's apical dendrite", Of::picture},
       {"projection", "perspective|orthographic",
        "Of perspective and orthographic cameras; orthographic: lengths are the same at all depths",
        Of::picture},

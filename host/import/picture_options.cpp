@@ -4,7 +4,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <string>
+#include <vector>
+
 #include "base/error.h"
+#include "base/spelling.h"
 #include "import/detail/text_file.h"
 #include "present/clip.h"
 #include "present/picture_options.h"
@@ -25,6 +30,19 @@ double width_of(const std::string& text) {
   return value;
 }
 
+/// The importer of neurons has set the direction of the apical dendrite.
+void set_up(Framing& framing, const std::string& up) {
+  if (up == "apical") {
+    if (!framing.up)
+      throw InputError({"--up"}, "apical is for one file of a neuron with an apical dendrite");
+    return;
+  }
+  const std::vector<std::string> known{"x", "y", "z", "-x", "-y", "-z", "apical"};
+  if (std::ranges::find(known, up.substr(up.starts_with('+') ? 1 : 0)) == known.end())
+    throw InputError({"--up"}, none_of(up, known));
+  framing.up = parse_axis(up, "--up");
+}
+
 void look_from(Scene& scene, const ImportOptions& options, bool is_turned) {
   const auto view = options.text("view"), up = is_turned ? std::nullopt : options.text("up");
   const bool projects = options.text("projection").has_value();
@@ -40,7 +58,7 @@ void look_from(Scene& scene, const ImportOptions& options, bool is_turned) {
                              "--projection");
   }
   Framing& framing = scene.framing;
-  if (up) framing.up = parse_axis(*up, "--up");
+  if (up) set_up(framing, *up);
   if (view)
     framing.toward_viewer = parse_view(*view, framing.up.value_or(glm::dvec3(0, 1, 0)), "--view");
   if (projects) framing.is_orthographic = is_orthographic;

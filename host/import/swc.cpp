@@ -17,7 +17,9 @@
 #include <limits>
 #include <map>
 #include <numeric>
+#include <optional>
 #include <type_traits>
+#include <vector>
 
 #include "base/error.h"
 #include "base/quotes.h"
@@ -387,6 +389,29 @@ std::vector<glm::vec2> along_branches(const std::vector<SwcSample>& samples,
   return out;
 }
 
+/// Returns the unit direction from the soma (without one, the first sample) to the middle of the
+/// apical dendrites, whose segments count by their lengths; none where there is none.
+std::optional<glm::dvec3> apical_direction(const std::vector<SwcSample>& samples) {
+  glm::dvec3 soma(0), middle(0);
+  double somata = 0, length = 0;
+  for (const SwcSample& sample : samples) {
+    if (sample.type == kSoma) {
+      soma += glm::dvec3(sample.position);
+      somata += 1;
+    }
+    if (sample.type != kApical || sample.parent < 0) continue;
+    const glm::dvec3 end(sample.position),
+        begin(samples[static_cast<std::size_t>(sample.parent)].position);
+    middle += 0.5 * glm::distance(begin, end) * (begin + end);
+    length += glm::distance(begin, end);
+  }
+  if (!(length > 0)) return std::nullopt;
+  const glm::dvec3 way =
+      middle / length - (somata > 0 ? soma / somata : glm::dvec3(samples.front().position));
+  if (!(glm::length(way) > 0)) return std::nullopt;
+  return glm::normalize(way);
+}
+
 }  // namespace
 
 std::vector<SwcSample> parse_swc(std::string_view text, const std::string& name) {
@@ -446,6 +471,12 @@ Scene import_swc(const std::filesystem::path& path, const ImageReader&,
   }
   scene.legend = colors.legend();
   scene.has_no_up = true;
+  if (options.text("up") == "apical") {
+    scene.framing.up = apical_direction(samples);
+    if (!scene.framing.up)
+      throw InputError(
+          {"--up"}, scene.source + " has no apical dendrite (samples of type 4) beside its soma");
+  }
   scene.unit = "\u00b5m";
   return scene;
 }

@@ -4,7 +4,6 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -16,7 +15,6 @@
 
 #include "base/quotes.h"
 #include "base/reading.h"
-#include "base/spelling.h"
 
 namespace caplet {
 
@@ -116,12 +114,6 @@ std::string quoted(std::string_view token) {
       out += c;
   }
   return out + (token.size() > kLongest ? "...'" : "'");
-}
-
-std::string none_of(std::string_view token, const std::vector<std::string>& known) {
-  const std::string out = fmt::format("{} is none of: {}", quoted(token), fmt::join(known, ", "));
-  return may_quote() ? fmt::format("{}; the nearest is '{}'", out, nearest_name(token, known))
-                     : out;
 }
 
 std::string describe(NumberError error, std::string_view token) {

@@ -6,9 +6,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <thread>
 
 #include "base/spelling.h"
+#include "base/threads.h"
 #include "film/deep.h"
 #include "film/denoise.h"
 #include "film/preview.h"
@@ -152,9 +152,7 @@ void Film::write_exr(const std::filesystem::path& file) const {
   const std::uint64_t bytes = std::uint64_t{4} * image.channels.size() *
                               static_cast<std::uint64_t>(image.data_width) *
                               static_cast<std::uint64_t>(image.data_height);
-  caplet::write_exr(
-      file, image,
-      compression_for(bytes, data_->render_seconds, std::thread::hardware_concurrency()));
+  caplet::write_exr(file, image, compression_for(bytes, data_->render_seconds, usable_threads()));
 }
 
 void Film::write_preview(const std::filesystem::path& file, const OverlayOptions& drawn) const {

@@ -6,9 +6,9 @@
 
 #include <algorithm>
 #include <string_view>
-#include <thread>
 #include <vector>
 
+#include "base/threads.h"
 #include "film/preview.h"
 
 namespace caplet::report {
@@ -123,8 +123,7 @@ void write_pictures(const std::filesystem::path& picture, const std::filesystem:
     const std::uint64_t size = static_cast<std::uint64_t>(whole.data_width) *
                                static_cast<std::uint64_t>(whole.data_height) * channels *
                                sizeof(float);
-    write_exr(picture, shown,
-              compression_for(size, render_seconds, std::thread::hardware_concurrency()));
+    write_exr(picture, shown, compression_for(size, render_seconds, usable_threads()));
   } else if (!preview.empty()) {
     for (int first = 0; first < whole.data_height; first += shown.rows)
       shown.band(first, std::min(shown.rows, whole.data_height - first));

@@ -4,8 +4,8 @@
 
 #include <algorithm>
 #include <iterator>
-#include <thread>
 
+#include "base/threads.h"
 #include "film/preview.h"
 
 namespace caplet::report {
@@ -65,8 +65,7 @@ void write_stereo_pictures(const std::filesystem::path& picture,
   if (!picture.empty()) {
     const std::uint64_t size = 2 * static_cast<std::uint64_t>(width) *
                                static_cast<std::uint64_t>(height) * channels * sizeof(float);
-    write_exr(picture, both,
-              compression_for(size, render_seconds, std::thread::hardware_concurrency()));
+    write_exr(picture, both, compression_for(size, render_seconds, usable_threads()));
   } else {
     for (int first = 0; first < height; first += both.rows)
       both.band(first, std::min(both.rows, height - first));

@@ -163,6 +163,7 @@ std::string json_text(const Report& report, const std::string& scene,
     one["name"] = device.info.name;
     one["platform"] = device.info.platform;
     one["driver"] = device.info.driver;
+    one["compute_units"] = device.info.compute_units;
     one["rays"] = device.statistics.rays;
     one["disagreements"] = device.statistics.disagreements;
     one["seconds"] = device.seconds;

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 # Copyright Caplet authors
 """Many worlds: poses of one scene, as cameras see them, by the thousand."""
+from __future__ import annotations
+
 import numpy as np
 
 from . import _caplet, arrays
@@ -148,7 +150,7 @@ class Batch:
     def __repr__(self):
         return f"<caplet.Batch: {len(self.moving)} shapes move, {len(self.deforming)} deform>"
 
-    def look(self, worlds, camera, poses, layers=("depth", "shape"), kind="planar", ends=None):
+    def look(self, worlds, camera, poses, layers=("depth", "shape"), kind="planar", ends=None) -> dict[str, np.ndarray]:
         """What one ray through the middle of each pixel meets in each world: a dict of arrays (n, height, width), by layer.
 
         worlds: (n, m, 4, 4), world from object of each moving shape, as Shape.transform is. camera: a caplet.sensors.Pinhole. poses:
@@ -243,7 +245,7 @@ def _pictures(scene, moving, views, camera, mode, spp, seed, device, materials, 
     return out
 
 
-def render_batch(scene, worlds, camera, poses, moving=None, mode="rays", layers=None, spp=16, seed=None, device=None, materials=None, ends=None):
+def render_batch(scene, worlds, camera, poses, moving=None, mode="rays", layers=None, spp=16, seed=None, device=None, materials=None, ends=None) -> dict[str, np.ndarray]:
     """What cameras see of many worlds of one scene: a dict of arrays, as Batch.look returns them.
 
     scene, worlds, camera, poses, moving: as in Batch. mode: "rays", one a pixel, without shading (layers: "depth" and "shape", or

@@ -1,10 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
 # Copyright Caplet authors
 """What a render gives: a picture with its layers as arrays."""
+from __future__ import annotations
+
 import inspect
 import numbers
 import os
 import tempfile
+from typing import Any
 
 import numpy as np
 
@@ -60,7 +63,7 @@ class Image:
         self._png = None
 
     @property
-    def channels(self):
+    def channels(self) -> list[str]:
         """Names of all channels: "R", "albedo.G", "object.id"..."""
         return self._film.channels()
 
@@ -79,53 +82,53 @@ class Image:
         return self._cache[key]
 
     @property
-    def rgb(self):
+    def rgb(self) -> np.ndarray:
         return self._layer("R", "G", "B")
 
     @property
-    def alpha(self):
+    def alpha(self) -> np.ndarray:
         return self["A"]
 
     @property
-    def depth(self):
+    def depth(self) -> np.ndarray:
         return self["Z"]
 
     @property
-    def normal(self):
+    def normal(self) -> np.ndarray:
         return self._layer("N.X", "N.Y", "N.Z")
 
     @property
-    def position(self):
+    def position(self) -> np.ndarray:
         return self._layer("P.X", "P.Y", "P.Z")
 
     @property
-    def albedo(self):
+    def albedo(self) -> np.ndarray:
         return self._layer("albedo.R", "albedo.G", "albedo.B")
 
     @property
-    def variance(self):
+    def variance(self) -> np.ndarray:
         return self._layer("variance.R", "variance.G", "variance.B")
 
     @property
-    def object_id(self):
+    def object_id(self) -> np.ndarray:
         return self["object.id"]
 
     @property
-    def primitive_id(self):
+    def primitive_id(self) -> np.ndarray:
         return self["primitive.id"]
 
     @property
-    def size(self):
+    def size(self) -> tuple[int, int]:
         """(width, height) in pixels."""
         return self._film.width, self._film.height
 
     @property
-    def shape(self):
+    def shape(self) -> tuple[int, int]:
         """(height, width)"""
         return self._film.height, self._film.width
 
     @property
-    def spp(self):
+    def spp(self) -> int:
         """Samples a pixel that were finished."""
         return self._film.spp
 
@@ -134,7 +137,7 @@ class Image:
         """Which they are: [(first, count)]."""
         return self._film.samples()
 
-    def save(self, path, **overlays):
+    def save(self, path: str | os.PathLike[str], **overlays: Any) -> None:
         """`.exr`: all layers. `.png` and others: tone-mapped, 8 bits a channel, with what is drawn on it (docs/pictures.md).
 
         Each of these is True for its usual value, or that; None and False are none. The picture itself stays as it is."""
@@ -150,15 +153,15 @@ class Image:
         """The names that a matte tells apart: by "object", "material" or "asset" (the file of a shape). Of a render with cryptomatte=True."""
         return self._film.matte_names(by)
 
-    def matte(self, name, by="object"):
+    def matte(self, name, by="object") -> np.ndarray:
         """The share of each pixel that what has this name covers: (height, width), 0 to 1, antialiased as alpha is."""
         return self._film.matte(by, name)
 
-    def save_deep(self, path):
+    def save_deep(self, path) -> None:
         """A deep EXR, of a render with deep=True: alpha and distance of all that each pixel shows, near to far."""
         self._film.write_deep_exr(os.fspath(path))
 
-    def save_film(self, path):
+    def save_film(self, path) -> None:
         """The exact sums as an EXR file, which load_film takes, and Session.resume goes on with."""
         self._film.save(os.fspath(path))
 
@@ -170,7 +173,7 @@ class Image:
         film.add(other._film)
         return Image(film)
 
-    def png(self, **overlays):
+    def png(self, **overlays) -> bytes:
         """The bytes of a PNG, tone-mapped, with what is drawn on it as of `save`."""
         drawn = _drawn(overlays)
         if drawn:
@@ -200,7 +203,7 @@ _describe(Image.save, ("self", "path"))
 _describe(Image.png, ("self",))
 
 
-def load_film(path, scene=None):
+def load_film(path: str | os.PathLike[str], scene: Any = None) -> Image:
     """Loads a film that save_film, or `caplet render --film`, wrote. scene: its scene, for overlays; its exposure and colours are then
     this scene's, else those of the film."""
     if scene is None:

@@ -1,7 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 # Copyright Caplet authors
 """Renders, sessions, rays, devices."""
+from __future__ import annotations
+
 import sys
+from typing import Any
 
 import numpy as np
 
@@ -94,7 +97,7 @@ class Session:
         if first_sample:
             self._native.begin_at(_count(first_sample, "first_sample", 1 << 24))
 
-    def render(self, spp=16, time_limit=None, progress=None):
+    def render(self, spp=16, time_limit=None, progress=None) -> int:
         """Adds the next `spp` samples of every pixel; returns how many were finished.
 
         time_limit: seconds, after which no more are begun. progress: True, False, None (on a terminal or in a notebook), or a
@@ -123,7 +126,7 @@ class Session:
         finally:
             told.close()
 
-    def render_to(self, noise=0.05, min_spp=16, max_spp=16384, time_limit=None, progress=None, noise_space="relative"):
+    def render_to(self, noise=0.05, min_spp=16, max_spp=16384, time_limit=None, progress=None, noise_space="relative") -> float:
         """Gives each pixel the samples that it still needs for a noise; returns the noise that the picture has.
 
         noise: the root of the mean, over the pixels that show something, of the variance of a pixel over the square of the luminance
@@ -151,20 +154,20 @@ class Session:
         finally:
             told.close()
 
-    def cancel(self):
+    def cancel(self) -> None:
         """From any thread: the render under way finishes its passes and begins no more."""
         self._native.cancel()
 
-    def image(self):
+    def image(self) -> Image:
         """What has been added up."""
         return Image(self._native.film())
 
     @property
-    def spp(self):
+    def spp(self) -> int:
         """Samples a pixel that are there."""
         return self._native.film().spp
 
-    def update(self, scene):
+    def update(self, scene) -> None:
         """The scene as it now is; the picture begins anew. Of the same scene with edits only what differs is sent."""
         native = _scene(scene)._native.copy()
         if self._size is not None:
@@ -204,8 +207,9 @@ def _in_display(noise_space):
     return noise_space == "display"
 
 
-def render(scene, spp=None, size=None, device=None, seed=None, time_limit=None, progress=None, samples=None, noise=None, min_spp=16,
-           cryptomatte=False, deep=False, noise_space="relative"):
+def render(scene: Scene, spp: int | None = None, size: tuple[int, int] | None = None, device: Any = None, seed: int | None = None,
+           time_limit: float | None = None, progress: Any = None, samples: tuple[int, int] | None = None, noise: float | None = None,
+           min_spp: int = 16, cryptomatte: bool = False, deep: bool = False, noise_space: str = "relative") -> Image:
     """Renders a scene. Returns an Image.
 
     spp: samples a pixel; None: the scene's (Scene.noise, Scene.spp). noise: what the picture is rendered to (Session.render_to has
@@ -260,7 +264,8 @@ def _picker(scene, device):
     return picker
 
 
-def trace(scene, origins, directions, mode="nearest", t_min=0.0, t_max=np.inf, most=256, device=None, time=0.0):
+def trace(scene: Scene, origins: Any, directions: Any, mode: str = "nearest", t_min: Any = 0.0, t_max: Any = np.inf, most: int = 256,
+          device: Any = None, time: Any = 0.0) -> np.ndarray:
     """What rays hit, by the exact shapes.
 
     origins, directions: (n, 3), or (3,) for all; directions of any length, in which t counts. t_min, t_max: one or (n,); hits are
@@ -304,7 +309,7 @@ def carry(scene, hits, points, start, end, device=None):
     return points
 
 
-def pick(scene, x, y, device=None):
+def pick(scene: Scene, x: int, y: int, device: Any = None) -> dict[str, Any] | None:
     """What the middle of a pixel shows (from the top left): a dict with names, or None."""
     return _picker(scene, device).pixel(int(x), int(y))
 
@@ -325,13 +330,13 @@ class Report:
         return self.text
 
 
-def verify(scene=None, rays=1_000_000, devices=None, seed=0):
+def verify(scene: Scene | None = None, rays: int = 1_000_000, devices: Any = None, seed: int = 0) -> Report:
     """A device's hits beside those of a host reference that finds them by another method; without a scene, on hard ones of all shapes."""
     native = None if scene is None else _scene(scene)._native
     choice = "" if devices is None else str(devices)
     return Report(*_caplet.verify(native, choice, _count(rays, "rays", 1 << 40), _count(seed, "seed", (1 << 64) - 1, 0)))
 
 
-def devices():
+def devices() -> list[dict[str, Any]]:
     """The OpenCL devices that there are: a dict each."""
     return _caplet.devices()

@@ -1,8 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
 # Copyright Caplet authors
 """Scenes: read, built from arrays, edited in place, written."""
+from __future__ import annotations
+
 import numbers as _numbers
 import os
+from typing import Any
 
 import numpy as np
 
@@ -23,12 +26,12 @@ class Shape:
         self._scene, self.index, self.object = scene, index, object
 
     @property
-    def number(self):
+    def number(self) -> int:
         """Its number among all shapes, which `trace` gives as "shape"."""
         return self._scene._native.shape_in(self.object, self.index)
 
     @property
-    def name(self):
+    def name(self) -> str:
         return self._scene._native.shapes()[self.number]
 
     @property
@@ -55,25 +58,25 @@ class Shape:
         return array.reshape(len(times), -1, *array.shape[1:]) if times else array
 
     @property
-    def p0(self):
+    def p0(self) -> np.ndarray:
         """The capsules' first ends, float32 (n, 3), or (k, n, 3) at k times, in the shape's space; a copy: `set` changes them."""
         now = self._arrays()
         return self._at_times(now[0], now[6])
 
     @property
-    def p1(self):
+    def p1(self) -> np.ndarray:
         """The other ends, float32 (n, 3) or (k, n, 3)."""
         now = self._arrays()
         return self._at_times(now[1], now[6])
 
     @property
-    def radius(self):
+    def radius(self) -> np.ndarray:
         """Of both ends, float32 (n, 2) or (k, n, 2), scene units."""
         now = self._arrays()
         return self._at_times(np.stack([now[2], now[3]], axis=1), now[6])
 
     @property
-    def u(self):
+    def u(self) -> np.ndarray:
         """Of capsules of a chain: what the texture coordinate u is at p0 and at p1, float32 (n, 2); none of others, (0, 2)."""
         return self._arrays()[5]
 
@@ -81,18 +84,18 @@ class Shape:
         return self._scene._native.mesh_arrays(self.number)
 
     @property
-    def vertices(self):
+    def vertices(self) -> np.ndarray:
         """A mesh's vertices, float32 (v, 3), or (k, v, 3) at k times, in the shape's space; a copy."""
         now = self._mesh()
         return self._at_times(now[0], now[4])
 
     @property
-    def faces(self):
+    def faces(self) -> np.ndarray:
         """A mesh's triangles, uint32 (n, 3): numbers of vertices."""
         return self._mesh()[1]
 
     @property
-    def normals(self):
+    def normals(self) -> np.ndarray | None:
         """Normals at a mesh's vertices, float32 (v, 3) or (k, v, 3); none of others, (0, 3)."""
         now = self._mesh()
         return self._at_times(now[2], now[4]) if len(now[2]) else now[2]
@@ -102,7 +105,7 @@ class Shape:
         """The times (seconds) between which the capsules or a mesh's vertices move; none where they rest."""
         return self._arrays()[6] if len(self) else self._mesh()[4]
 
-    def animate(self, times, p0=None, p1=None, radius=None, *, vertices=None, normals=None):
+    def animate(self, times, p0=None, p1=None, radius=None, *, vertices=None, normals=None) -> None:
         """Moves the capsules' ends while the shutter is open, and changes their radii; or moves a mesh's vertices.
 
         times: k times (seconds, rising), two or more. Capsules: p0, p1: (k, n, 3); radius: one, (n,), (k, n), or (k, n, 2) of both ends.
@@ -152,7 +155,7 @@ class Shape:
             ends[:, 0], ends[:, 1], materials if len(materials) else None, u if len(u) else None, times.tolist())
         self._scene._changed()
 
-    def set(self, p0=None, p1=None, radius=None, u=None):
+    def set(self, p0=None, p1=None, radius=None, u=None) -> None:
         """Other capsules: what is not given stays. Shapes as in Scene.add_capsules; their number may change with all three (materials and u,
         where it is not given, then go)."""
         now = self._arrays()
@@ -166,13 +169,13 @@ class Shape:
         self._scene._native.set_capsules(self.number, count, one, two, ends, more, materials, given, [])
         self._scene._changed()
 
-    def set_material(self, material):
+    def set_material(self, material) -> None:
         """A material of all of it, or a list of them, one a surface."""
         given = material if isinstance(material, (list, tuple)) else [material]
         self._scene._native.set_shape_materials(self.number, [self._scene._material(one) for one in given])
         self._scene._changed()
 
-    def set_emission(self, L, scale=1.0):
+    def set_emission(self, L, scale=1.0) -> None:
         """Of a shape that emits: its radiance (linear sRGB or grey)."""
         self._scene._native.set_emission(self.number, _rgb(L, "L"), float(scale))
         self._scene._changed()
@@ -249,7 +252,7 @@ class Scene:
     def _changed(self):
         self._pickers = {}  # a new one: another thread may be about to add what it has made of the scene as it was
 
-    def copy(self):
+    def copy(self) -> Scene:
         """Another one, which shares memory with this until one of them is changed."""
         out = Scene(self._native.copy())
         out._materials, out._textures, out._media = dict(self._materials), dict(self._textures), dict(self._media)
@@ -268,31 +271,31 @@ class Scene:
     # --- What it holds ---
 
     @property
-    def bounds(self):
+    def bounds(self) -> np.ndarray:
         """The corners of a box around all shapes: (2, 3), scene units. The first is above the second where there are none."""
         return np.array(self._native.bounds())
 
     @property
-    def primitives(self):
+    def primitives(self) -> dict[str, int]:
         """How many there are by kind; instances count as often as they are placed."""
         return dict(self._native.primitives())
 
     @property
-    def shapes(self):
+    def shapes(self) -> list[str]:
         """Names by number."""
         return self._native.shapes()
 
     @property
-    def materials(self):
+    def materials(self) -> list[str]:
         """Names by number."""
         return self._native.materials()
 
     @property
-    def objects(self):
+    def objects(self) -> list[str]:
         """Names of the object definitions."""
         return self._native.objects()
 
-    def shape(self, which):
+    def shape(self, which) -> Shape:
         """The shape of a name, or of a number among all."""
         object, index = self._native.place(self._native.shape(which) if isinstance(which, str) else int(which))
         return Shape(self, index, object)
@@ -302,7 +305,7 @@ class Scene:
     # --- The picture ---
 
     @property
-    def size(self):
+    def size(self) -> tuple[int, int]:
         """(width, height) in pixels."""
         return self._native.width, self._native.height
 
@@ -317,7 +320,7 @@ class Scene:
         self._changed()
 
     @property
-    def spp(self):
+    def spp(self) -> int:
         """Samples a pixel, from 1 to 2^24; where the picture is rendered to a noise the most of one. Setting it ends that."""
         return self._native.spp
 
@@ -332,7 +335,7 @@ class Scene:
         return self._native.noise
 
     @property
-    def max_depth(self):
+    def max_depth(self) -> int:
         """Most scattering events of a path."""
         return self._native.max_depth
 
@@ -341,7 +344,7 @@ class Scene:
         self._native.max_depth = int(to)
 
     @property
-    def seed(self):
+    def seed(self) -> int:
         """Of the samples: the same seed makes the same picture."""
         return self._native.seed
 
@@ -350,7 +353,7 @@ class Scene:
         self._native.seed = int(to)
 
     @property
-    def unit(self):
+    def unit(self) -> str:
         """Of lengths, as people write it: "um"; empty where it is not known. Scale bars tell it."""
         return self._native.unit
 
@@ -411,14 +414,14 @@ class Scene:
         self._native = made
         self._changed()
 
-    def look_at(self, eye, target, up=(0, 1, 0)):
+    def look_at(self, eye, target, up=(0, 1, 0)) -> None:
         """Puts the camera at `eye`, looking at `target`; scene units. A right-handed world is not mirrored, unless the camera of a file
         has it so."""
         self._native.look_at(_point(eye, "eye"), _point(target, "target"), _point(up, "up"))
         self._changed()
 
     @property
-    def fov(self):
+    def fov(self) -> float:
         """The field of view of the picture's shorter side, degrees."""
         return self._native.fov
 
@@ -557,7 +560,7 @@ class Scene:
         return int(numbers[0]), np.ascontiguousarray(numbers[which.reshape(-1)])
 
     def add_capsules(self, p0, p1, radius, radius1=None, *, u=None, color=None, material=None, name=None, transform=None, emission=None,
-                     inside=None, outside=None, object=None, reverse_orientation=False):
+                     inside=None, outside=None, object=None, reverse_orientation=False) -> Shape:
         """Capsules: the convex hulls of two spheres each, all of them one shape.
 
         p0, p1: (n, 3) or (3,), the ends. radius: one, (n,), or (n, 2) of both ends; radius1: the radius at p1. One of anything
@@ -579,12 +582,12 @@ class Scene:
             name, transform, material, emission, inside, outside, object, reverse_orientation))
         return self._one(number, object)
 
-    def add_spheres(self, center, radius, **options):
+    def add_spheres(self, center, radius, **options) -> Shape:
         """Spheres, all of them one shape. center: (n, 3); radius: one or (n,). Options as of add_capsules."""
         return self.add_capsules(center, center, radius, **options)
 
     def add_molecular_surface(self, center, radius, probe=1.4, *, color=None, material=None, name=None, transform=None, emission=None,
-                              inside=None, outside=None, object=None, reverse_orientation=False):
+                              inside=None, outside=None, object=None, reverse_orientation=False) -> Shape:
         """The solvent-excluded surface of balls, one shape: what a ball of radius `probe` cannot reach (docs/shapes.md).
 
         center: (n, 3); radius: one or (n,), above 0. color: (3,) or (n, 3); each patch has that of the ball that it is nearest to.
@@ -605,7 +608,7 @@ class Scene:
         return self._one(number, object)
 
     def add_mesh(self, vertices, faces, normals=None, uv=None, *, color=None, material=None, name=None, transform=None, emission=None,
-                 inside=None, outside=None, object=None, reverse_orientation=False):
+                 inside=None, outside=None, object=None, reverse_orientation=False) -> Shape:
         """Triangles. vertices: (v, 3); faces: (n, 3) of whole numbers, counter-clockwise from outside; normals: (v, 3); uv: (v, 2)."""
         vertices = arrays.rows(vertices, "vertices", 3)
         faces = arrays.numbers(faces, "faces")
@@ -619,7 +622,7 @@ class Scene:
         return self._one(number, object)
 
     def add(self, type, *, color=None, material=None, name=None, transform=None, emission=None, inside=None, outside=None, object=None,
-            reverse_orientation=False, **parameters):
+            reverse_orientation=False, **parameters) -> Shape:
         """One shape of any type of `caplet.shape_types()`, with its parameters as scene files name them (docs/formats/pbrt.md).
 
         material: may be a list, one a surface. Other options as of add_capsules.
@@ -633,7 +636,7 @@ class Scene:
         return self._one(number, object)
 
     def add_many(self, type, count, *, each=None, color=None, material=None, name=None, transform=None, emission=None, inside=None,
-                 outside=None, object=None, reverse_orientation=False, **parameters):
+                 outside=None, object=None, reverse_orientation=False, **parameters) -> Shapes:
         """`count` shapes of one type, each with an id of its own. Returns Shapes.
 
         each: arrays by the parameters' names whose first dimension is `count`. transform: (4, 4) or (count, 4, 4). color: (3,) or
@@ -676,25 +679,25 @@ class Scene:
         return self.add_many(type, count, each={name: np.broadcast_to(value, (count, *value.shape[1:])) for name, value in held.items()},
                              **options)
 
-    def add_cylinders(self, p0, p1, radius, **options):
+    def add_cylinders(self, p0, p1, radius, **options) -> Shapes:
         """Closed cylinders, each a shape: p0, p1 (n, 3), radius one or (n,). caps="flat", "round" or "open"; options of add_many."""
         return self._many("cylinder", {"p0": (p0, 3), "p1": (p1, 3), "radius": (radius, 1)}, options)
 
-    def add_cones(self, p0, p1, radius, **options):
+    def add_cones(self, p0, p1, radius, **options) -> Shapes:
         """Cones and frusta, each a shape: p0, p1 (n, 3), radius (n, 2) of both ends, or (n,) of the first. caps= as of cylinders."""
         radius = arrays.floats(radius, "radius")
         width = 2 if radius.ndim == 2 else 1
         return self._many("cone", {"p0": (p0, 3), "p1": (p1, 3), "radius": (radius, width)}, options)
 
-    def add_boxes(self, p0, p1, **options):
+    def add_boxes(self, p0, p1, **options) -> Shapes:
         """Boxes along the axes (of `transform`), each a shape: opposite corners p0, p1 (n, 3)."""
         return self._many("box", {"p0": (p0, 3), "p1": (p1, 3)}, options)
 
-    def add_disks(self, radius, **options):
+    def add_disks(self, radius, **options) -> Shapes:
         """Disks in the plane z = height of `transform`, each a shape. height=, innerradius=, phimax= (degrees)."""
         return self._many("disk", {"radius": (radius, 1)}, options)
 
-    def add_ellipsoids(self, center, radii, rotation=None, **options):
+    def add_ellipsoids(self, center, radii, rotation=None, **options) -> Shapes:
         """Ellipsoids, each a shape: center (n, 3), radii (n, 3) along the axes of rotation, (n, 3, 3) or (3, 3)."""
         center, radii = arrays.rows(center, "center", 3), arrays.rows(radii, "radii", 3)
         turns = arrays.floats(np.eye(3) if rotation is None else rotation, "rotation").astype(np.float64)
@@ -708,15 +711,15 @@ class Scene:
         places[:, 3, 3] = 1
         return self.add_many("sphere", count, transform=places, **options)
 
-    def add_polyhedron(self, points, normals, **options):
+    def add_polyhedron(self, points, normals, **options) -> Shape:
         """The solid within planes: points on them (n, 3) and outward normals (n, 3). Options as of `add`."""
         return self.add("polyhedron", P=arrays.rows(points, "points", 3), N=arrays.rows(normals, "normals", 3), **options)
 
-    def add_csg(self, operation, operands, **options):
+    def add_csg(self, operation, operands, **options) -> Shape:
         """"union", "intersection" or "difference" of object definitions (by name) that hold one closed shape each."""
         return self.add("csg", operation=operation, operands=list(operands), **options)
 
-    def add_instances(self, object, transforms):
+    def add_instances(self, object, transforms) -> range:
         """Places an object definition: (n, 4, 4) or (4, 4). Returns the numbers of the instances."""
         transforms = arrays.transforms(transforms)
         first = self._native.add_instances(object, transforms)
@@ -724,7 +727,7 @@ class Scene:
         return range(first, first + len(transforms))
 
     @property
-    def instances(self):
+    def instances(self) -> int:
         """How many there are."""
         return self._native.instances
 
@@ -772,7 +775,7 @@ class Scene:
 
     # --- Files ---
 
-    def save(self, path):
+    def save(self, path) -> None:
         """Writes pbrt text (`.pbrt`) that gives the same picture, bit for bit."""
         self._present()
         self._native.save(os.fspath(path))
@@ -807,7 +810,7 @@ def _option(value):
     return value if isinstance(value, str) else ",".join(repr(float(v)) for v in value) if np.ndim(value) else str(value)
 
 
-def load(path, **options):
+def load(path: str | os.PathLike[str], **options: Any) -> Scene:
     """Reads a scene of any of `caplet.formats()`. Every mistake is told with its file, line and column (InputError).
 
     options: what the program takes as --NAME VALUE of a file and its picture, with _ for -: view="top" or a direction, up="z",

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 # Copyright Caplet authors
 """The viewer of `caplet view`, in a notebook or a browser."""
+from __future__ import annotations
+
 import atexit
 import html
 import os
@@ -44,7 +46,7 @@ class Viewer:
     def __init__(self, process, address, width, height, folder):
         self.process, self.address, self.width, self.height, self._folder = process, address, width, height, folder
 
-    def close(self):
+    def close(self) -> None:
         """Ends the viewer. Its edits end with it, unless they were saved."""
         if self.process.poll() is None:
             self.process.send_signal(signal.SIGINT)
@@ -93,7 +95,7 @@ def _started(command):
         raise RunError(said.read().decode(errors="replace").strip() or f"{command[0]} ended with {process.returncode}")
 
 
-def view(scene, *, width=960, height=600, spp=None, noise=None, device=None, read_only=False, browser=False):
+def view(scene, *, width=960, height=600, spp=None, noise=None, device=None, read_only=False, browser=False) -> Viewer:
     """Shows a scene live: in a notebook as the value of a cell, with browser=True in a browser.
 
     scene: a Scene, which is shown as it is now, or the path of a file of any format, whose edits can be saved beside it.

@@ -4,6 +4,7 @@
 import copy
 import math
 import os
+import typing
 
 import numpy as np
 import pytest
@@ -639,3 +640,19 @@ def test_ends_of_capsules_move(tmp_path):
     assert shape.times == [] and all(np.array_equal(again[name].view(np.uint32), rest[name].view(np.uint32)) for name in rest.channels)
     shape.set(radius=0.2)
     assert np.array_equal(shape.radius, np.full((2, 2), np.float32(0.2)))
+
+
+def test_types_of_results_are_told():
+    for function, told in ((caplet.load, caplet.Scene), (caplet.render, caplet.Image), (caplet.load_film, caplet.Image), (caplet.verify, caplet.Report),
+                           (caplet.view, caplet.Viewer), (caplet.Scene.add_capsules, caplet.Shape), (caplet.Scene.add_boxes, caplet.Shapes),
+                           (caplet.Scene.copy, caplet.Scene), (caplet.Session.image, caplet.Image), (caplet.Image.rgb.fget, np.ndarray)):
+        assert typing.get_type_hints(function)["return"] is told, function
+    scene = caplet.Scene()
+    shape = scene.add_capsules([[0, 0, 0]], [[1, 0, 0]], 0.5)
+    boxes = scene.add_boxes([[0, 0, 0], [2, 0, 0]], [[1, 1, 1], [3, 1, 1]])
+    for of, names in ((scene, ("bounds", "primitives", "shapes", "materials", "objects", "size", "spp", "max_depth", "seed", "unit", "fov")),
+                      (shape, ("number", "name", "p0", "p1", "radius", "u"))):
+        for name in names:
+            told = typing.get_type_hints(getattr(type(of), name).fget)["return"]
+            assert isinstance(getattr(of, name), typing.get_origin(told) or told), name
+    assert type(shape) is caplet.Shape and type(boxes) is caplet.Shapes

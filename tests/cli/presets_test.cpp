@@ -79,7 +79,7 @@ TEST_F(Presets, NamesThatAreWrongAreTold) {
   const test::Result result =
       test::run_program({"render", "cell.swc", "-o", "p.png", "--preset", "papre"}, folder_);
   EXPECT_EQ(result.code, 2);
-  EXPECT_THAT(result.err, AllOf(HasSubstr("--preset: 'papre' is none of soft, illustration"),
+  EXPECT_THAT(result.err, AllOf(HasSubstr("--preset: 'papre' is none of: soft, illustration"),
                                 HasSubstr("the nearest is 'paper'")));
   EXPECT_FALSE(std::filesystem::exists(folder_ / "p.png"));
 }

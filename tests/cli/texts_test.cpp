@@ -7,11 +7,13 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <fstream>
 #include <map>
 #include <regex>
 #include <set>
 
 #include "program.h"
+#include "support/data.h"
 
 namespace caplet {
 namespace {
@@ -359,6 +361,29 @@ TEST(Texts, UnknownTextsAreRefused) {
   const test::Result result = test::run_program({"describe", "tcsh"}, test::folder_with_scene());
   EXPECT_EQ(result.code, 2);
   EXPECT_THAT(result.err, HasSubstr("'tcsh' is none of man, bash, zsh, fish"));
+}
+
+TEST(Texts, EnvironmentVariablesAreListed) {
+  const auto text_of = [](const fs::path& file) {
+    std::ifstream in(file);
+    return std::string(std::istreambuf_iterator<char>(in), {});
+  };
+  std::set<std::string> read;
+  static const std::regex variable("\"(CAPLET_[A-Z_]*[A-Z])\"");
+  for (const fs::directory_entry& entry :
+       fs::recursive_directory_iterator(test::source_folder() / "host")) {
+    if (entry.path().extension() != ".cpp") continue;
+    const std::string text = text_of(entry.path());
+    for (std::sregex_iterator i(text.begin(), text.end(), variable), end; i != end; ++i)
+      read.insert((*i)[1]);
+  }
+  // These are what the program tells its second process.
+  read.erase("CAPLET_DRIVER_CACHE");
+  read.erase("CAPLET_DRIVER_FAILED");
+  EXPECT_THAT(read, Contains("CAPLET_CACHE"));
+  const std::string listed = between(text_of(test::source_folder() / "docs/cli.md"),
+                                     "\n## Environment variables\n", "\n## ");
+  for (const std::string& name : read) EXPECT_THAT(listed, HasSubstr("`" + name + "`"));
 }
 
 }  // namespace

@@ -43,6 +43,16 @@ TEST(Verify, ASceneAgrees) {
   EXPECT_THAT(result.out, Not(HasSubstr("polyhedron")));
 }
 
+TEST(Verify, ComputesOnAsManyThreadsAsAreAsked) {
+  const Result result = test::run_program(
+      {"verify", "scene.pbrt", "--rays", "100", "--json", "--threads", "1"}, folder_with_scene());
+  ASSERT_EQ(result.code, 0) << result.err;
+  const auto device = nlohmann::json::parse(result.out).at("devices").at(0);
+  if (device.at("platform").get<std::string>().find("Portable") == std::string::npos)
+    GTEST_SKIP() << "the driver is not PoCL";
+  EXPECT_EQ(device.at("compute_units"), 1);
+}
+
 TEST(Verify, JsonOfTheTortureSet) {
   const Result result = test::run_program({"verify", "--rays", "8000", "--seed", "4", "--json"},
                                           test::temporary_folder());

@@ -8,8 +8,6 @@
 #include <sys/stat.h>
 #include <zlib.h>
 
-#include "base/quotes.h"
-#include "import/detail/text_file.h"
 #include "import_text.h"
 
 namespace caplet::test {
@@ -256,14 +254,6 @@ TEST(Files, ATreeOfIncludesEnds) {
   }
   EXPECT_THAT(file_complaints(folder / "0.pbrt"),
               ElementsAre(HasSubstr("more than 65536 files are included")));
-}
-
-// The nearest name would tell something of a word that is hidden.
-TEST(NoneOf, NamesTheNearestOfAWordThatMayBeShown) {
-  EXPECT_EQ(none_of("visul", {"all", "visual"}),
-            "'visul' is none of: all, visual; the nearest is 'visual'");
-  const Unproven unproven;
-  EXPECT_EQ(none_of("visul", {"all", "visual"}), "'...' is none of: all, visual");
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 // stays out of the picture.
 #include "present/present.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -167,6 +168,35 @@ TEST(FramingDirection, UpIsYAndTheWorldIsNotMirrored) {
   EXPECT_NEAR(axes[0].y, 0, 1e-12);
   // Right, up and toward the viewer are right-handed; forward is the opposite of the last.
   EXPECT_NEAR(glm::determinant(axes), -1, 1e-12);
+}
+
+// The soma is at (1, 2, 3); of the apical dendrite 10 go along (0, 3, 4) / 5, and a side branch of
+// 2 and one of 2 the other way cancel. The basal dendrite is longer.
+TEST(FramingDirection, UpIsAlongTheApicalDendriteOnRequest) {
+  const std::string neuron =
+      "1 1 1 2 3 0.5 -1\n2 3 1 2 -40 0.1 1\n3 4 1 5 7 0.1 1\n4 4 1 8 11 0.1 3\n"
+      "5 4 3 5 7 0.1 3\n6 4 -1 5 7 0.1 3\n";
+  const auto seen = [](const std::string& text, const char* up) {
+    return import_scene(test::write_file("n.swc", text), test::NoImages(), {{{"up", up}}});
+  };
+  const Scene scene = seen(neuron, "apical");
+  ASSERT_TRUE(scene.framing.up);
+  EXPECT_LT(glm::distance(*scene.framing.up, glm::dvec3(0, 0.6, 0.8)), 1e-6);
+  // Turned by 18 degrees towards the viewer (FramingDirection), never to a side.
+  const glm::dmat4& camera = scene.view.camera.world_from_camera;
+  EXPECT_GT(glm::dot(glm::dvec3(camera[1]), *scene.framing.up), 0.9);
+  EXPECT_LT(std::abs(glm::dot(glm::dvec3(camera[0]), *scene.framing.up)), 1e-6);
+  EXPECT_THAT(test::complaint([&] { seen("1 1 0 0 0 1 -1\n2 3 0 9 0 1 1\n", "apical"); }),
+              testing::HasSubstr("--up: "));
+  EXPECT_THAT(test::complaint([&] { seen("1 1 0 0 0 1 -1\n2 3 0 9 0 1 1\n", "apical"); }),
+              testing::HasSubstr("n.swc has no apical dendrite (samples of type 4)"));
+  EXPECT_THAT(test::complaint([&] { seen(neuron, "apicl"); }),
+              testing::HasSubstr("none of: x, y, z, -x, -y, -z, apical; the nearest is 'apical'"));
+  EXPECT_THAT(test::complaint([&] {
+                import_scene(test::write_file("n.xyz", "1\n\nC 0 0 0\n"), test::NoImages(),
+                             {{{"up", "apical"}}});
+              }),
+              testing::HasSubstr("--up: apical is for one file of a neuron"));
 }
 
 TEST(FramingDegenerate, OneSphereAndOnePointCloudOnALine) {

@@ -45,7 +45,7 @@ class Work:
     def whole(self):
         """What is shown, once it is of the page's size and done; before that nothing."""
         now = self.shown.script(f"""const c = document.getElementById('picture'), s = document.getElementById('stage');
-            return +s.dataset.samples >= 2 && c.width >= {RATIO} * s.clientWidth - 2 ? {PIXELS} : null""")
+            return +s.dataset.samples >= 2 && Math.abs(c.width - {RATIO} * s.clientWidth) <= 2 ? {PIXELS} : null""")
         return decoded(*now) if now else None
 
     def edits(self):

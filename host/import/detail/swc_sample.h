@@ -7,8 +7,8 @@
 
 namespace caplet {
 
-/// The type of the cell body's samples.
-inline constexpr int kSoma = 1;
+/// Types of samples: the cell body's, and those of apical dendrites.
+inline constexpr int kSoma = 1, kApical = 4;
 
 /// One line of the file.
 struct SwcSample {

@@ -67,10 +67,6 @@ NumberError parse_float(std::string_view token, float& value);
 /// unproven (base/quotes.h).
 std::string quoted(std::string_view token);
 
-/// Returns "'abc' is none of: abcd, efg; the nearest is 'abcd'"; without the nearest where quoted()
-/// hides the token.
-std::string none_of(std::string_view token, const std::vector<std::string>& known);
-
 /// Returns "'abc' is not a number" and the like, for a token that parse_float refused.
 std::string describe(NumberError error, std::string_view token);
 

@@ -3,6 +3,7 @@
 //
 // Attributes of MJCF, with the defaults of their classes.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -68,7 +69,7 @@ std::size_t Element::choice(const char* name, std::initializer_list<const char*>
   const std::string_view value = found.value();
   const auto* const at = std::ranges::find(choices, value);
   if (at != choices.end()) return static_cast<std::size_t>(at - choices.begin());
-  fail(fmt::format("{}: {}", name, none_of(value, {choices.begin(), choices.end()})));
+  fail(fmt::format("{}: {} is none of: {}", name, quoted(value), fmt::join(choices, ", ")));
 }
 
 bool Element::yes(const char* name, bool otherwise) const {
