@@ -205,6 +205,9 @@ def test_shares_add_to_one_render(ball, tmp_path):
     for wrong in (3, (1, 2, 3), "four"):
         with pytest.raises(caplet.InputError, match=r"samples: \(A, B\) is needed.* how many there are is spp"):
             caplet.render(ball, samples=wrong)
+    caplet.render(ball, spp=1, seed=(1 << 32) - 1)
+    with pytest.raises(caplet.InputError, match="seed: a whole number from 0 to 4294967295 is needed, not 4294967296"):
+        caplet.render(ball, seed=1 << 32)
     for name in ("spp", "seed"):
         for wrong in ("many", -1, 1.5, float("nan"), True, [1]):
             with pytest.raises(caplet.InputError, match=f"{name}: a whole number from . to "):

@@ -149,6 +149,26 @@ TEST(FramingInstances, IsAsTightAsThatOfShapes) {
     EXPECT_LT(glm::distance(glm::dvec3(seen[i]), glm::dvec3(wanted[i])), 0.01) << i;
 }
 
+TEST(FramingInstances, HoldsAllPlacesOfOneThatMoves) {
+  Scene scene;
+  scene.materials.push_back({DiffuseMaterial{}, "m", {}});
+  Shape shape;
+  shape.geometry = BoxShape{glm::vec3(-1), glm::vec3(1)};
+  scene.objects.push_back({"o", {shape}, {}});
+  Instance instance;
+  instance.motion = {{0, glm::dmat4(1)}, {1, glm::translate(glm::dmat4(1), glm::dvec3(40, 0, 0))}};
+  scene.instances.push_back(instance);
+  add_presentation(scene);
+  const glm::dmat4 camera_from_world = glm::inverse(scene.view.camera.world_from_camera);
+  const double edge = std::tan(fov_of(scene.view.camera) / 2) * scene.view.film.width /
+                      std::min(scene.view.film.width, scene.view.film.height);
+  for (const double x : {-1.0, 41.0}) {
+    const glm::dvec4 seen = camera_from_world * glm::dvec4(x, 0, 0, 1);
+    EXPECT_GT(seen.z, 0) << x;
+    EXPECT_LT(std::abs(seen.x / seen.z), edge) << x;
+  }
+}
+
 TEST(FramingDirection, FlatScenesAreSeenFaceOn) {
   const std::array<glm::vec3, 3> halves = {glm::vec3(1, 30, 40), glm::vec3(40, 1, 30),
                                            glm::vec3(30, 40, 1)};
