@@ -404,6 +404,13 @@ def labels(program, scenes, out):
         assert words == "the ball, red" and len(point.split(",")) == 3 and shown.find("figure-label").is_selected(), value
         assert "--label=" in shown.script("return document.querySelector('dialog[open]').textContent")
         shown.find("figure-close").click()
+        place = "const b = document.getElementById('forget-measures').getBoundingClientRect(); return [b.x, b.y]"
+        for words in ("", "words " * 10, "words " * 100):
+            shown.script("document.getElementById('under').textContent = arguments[0]", words)
+            first = shown.script(place)
+            shown.script("document.getElementById('state').textContent += arguments[0]", words)
+            assert shown.script(place) == first, "the button stays under the pointer"
+        shown.script("document.getElementById('under').textContent = ''")
         shown.find("forget-measures").click()
         assert not told()
 
