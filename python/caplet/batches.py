@@ -11,6 +11,7 @@ from .image import Image
 from .named import Material
 from .rendering import _count, _devices, _scene
 from .sensors import Pinhole
+from .spelling import keywords
 
 _LAYERS = {"depth": ("t", np.float32), "shape": ("shape", np.uint32), "instance": ("instance", np.uint32), "primitive": ("primitive", np.uint32),
            "material_id": ("material_id", np.uint32), "normal": ("normal", np.float32), "point": ("point", np.float32)}
@@ -123,6 +124,7 @@ class _Views:
         self.cameras = np.ascontiguousarray(poses if poses.ndim == 3 else poses[:, np.newaxis])
 
 
+@keywords
 class Batch:
     """The shapes of a scene on a device, once for many worlds. In each world some shapes are elsewhere.
 
@@ -245,6 +247,7 @@ def _pictures(scene, moving, views, camera, mode, spp, seed, device, materials, 
     return out
 
 
+@keywords
 def render_batch(scene, worlds, camera, poses, moving=None, mode="rays", layers=None, spp=16, seed=None, device=None, materials=None, ends=None) -> dict[str, np.ndarray]:
     """What cameras see of many worlds of one scene: a dict of arrays, as Batch.look returns them.
 

@@ -7,6 +7,7 @@ import numpy as np
 
 from . import _caplet, arrays
 from .errors import InputError
+from .spelling import keywords
 
 STEPS = 256
 TABLE = np.array([_caplet.color_map(step / (STEPS - 1)) for step in range(STEPS)])  # linear sRGB
@@ -33,6 +34,7 @@ def parts(values, low, high):
     return np.clip((values / 2 - low / 2) / span, 0, 1)
 
 
+@keywords
 def color_map(values, low=None, high=None):
     """Colours that tell numbers, linear sRGB (n, 3): those of the program (viridis, dark blue to yellow), in 256 steps.
 

@@ -13,6 +13,7 @@ import numpy as np
 
 from . import _caplet
 from .errors import InputError
+from .spelling import keywords
 
 
 _OVERLAYS = {name: (values, help) for name, values, help in _caplet.overlays()}  # the program's own, by their names
@@ -49,6 +50,7 @@ def _describe(method, first):
     method.__doc__ = inspect.cleandoc(method.__doc__) + "\n\n" + "\n".join(said)
 
 
+@keywords
 class Image:
     """A picture and its layers: arrays of (height, width) or (height, width, 3), from the top left.
 
@@ -203,6 +205,7 @@ _describe(Image.save, ("self", "path"))
 _describe(Image.png, ("self",))
 
 
+@keywords
 def load_film(path: str | os.PathLike[str], scene: Any = None) -> Image:
     """Loads a film that save_film, or `caplet render --film`, wrote. scene: its scene, for overlays; its exposure and colours are then
     this scene's, else those of the film."""

@@ -7,6 +7,7 @@ import numpy as np
 
 from .errors import InputError
 from .lists import EXTRA, described_parameters, known_parameters, meaning, signature, spelled, types
+from .spelling import nearest
 
 _FILES = "docs/formats/pbrt.md"
 
@@ -92,7 +93,7 @@ def constructor(kind, type):
         values = {}
         for key, value in given.items():
             if key not in names:
-                raise TypeError(f"{type}() got an unexpected keyword argument {key!r}; it has {', '.join(names)}")
+                raise TypeError(f"{type}() got an unexpected keyword argument {key!r}; {nearest(key, names)}")
             if value is not None:
                 values[names[key]] = value
         if "alpha" in values and "alpha_u" in names:
@@ -128,6 +129,11 @@ def fill(module, kind):
         module[name] = constructor(kind, type)
         module[name].__module__ = module["__name__"]
         module["__all__"].append(name)
+
+    def missing(name):
+        raise AttributeError(f"module {module['__name__']!r} has no attribute {name!r}; {nearest(name, module['__all__'])}")
+
+    module["__getattr__"] = missing
 
 
 def color(value, name="color"):

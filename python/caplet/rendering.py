@@ -12,6 +12,7 @@ from . import _caplet, arrays
 from .errors import InputError
 from .image import Image
 from .scene import Scene
+from .spelling import keywords
 
 _PARTS = 16  # of a session's render, between which others may read it
 
@@ -70,6 +71,7 @@ class _Progress:
             print("\r" + " " * 40 + "\r", end="", file=sys.stderr, flush=True)
 
 
+@keywords
 class Session:
     """A scene on one or several devices that is rendered and changed again and again.
 
@@ -207,6 +209,7 @@ def _in_display(noise_space):
     return noise_space == "display"
 
 
+@keywords
 def render(scene: Scene, spp: int | None = None, size: tuple[int, int] | None = None, device: Any = None, seed: int | None = None,
            time_limit: float | None = None, progress: Any = None, samples: tuple[int, int] | None = None, noise: float | None = None,
            min_spp: int = 16, cryptomatte: bool = False, deep: bool = False, noise_space: str = "relative") -> Image:
@@ -264,6 +267,7 @@ def _picker(scene, device):
     return picker
 
 
+@keywords
 def trace(scene: Scene, origins: Any, directions: Any, mode: str = "nearest", t_min: Any = 0.0, t_max: Any = np.inf, most: int = 256,
           device: Any = None, time: Any = 0.0) -> np.ndarray:
     """What rays hit, by the exact shapes.
@@ -309,6 +313,7 @@ def carry(scene, hits, points, start, end, device=None):
     return points
 
 
+@keywords
 def pick(scene: Scene, x: int, y: int, device: Any = None) -> dict[str, Any] | None:
     """What the middle of a pixel shows (from the top left): a dict with names, or None."""
     return _picker(scene, device).pixel(int(x), int(y))
@@ -330,6 +335,7 @@ class Report:
         return self.text
 
 
+@keywords
 def verify(scene: Scene | None = None, rays: int = 1_000_000, devices: Any = None, seed: int = 0) -> Report:
     """A device's hits beside those of a host reference that finds them by another method; without a scene, on hard ones of all shapes."""
     native = None if scene is None else _scene(scene)._native

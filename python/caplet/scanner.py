@@ -11,12 +11,14 @@ from .bridges.lidar import NOTHING
 from .errors import InputError
 from .files import ply_bytes, replace_file
 from .rendering import trace
+from .spelling import keywords
 
 RETURN = np.dtype([("t", np.float64), ("firing", np.uint32), ("ring", np.uint16), ("number", np.uint8), ("count", np.uint8), ("shape", np.uint32),
                    ("range", np.float32), ("intensity", np.float32), ("point", np.float32, 3), ("world", np.float64, 3)])
 _MODES = ("first", "last", "strongest", "dual", "all")
 
 
+@keywords
 class Scanner:
     """A lidar: laser pulses, each in a direction at a time.
 
@@ -137,6 +139,7 @@ def _of_shapes(name, value, shapes):
     return np.broadcast_to(value, shapes)
 
 
+@keywords
 def scan(scene, scanner, pose, *, mode="strongest", reflectance=1.0, transmittance=0.0, threshold=0.0, dropout=0.0, noise=0.0, quantum=0.0,
          seed=0, most=256, device=None):
     """What a lidar measures: an array of RETURN, by firings, nearer ones first.
@@ -230,6 +233,7 @@ def _told(made, mode):
     return is_strongest if mode == "strongest" else is_strongest | is_last
 
 
+@keywords
 def save_returns(path, returns, world=False):
     """Writes returns: `.npy` (all fields), `.bin` as KITTI's (x, y, z and intensity), `.ply` (binary, with intensity, ring and t), or
     `.las` and `.laz` (LAS 1.4, format 6; needs the package laspy, .laz also its lazrs). world: places in the scene's space, not in the

@@ -12,10 +12,12 @@ import numpy as np
 from . import _caplet, arrays
 from .errors import InputError
 from .named import Blackbody, Camera, Light, Material, Medium, Texture, color as as_color
+from .spelling import keywords
 
 _MOST_COLORS = 4096  # that are materials of their own
 
 
+@keywords
 class Shape:
     """A shape of a scene, to look at and to change in place.
 
@@ -184,6 +186,7 @@ class Shape:
         return f"<caplet.Shape {self.number} {self.name!r}>"
 
 
+@keywords
 class Shapes:
     """Shapes that were added together: a sequence."""
 
@@ -230,6 +233,7 @@ def _capsules(p0, p1, radius, radius1=None, u=None):
     return p0, p1, radius0, other, u, count
 
 
+@keywords
 class Scene:
     """A scene: shapes, materials, lights, a camera.
 
@@ -810,6 +814,7 @@ def _option(value):
     return value if isinstance(value, str) else ",".join(repr(float(v)) for v in value) if np.ndim(value) else str(value)
 
 
+@keywords
 def load(path: str | os.PathLike[str], **options: Any) -> Scene:
     """Reads a scene of any of `caplet.formats()`. Every mistake is told with its file, line and column (InputError).
 

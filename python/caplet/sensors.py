@@ -15,12 +15,14 @@ from .errors import InputError
 from .files import ply_bytes, replace_file
 from .rendering import carry, trace
 from .scanner import RETURN, Scanner, save_returns, scan
+from .spelling import keywords
 
 __all__ = ["EVENT", "Frame", "Pinhole", "RETURN", "Scanner", "coco", "depth_camera", "events", "flow", "save_returns", "scan", "segment"]
 EVENT = np.dtype([("t", np.float64), ("x", np.uint16), ("y", np.uint16), ("polarity", np.int8)])
 _MOST_SIDE = 65535
 
 
+@keywords
 class Pinhole:
     """A calibrated camera, by OpenCV's model and axes: it looks along +z, x is to the right and y down, (0, 0) is the middle of the
     first pixel.
@@ -108,6 +110,7 @@ def _rays(camera, pose):
     return pose[:3, 3], np.where(is_seen[:, None], own, [0, 0, 1]) @ pose[:3, :3].T, is_seen, own
 
 
+@keywords
 class Frame:
     """What a depth camera sees: arrays of (height, width).
 
@@ -162,6 +165,7 @@ def _grey_png(values):
             chunk(b"IDAT", zlib.compress(rows.tobytes(), 6)) + chunk(b"IEND", b""))
 
 
+@keywords
 def depth_camera(scene, camera, pose, *, kind="planar", near=0.0, far=np.inf, noise=0.0, quantum=0.0, seed=0, device=None):
     """What a depth camera at `pose` (4 x 4, world from camera) measures: a Frame.
 
@@ -206,6 +210,7 @@ def _run_lengths(mask):
     return np.diff(np.concatenate([[0], ends])).astype(int).tolist()
 
 
+@keywords
 def segment(scene, camera, pose, *, amodal=True, most=256, device=None, of=None):
     """The shapes that a camera sees, a dict each, by index: shape, name, mask (bool, (height, width)), box [x, y, width, height]
     and area (pixels) of what is visible; with `amodal` also amodal_mask, amodal_box and amodal_area of all of it within the picture,
@@ -243,6 +248,7 @@ def segment(scene, camera, pose, *, amodal=True, most=256, device=None, of=None)
     return [found[shape] for shape in sorted(found)]
 
 
+@keywords
 def coco(frames, path=None, categories=None):
     """COCO's object detection JSON of frames, a list of (file name, camera, segments of `segment`); written to `path` if given.
 
@@ -267,6 +273,7 @@ def coco(frames, path=None, categories=None):
     return out
 
 
+@keywords
 def flow(scene, camera, pose, next_pose, *, times=None, moved=None, next_camera=None, device=None):
     """Where what each pixel sees goes until the next picture: optical flow (height, width, 2) in pixels, x then y, and scene flow
     (height, width, 3) in the world; NaN where nothing is, and optical flow where it goes behind the camera.
@@ -299,6 +306,7 @@ def _times(times):
     return float(found[0]), float(found[1])
 
 
+@keywords
 def events(pictures, times, threshold=0.2, floor=1e-3):
     """What an event camera sees between pictures: an array of EVENT, in order of time.
 

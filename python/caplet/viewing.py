@@ -16,6 +16,7 @@ import weakref
 
 from .errors import RunError
 from .rendering import _count, _scene
+from .spelling import keywords
 
 _PATIENCE = 60  # seconds that the program has to end
 
@@ -95,6 +96,7 @@ def _started(command):
         raise RunError(said.read().decode(errors="replace").strip() or f"{command[0]} ended with {process.returncode}")
 
 
+@keywords
 def view(scene, *, width=960, height=600, spp=None, noise=None, device=None, read_only=False, browser=False) -> Viewer:
     """Shows a scene live: in a notebook as the value of a cell, with browser=True in a browser.
 

@@ -289,6 +289,19 @@ def test_transforms_place_shapes():
 # --- The lists of the library ---
 
 
+def test_misspelt_names_are_told_the_nearest():
+    for call, near in ((lambda: lights.spot(conangle=3), "coneangle"), (lambda: caplet.render(None, noize=0.1), "noise"),
+                       (lambda: caplet.Scene().add_capsules([(0, 0, 0)], [(1, 0, 0)], radiuss=1), "radius"),
+                       (lambda: caplet.Session(None, sise=(4, 4)), "size"), (lambda: caplet.denoise(None, qualty="high"), "quality")):
+        with pytest.raises(TypeError, match=f"unexpected keyword argument '.*'; the nearest is '{near}'$"):
+            call()
+    with pytest.raises(TypeError, match="; it has I, from_, to, coneangle"):
+        lights.spot(zzzzz=3)
+    with pytest.raises(AttributeError, match="'caplet.textures' has no attribute 'checker'; the nearest is 'checkerboard'$"):
+        caplet.textures.checker()
+    assert not hasattr(caplet.materials, "zzzzz")
+
+
 def test_every_type_has_a_constructor_of_its_parameters():
     from caplet import named
     for kind, module in (("material", materials), ("texture", textures), ("light", lights), ("medium", media), ("camera", cameras)):

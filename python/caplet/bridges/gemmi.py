@@ -6,6 +6,7 @@ import numpy as np
 from .. import materials
 from ..errors import InputError
 from ..scene import Scene
+from ..spelling import keywords
 
 # Colours of elements as Jmol has them (https://jmol.sourceforge.net/jscolors), of a screen.
 _JMOL = {"H": "ffffff", "C": "909090", "N": "3050f8", "O": "ff0d0d", "F": "90e050", "Na": "ab5cf2", "Mg": "8aff00", "Al": "bfa6a6",
@@ -69,6 +70,7 @@ def bonds_of(positions, radii):
     return pairs[np.lexsort((pairs[:, 1], pairs[:, 0]))]
 
 
+@keywords
 def from_gemmi(structure, model=0, style="ball-and-stick", color="element", hydrogens=True, waters=True, probe=1.4):
     """A scene of a molecule, in angstroms: shapes "atoms" (spheres) and "bonds" (capsules halved by the atoms' colours), or "surface".
 

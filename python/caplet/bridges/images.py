@@ -3,7 +3,10 @@
 """Pictures for other packages."""
 import numpy as np
 
+from ..spelling import keywords
 
+
+@keywords
 def to_xarray(image):
     """An xarray.Dataset of the image's layers: dimensions y, x (pixels, from the top left) and channel."""
     import xarray
@@ -17,6 +20,7 @@ def to_xarray(image):
     return xarray.Dataset(held, coords={"y": np.arange(height), "x": np.arange(width)}, attrs={"samples_per_pixel": image.spp})
 
 
+@keywords
 def denoise(image, quality="high"):
     """The picture without noise, scene-linear float32 (height, width, 3), by Open Image Denoise (the package pyoidn).
 

@@ -6,10 +6,12 @@ import numpy as np
 from .. import arrays
 from ..errors import InputError
 from ..rendering import trace
+from ..spelling import keywords
 
 NOTHING = 2**32 - 1
 
 
+@keywords
 def lidar(scene, pose, azimuth, elevation, reach=np.inf, device=None):
     """What a scanner sees: distances (len(elevation), len(azimuth)) in scene units, infinite where nothing is within `reach`, and
     the numbers of the shapes that are seen, 2^32 - 1 where there is nothing.

@@ -6,6 +6,7 @@ import numpy as np
 from .. import materials
 from ..errors import InputError
 from ..scene import Scene
+from ..spelling import keywords
 
 
 def _material(mesh):
@@ -16,6 +17,7 @@ def _material(mesh):
     return materials.diffuse(reflectance=tuple(np.where(screen <= 0.04045, screen / 12.92, ((screen + 0.055) / 1.055)**2.4)))
 
 
+@keywords
 def from_trimesh(mesh):
     """A scene of a trimesh.Trimesh, or of a trimesh.Scene: each geometry is an object definition, each node an instance.
 
@@ -60,6 +62,7 @@ def _boundary(cells, faces):
     return np.concatenate(out)
 
 
+@keywords
 def from_meshio(mesh, radius=None):
     """A scene of a meshio.Mesh (of pyvista by pyvista.to_meshio): lines as capsules, triangles and quadrilaterals as triangles, of
     tetrahedra, hexahedra, wedges and pyramids the faces that one of them has.

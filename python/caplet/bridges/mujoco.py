@@ -12,6 +12,7 @@ from .. import cameras, lights as light_types
 from ..errors import InputError
 from ..scene import Scene
 from .mujoco_looks import Looks, rgba_of
+from ..spelling import keywords
 
 _FAR = 100  # of an endless plane: so many times the model's extent to each side
 
@@ -198,6 +199,7 @@ def _animate(scene, mujoco, model, times, qpos, first, names, camera):
     scene.shutter(times[0], times[-1])
 
 
+@keywords
 def from_mujoco(model, data=None, groups=(0, 1, 2), camera=None, lights="studio", times=None, qpos=None):
     """A scene of a MuJoCo model as it stands: every geom of these groups is one shape, by its name, in MuJoCo's units.
 
@@ -262,6 +264,7 @@ def from_mujoco(model, data=None, groups=(0, 1, 2), camera=None, lights="studio"
     return scene
 
 
+@keywords
 def update_mujoco(scene, data):
     """Moves the shapes of a scene that from_mujoco made to where `data` has them; a Session's `update` follows in place."""
     if scene.info.get("instances"):
@@ -271,6 +274,7 @@ def update_mujoco(scene, data):
         scene.shape(number).transform = places[geom] @ scene.info["scale"].get(number, np.eye(4))
 
 
+@keywords
 def mujoco_camera(model, camera, width, height):
     """The caplet.sensors.Pinhole of one of the model's cameras, by name or number, for pictures of this size."""
     import mujoco
@@ -278,6 +282,7 @@ def mujoco_camera(model, camera, width, height):
     return Pinhole(width, height, fx=height / 2 / np.tan(np.radians(model.cam_fovy[_camera_number(mujoco, model, camera)]) / 2))
 
 
+@keywords
 def mujoco_worlds(scene, model, qpos, camera=None):
     """The worlds of many states of a model, for caplet.Batch and caplet.render_batch of the scene that from_mujoco made of it: the
     transforms (n, m, 4, 4) of the shapes scene.info["moving"], those of bodies that are not fixed to the world.

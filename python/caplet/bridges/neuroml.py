@@ -16,6 +16,7 @@ import numpy as np
 from ..errors import InputError
 from ..scene import Scene
 from .cells import MOST_NODES, Look, add_cell, package, wrong
+from ..spelling import keywords
 
 # What groups of segments are, as SWC types: by their identifiers of the Gene Ontology, or by the first word of their names.
 _ONTOLOGY = {"GO:0043025": 1, "GO:0030424": 2, "GO:0030425": 3, "GO:0097441": 3, "GO:0097440": 4}
@@ -285,6 +286,7 @@ def _look(color, populations):
     return Look.plain(color, len(populations))
 
 
+@keywords
 def from_neuroml(path, cell=None, color="type", radius=5.0):
     """A scene of a NeuroML 2 file and of what it includes, in its units (micrometres): segments of cells as tapered capsules (spheres where
     both ends are the same point), a shape for each SWC type of a cell.

@@ -8,6 +8,7 @@ from ..errors import InputError
 from ..scene import Scene
 from .cells import OTHER_COLOR, TYPE_COLORS
 from .chains import along
+from ..spelling import keywords
 
 
 def soma_of(soma):
@@ -40,6 +41,7 @@ def neurites(morphology):
     return tuple(map(np.concatenate, (p0, p1, radii, sections, types, u)))
 
 
+@keywords
 def from_morphio(morphology):
     """A scene of a morphio.Morphology, in its units (micrometres): shapes "soma" (spheres) and "neurites" (tapered capsules, one a
     segment), coloured by type as files of neurons are; u runs from 0 to 1 along each section.

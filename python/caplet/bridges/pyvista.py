@@ -7,6 +7,7 @@ from .. import arrays, colors, materials, textures
 from ..errors import InputError
 from ..scene import Scene
 from .chains import along
+from ..spelling import keywords
 
 _RADIUS, _SCALARS = "caplet radius", "caplet scalars"  # of arrays that are given beside the dataset
 _THIN = 300  # the extent over the radius that no one has said
@@ -149,6 +150,7 @@ class _Look:
             scene.add_mesh(corners, triangles[~known], normals=normals, color=colors.UNKNOWN, name=f"{name}faces without values")
 
 
+@keywords
 def from_pyvista(dataset, radius=None, scalars=None, low=None, high=None, color=None):
     """A scene of a dataset of PyVista: lines as chains of capsules ("lines"), polygons and strips as triangles ("faces"), vertices as
     spheres ("points"). Of others than PolyData the surface is taken; a MultiBlock's names stand before these.

@@ -16,6 +16,7 @@ from ..errors import InputError
 from ..scene import Scene
 from .cells import MOST_NODES, Look, add_cell, package, wrong
 from .neurons import neurites, soma_of
+from ..spelling import keywords
 
 _NONE = ("", "NULL", "None", "_NONE")  # names of morphologies that say that there is none
 _FORMATS = (".swc", ".h5", ".asc")
@@ -397,6 +398,7 @@ def _folders(morphologies):
     return [(folder, _FORMATS)]
 
 
+@keywords
 def from_sonata(path, population=None, ids=None, morphologies=None, color="type", radius=5.0, low=None, high=None):
     """A scene of a SONATA circuit, in its units (micrometres): cells as instances of their morphologies, which are read once each (by
     MorphIO: .swc, .h5, .asc), and nodes without one as spheres, a shape for each population, by its name.

@@ -7,8 +7,10 @@ from .. import arrays, materials
 from ..errors import InputError
 from ..scene import Scene
 from .chains import along
+from ..spelling import keywords
 
 
+@keywords
 def from_nibabel(tractogram, radius=0.1, color="direction"):
     """A scene of streamlines as chains of capsules, in their world space (millimetres): one shape, "streamlines".
 
