@@ -465,6 +465,27 @@ TEST(Drawing, BondsAreHalvedByTheColoursOfTheirAtoms) {
   EXPECT_EQ(scene.materials[atoms.materials[1]].name, "O");
 }
 
+// Bondi's radius of magnesium is 1.73 angstroms; Shannon's of its ion 0.86.
+TEST(Drawing, IonsAreBallsBesideSticksAndCartoons) {
+  const std::string text =
+      atom_line(1, "MG  ", ' ', " MG", 'A', 1, 0, 0, 0, 1, "MG", "HETATM") +
+      atom_line(2, " C1 ", ' ', "LIG", 'B', 2, 9, 0, 0, 1, " C", "HETATM") +
+      atom_line(3, " O1 ", ' ', "LIG", 'B', 2, 10.2F, 0, 0, 1, " O", "HETATM") +
+      atom_line(4, " O  ", ' ', "HOH", 'C', 3, 20, 0, 0, 1, " O", "HETATM") +
+      atom_line(5, " CA ", ' ', "ALA", 'D', 4, 30, 0, 0, 1, " C") +
+      atom_line(6, " CA ", ' ', "ALA", 'D', 5, 33, 0, 0, 1, " C");
+  for (const char* style : {"sticks", "cartoon", "trace"}) {
+    const Scene scene = scene_of_text("ion.pdb", text, {{{"style", style}}});
+    std::vector<float> radii;
+    for (const Shape& shape : scene.shapes)
+      if (shape.name.ends_with(" atoms"))
+        for (const float r : std::get<CapsulesShape>(shape.geometry).radius0) radii.push_back(r);
+    std::vector<float> expected{0.5F * 1.73F, 0.2F, 0.2F};
+    if (style == std::string("sticks")) expected.resize(6, 0.2F);  // with water and the chain
+    EXPECT_EQ(radii, expected) << style;
+  }
+}
+
 TEST(Drawing, ColoursTellBFactors) {
   const std::string text = atom_line(1, " CA ", ' ', "ALA", 'A', 1, 0, 0, 0, 5, " C") +
                            atom_line(2, " CA ", ' ', "ALA", 'A', 2, 3.8, 0, 0, 50, " C");

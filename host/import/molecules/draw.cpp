@@ -43,6 +43,7 @@ constexpr std::size_t kMostInDetail =
 constexpr std::size_t kLeastOfCartoon =
     10;                         // residues; chains of as many are drawn as cartoons by default
 constexpr float kBall = 0.25F;  // of the van der Waals radius
+constexpr float kIon = 0.5F;    // of it: near the radii of cations by Shannon 1976
 constexpr float kBondRadius = 0.12F, kStickRadius = 0.2F, kTraceRadius = 0.45F;  // angstroms
 constexpr float kThinTrace = 0.25F, kThickTrace = 1.1F;  // radii at the least and greatest b factor
 constexpr int kTraceSteps = 6;                           // capsules between two residues
@@ -299,12 +300,19 @@ class MoleculeDrawing {
       case MoleculeStyle::spheres:
         return ball_radius_of(atom);
       case MoleculeStyle::accessible:
-        return is_covered(atom) ? ball_radius_of(atom) + probe_ : kStickRadius;
+        return is_covered(atom) ? ball_radius_of(atom) + probe_ : stick_end_radius(atom);
       case MoleculeStyle::ball_and_stick:
         return kBall * van_der_waals_radius(atom.element);
       default:
-        return kStickRadius;
+        return stick_end_radius(atom);
     }
+  }
+  /// Ions, which no stick leads to, are balls that can be seen.
+  float stick_end_radius(const Atom& atom) const {
+    const Residue& residue = molecule_.residues[atom.residue];
+    return residue.kind == ResidueKind::other && residue.atom_count == 1
+               ? kIon * van_der_waals_radius(atom.element)
+               : kStickRadius;
   }
   bool has_bonds(const Atom& atom) const { return !has_surface() || !is_covered(atom); }
   float bond_radius() const {
