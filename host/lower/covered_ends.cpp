@@ -30,9 +30,9 @@ constexpr int steps = 255;
 // Only this many capsules that begin at one point are considered, the thickest first.
 constexpr std::size_t most_at_a_point = 32;
 
-/// Capsule is a tapered capsule of which no end holds the other. Its surface is a cap where n . d
+/// CoveredCapsule is a tapered capsule of which no end holds the other. Its surface is a cap where n . d
 /// <= s, a cone, and a cap where n . d >= s.
-struct Capsule {
+struct CoveredCapsule {
   std::array<dvec3, 2> p;
   std::array<double, 2> r;
   dvec3 d;
@@ -67,8 +67,8 @@ class Primitive {
   dvec3 center() const { return vector(sphere_at_c); }
   double radius() const { return datum(sphere_at_r); }
 
-  std::optional<Capsule> capsule() const {
-    Capsule out;
+  std::optional<CoveredCapsule> capsule() const {
+    CoveredCapsule out;
     if (shape_ == shape_capsule)
       out = {{vector(capsule_at_p0), vector(capsule_at_p1)},
              {datum(capsule_at_r), datum(capsule_at_r)},
@@ -174,7 +174,7 @@ EndCovers covers_of_part(std::span<const Emitter> emitters, const FlatScene& fla
     if (primitive.is_sphere()) {
       ends.push_back(
           {key_of(primitive.center()), static_cast<float>(primitive.radius()), {}, 2, index, 0});
-    } else if (const std::optional<Capsule> c = primitive.capsule()) {
+    } else if (const std::optional<CoveredCapsule> c = primitive.capsule()) {
       for (const std::uint32_t which : {0u, 1u}) {
         const double sign = which == 0 ? 1 : -1;
         const dvec3 into = sign * c->d;
@@ -202,7 +202,7 @@ EndCovers covers_of_part(std::span<const Emitter> emitters, const FlatScene& fla
 }
 
 /// Returns the cover, rounded up by a step or less.
-LightCover cover_of(const Capsule& c, const std::array<EndCover, 2>& ends, double rounding) {
+LightCover cover_of(const CoveredCapsule& c, const std::array<EndCover, 2>& ends, double rounding) {
   // These are areas over 2 pi: a cap has r^2 times its heights, the cone the mean circumference of
   // its ends times its slant.
   const double cone = 0.5 * (c.r[0] + c.r[1]) * (1 - c.s * c.s) * c.length;

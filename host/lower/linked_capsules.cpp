@@ -23,13 +23,13 @@ static_assert(CAPLET_LINK_R + CAPLET_WIDTH < CAPLET_LINK_U &&
               CAPLET_LINK_U + CAPLET_WIDTH < 8 * (CAPLET_LINK_ROWS + 1));
 
 /// One end of a linked capsule: its centre and radius.
-using End = std::array<float, 4>;
+using LinkedEnd = std::array<float, 4>;
 
 bool can_link(const FlatPrimitive& p) {
   return p.shape == shape_capsule || p.shape == shape_tapered_capsule;
 }
 
-End end_of(const FlatPrimitive& p, bool second) {
+LinkedEnd end_of(const FlatPrimitive& p, bool second) {
   if (p.shape == shape_capsule) {
     const float* at = second ? capsule_p1(p.data) : capsule_p0(p.data);
     return {at[0], at[1], at[2], capsule_r(p.data)};
@@ -139,7 +139,7 @@ void LinkedCapsules::write(const Block& block, float* to) const {
     const std::size_t at = i <= last ? i : last - (i - last) % 2;
     const bool second = at == last;
     const std::size_t capsule = block.first + at - (second ? 1 : 0);
-    const End end = end_of(capsules[capsule], second);
+    const LinkedEnd end = end_of(capsules[capsule], second);
     to[CAPLET_LINK_X + i] = end[0];
     to[CAPLET_LINK_Y + i] = end[1];
     to[CAPLET_LINK_Z + i] = end[2];

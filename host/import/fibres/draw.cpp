@@ -101,9 +101,9 @@ double mean_of(float a, float b) {
 }
 
 /// The materials of the capsules, in their order, by colour.
-class Colors {
+class FibreColors {
  public:
-  Colors(Scene& scene, FibreColor by) : scene_(scene), by_(by) {}
+  FibreColors(Scene& scene, FibreColor by) : scene_(scene), by_(by) {}
   void reserve(std::size_t count) { keys_.reserve(count); }
   void add(const glm::dvec3& color) {
     const glm::uvec3 step(glm::clamp(color, 0.0, 1.0) * static_cast<double>(kSteps[0]) + 0.5);
@@ -276,7 +276,7 @@ Scene scene_of(Fibres fibres, const std::filesystem::path& path, const ImportOpt
         kMelanin * glm::dvec3(0.419, 0.697, 1.37)};  // absorption of eumelanin: d'Eon et al. 2011
     scene.materials.push_back({hair, "hair", {scene.source, 0, 0}});
   }
-  Colors colors(scene, by);
+  FibreColors colors(scene, by);
   ValueColors of_scalar;
   if (by == FibreColor::scalar)
     of_scalar = scalar_colors(scene, scalars ? *scalars : *asked, options);
