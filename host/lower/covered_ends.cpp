@@ -30,7 +30,8 @@ constexpr int steps = 255;
 // Only this many capsules that begin at one point are considered, the thickest first.
 constexpr std::size_t most_at_a_point = 32;
 
-/// CoveredCapsule is a tapered capsule of which no end holds the other. Its surface is a cap where n . d
+/// CoveredCapsule is a tapered capsule of which no end holds the other. Its surface is a cap where
+/// n . d
 /// <= s, a cone, and a cap where n . d >= s.
 struct CoveredCapsule {
   std::array<dvec3, 2> p;
