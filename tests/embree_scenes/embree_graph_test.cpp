@@ -6,6 +6,8 @@
 #include <gtest/gtest.h>
 
 #include <glm/geometric.hpp>
+#include <utility>
+#include <vector>
 
 #include "import/import.h"
 #include "support/import_files.h"
@@ -50,6 +52,85 @@ TEST(EmbreeGraph, CamerasLookFromTo) {
 }
 
 // XML's comments and white space stand anywhere between elements, and say nothing.
+/// Returns the times and translations of a motion.
+std::vector<std::pair<double, glm::dvec3>> path_of(const TransformKeys& keys) {
+  std::vector<std::pair<double, glm::dvec3>> out;
+  for (const TransformKey& key : keys) out.emplace_back(key.time, glm::dvec3(key.matrix[3]));
+  return out;
+}
+using Path = std::vector<std::pair<double, glm::dvec3>>;
+
+TEST(EmbreeMotion, TransformsAtTimeStepsAreEvenlyInASecond) {
+  const Scene scene = scene_of(
+      "<TransformAnimation><AffineSpace translate=\"1 0 0\"/>"
+      "<AffineSpace translate=\"1 2 0\"/><AffineSpace translate=\"1 2 3\"/>" +
+      triangle() + "</TransformAnimation>" + triangle());
+  EXPECT_EQ(scene.shapes.size(), 1U);  // that rests
+  ASSERT_EQ(scene.instances.size(), 1U);
+  EXPECT_EQ(path_of(scene.instances[0].motion),
+            (Path{{0, {1, 0, 0}}, {0.5, {1, 2, 0}}, {1, {1, 2, 3}}}));
+  EXPECT_EQ(glm::dvec3(scene.instances[0].world_from_object[3]), glm::dvec3(1, 0, 0));
+  EXPECT_EQ(scene.objects[0].shapes.size(), 1U);
+}
+
+// Within what rests, a motion is placed; within what moves, it has the keys of both.
+TEST(EmbreeMotion, MotionsLieWithinEachOther) {
+  const std::string inner =
+      "<Transform><AffineSpace translate=\"0 0 1\"/><AffineSpace translate=\"0 0 5\"/>" +
+      triangle() + "</Transform>";
+  const auto within = [&](const std::string& places) {
+    const Scene scene = scene_of("<Transform>" + places + inner + "</Transform>");
+    return path_of(scene.instances.at(0).motion);
+  };
+  EXPECT_EQ(within("<AffineSpace scale=\"2 2 2\"/>"), (Path{{0, {0, 0, 2}}, {1, {0, 0, 10}}}));
+  EXPECT_EQ(within("<AffineSpace translate=\"1 0 0\"/><AffineSpace translate=\"3 0 0\"/>"
+                   "<AffineSpace translate=\"9 0 0\"/>"),
+            (Path{{0, {1, 0, 1}}, {0.5, {3, 0, 3}}, {1, {9, 0, 5}}}));
+  const Scene scene = scene_of(
+      "<Transform><AffineSpace translate=\"1 0 0\"/><AffineSpace translate=\"3 0 0\"/>"
+      "<Transform><AffineSpace scale=\"4 4 4\"/>" +
+      triangle() + "</Transform></Transform>");
+  EXPECT_EQ(path_of(scene.instances.at(0).motion), (Path{{0, {1, 0, 0}}, {1, {3, 0, 0}}}));
+  EXPECT_EQ(scene.instances[0].motion[1].matrix[1], glm::dvec4(0, 4, 0, 0));
+}
+
+TEST(EmbreeMotion, ManyPlacesMoveEachByItself) {
+  const auto array = [](const std::string& spaces) {
+    return "<AffineSpaceArray>" + spaces + "</AffineSpaceArray>\n";
+  };
+  const std::string here = "<AffineSpace translate=\"0 0 0\"/>";
+  const std::string there = "<AffineSpace translate=\"0 7 0\"/>";
+  const Scene scene = scene_of("<MultiTransform>" + array(here + there) + array(there + there) +
+                               triangle() + "</MultiTransform>");
+  ASSERT_EQ(scene.instances.size(), 2U);
+  EXPECT_EQ(path_of(scene.instances[0].motion), (Path{{0, {0, 0, 0}}, {1, {0, 7, 0}}}));
+  EXPECT_EQ(path_of(scene.instances[1].motion), (Path{{0, {0, 7, 0}}, {1, {0, 7, 0}}}));
+  EXPECT_THAT(complaint([&] {
+                scene_of("<MultiTransform>" + array(here + there) + array(here) + triangle() +
+                         "</MultiTransform>");
+              }),
+              HasSubstr("g.xml:4:2: has 1 transforms, the first time step 2"));
+}
+
+TEST(EmbreeMotion, CamerasMove) {
+  const auto camera = [](int x) {
+    return "<PerspectiveCamera from=\"" + std::to_string(x) +
+           " 0 9\" to=\"0 0 0\" up=\"0 1 0\" fov=\"60\"/>";
+  };
+  const Scene own = scene_of(triangle() + "<AnimatedPerspectiveCamera>" + camera(1) + camera(2) +
+                             camera(4) + "</AnimatedPerspectiveCamera>");
+  EXPECT_EQ(path_of(own.view.camera.motion),
+            (Path{{0, {1, 0, 9}}, {0.5, {2, 0, 9}}, {1, {4, 0, 9}}}));
+  const glm::dvec3 forward(own.view.camera.motion[2].matrix[2]);
+  EXPECT_LT(glm::length(forward - glm::normalize(glm::dvec3(-4, 0, -9))), 1e-12);
+  const Scene carried = scene_of(triangle() +
+                                 "<Transform><AffineSpace translate=\"0 1 0\"/>"
+                                 "<AffineSpace translate=\"0 3 0\"/>" +
+                                 camera(1) + "</Transform>");
+  EXPECT_EQ(path_of(carried.view.camera.motion), (Path{{0, {1, 1, 9}}, {1, {1, 3, 9}}}));
+  EXPECT_EQ(glm::dvec3(carried.view.camera.world_from_camera[3]), glm::dvec3(1, 1, 9));
+}
+
 TEST(EmbreeGraph, CommentsAreNoElements) {
   const std::string c = "<!-- a comment -->\n";
   const Scene scene = scene_of(

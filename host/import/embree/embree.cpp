@@ -27,13 +27,49 @@ namespace {
 constexpr int kDeepest = 500, kHighest = 5000;  // nesting of elements, and with references
 constexpr std::size_t kMostXmlFiles = 20;
 constexpr std::size_t kMostVisited = 4'000'000, kMostPlaced = 1'000'000;
+constexpr std::size_t kMostKeys = 4'000'000;  // of all that is visited
+
+/// Where something is.
+struct Place {
+  glm::dmat4 first{1};        // of what moves: at its first key
+  TransformKeys motion = {};  // none: it rests
+};
+
+/// Interpolates matrices as Embree does, entry by entry.
+glm::dmat4 at_time(const TransformKeys& keys, double time) {
+  std::size_t i = 1;
+  while (i + 1 < keys.size() && keys[i].time < time) ++i;
+  const TransformKey &a = keys[i - 1], &b = keys[i];
+  const double t = (time - a.time) / (b.time - a.time);
+  return a.matrix * (1 - t) + b.matrix * t;
+}
+
+/// Returns the place of what is at `inner` within `outer`. Where both move, it has the keys of
+/// both.
+Place operator*(const Place& outer, const Place& inner) {
+  Place out{outer.first * inner.first};
+  std::vector<double> times;
+  for (const TransformKeys* keys : {&outer.motion, &inner.motion})
+    for (const TransformKey& key : *keys) times.push_back(key.time);
+  std::ranges::sort(times);
+  times.erase(std::unique(times.begin(), times.end()), times.end());
+  for (const double time : times)
+    out.motion.push_back(
+        {time, (outer.motion.empty() ? outer.first : at_time(outer.motion, time)) *
+                   (inner.motion.empty() ? inner.first : at_time(inner.motion, time))});
+  return out;
+}
+
+double time_of(std::size_t step, std::size_t steps) {
+  return static_cast<double>(step) / static_cast<double>(steps - 1);
+}
 
 struct Node {
-  std::vector<glm::dmat4> places;  // of the children; none: at the node itself
+  std::vector<Place> places;  // of the children; none: at the node itself
   std::vector<std::shared_ptr<const Node>> children;
   std::vector<Shape> shapes;
   std::optional<LightElement> light;
-  std::optional<View> view;
+  std::vector<View> views;  // of a camera, at its time steps
   SourceLocation where;
   int height = 0;  // the nesting depth of its content
 };
@@ -73,7 +109,7 @@ class EmbreeReader {
     }
     const glm::dmat4 world = world_from_file(options_, "y");
     scene_.world_from_file = glm::dmat3(world);
-    for (const NodePtr& root : roots) visit(*root, world);
+    for (const NodePtr& root : roots) visit(*root, {world});
     place();
     if (scene_.shapes.empty() && scene_.instances.empty())
       throw InputError({scene_.source, 0, 0}, "holds no geometry");
@@ -81,15 +117,15 @@ class EmbreeReader {
     for (const auto& [light, place] : lights_) add_light(*light, place, scene_);
     for (const LightElement& light : viewer.lights) add_light(light, world, scene_);
     const bool is_lit = !scene_.lights.empty() || scene_.shapes.size() > before;
-    notes_.tell();
     if (viewer.size) {
       scene_.view.film.width = viewer.size->x;
       scene_.view.film.height = viewer.size->y;
     }
-    if (viewer.view) see(*viewer.view, world, {scene_.source, 0, 0});
-    if (view_) scene_.view.camera = camera_of(*view_, scene_.view.film, view_at_);
+    if (viewer.view) see({*viewer.view}, {world}, {scene_.source, 0, 0});
+    set_camera();
+    notes_.tell();
     Imported out(std::move(scene_));
-    out.has_camera = view_.has_value();
+    out.has_camera = !views_.empty();
     out.is_lit = is_lit;
     return out;
   }
@@ -181,11 +217,10 @@ class EmbreeReader {
       children(from, node, all, depth);
       if (!all.children.empty()) add_child(*out, all.children.front());
     } else if (name == "PerspectiveCamera") {
-      out->view = camera(from, node);
+      out->views = {camera(from, node)};
     } else if (name == "AnimatedPerspectiveCamera") {
-      notes_.add("what moves is drawn as at its first moment", out->where);
-      if (const pugi::xml_node first = node.child("PerspectiveCamera"))
-        out->view = camera(from, first);
+      for (const pugi::xml_node step : node.children("PerspectiveCamera"))
+        out->views.push_back(camera(from, step));
     } else if (name == "xml" || name == "extern" || name == "extern_combine" || name == "obj") {
       add_child(*out, other(from, node, depth));
     } else if (name == "SubdivisionMesh" || name == "FurBall" || name == "AnimatedLight") {
@@ -197,44 +232,48 @@ class EmbreeReader {
     return out;
   }
 
-  /// Reads one transform, or all those of a MultiTransform. Of the transforms at several times the
-  /// first is used.
+  /// Reads one transform, or all those of a MultiTransform, at each time step.
   void transform(SceneFile& from, pugi::xml_node node, Node& to, int depth) {
-    bool is_first = true, is_nowhere = false;
+    std::vector<std::vector<glm::dmat4>> steps;
     for (const pugi::xml_node child : node.children()) {
       if (child.type() != pugi::node_element) continue;
       const std::string_view name = child.name();
       if (name == "AffineSpace" || name == "AffineSpaceArray") {
-        if (!is_first) {
-          notes_.add("what moves is drawn as at its first moment", from.place(child));
-          continue;
-        }
-        is_first = false;
-        if (name == "AffineSpace") {
-          to.places.push_back(affine_space(from, child));
-          continue;
-        }
-        if (child.attribute("ofs")) {  // three columns of the linear part, then the translation
-          const std::vector<float> m = from.floats(child, 12);
-          for (std::size_t i = 0; i < m.size(); i += 12) {
-            glm::dmat4& one = to.places.emplace_back(1);
-            for (int column = 0; column < 4; ++column)
-              for (int row = 0; row < 3; ++row)
-                one[column][row] =
-                    static_cast<double>(m[i + static_cast<std::size_t>(3 * column + row)]);
-          }
-        }
-        for (const pugi::xml_node one : child.children())
-          if (one.type() == pugi::node_element) to.places.push_back(affine_space(from, one));
-        is_nowhere = to.places.empty();
+        steps.push_back(name == "AffineSpace" ? std::vector{affine_space(from, child)}
+                                              : affine_spaces(from, child));
+        if (steps.back().size() != steps[0].size())
+          from.fail(child, fmt::format("has {} transforms, the first time step {}",
+                                       steps.back().size(), steps[0].size()));
       } else if (name == "Quaternion" || name == "QuaternionArray") {
         from.fail(child, "turns by quaternions are not read");
       } else {
         add_child(to, element(from, child, depth + 1));
       }
     }
-    if (is_first) from.fail(node, "a transform without an AffineSpace");
-    if (is_nowhere) to.children.clear();
+    if (steps.empty()) from.fail(node, "a transform without an AffineSpace");
+    if (steps[0].empty()) to.children.clear();  // placed nowhere
+    for (std::size_t i = 0; i < steps[0].size(); ++i) {
+      Place& place = to.places.emplace_back(Place{steps[0][i]});
+      for (std::size_t step = 0; steps.size() > 1 && step < steps.size(); ++step)
+        place.motion.push_back({time_of(step, steps.size()), steps[step][i]});
+    }
+  }
+
+  static std::vector<glm::dmat4> affine_spaces(SceneFile& from, pugi::xml_node node) {
+    std::vector<glm::dmat4> out;
+    if (node.attribute("ofs")) {  // three columns of the linear part, then the translation
+      const std::vector<float> m = from.floats(node, 12);
+      for (std::size_t i = 0; i < m.size(); i += 12) {
+        glm::dmat4& one = out.emplace_back(1);
+        for (int column = 0; column < 4; ++column)
+          for (int row = 0; row < 3; ++row)
+            one[column][row] =
+                static_cast<double>(m[i + static_cast<std::size_t>(3 * column + row)]);
+      }
+    }
+    for (const pugi::xml_node one : node.children())
+      if (one.type() == pugi::node_element) out.push_back(affine_space(from, one));
+    return out;
   }
 
   static View camera(const SceneFile& from, pugi::xml_node node) {
@@ -290,11 +329,16 @@ class EmbreeReader {
     return out;
   }
 
-  void visit(const Node& node, const glm::dmat4& world) {
+  void visit(const Node& node, const Place& world) {
     if (++visited_ > kMostVisited)
       throw InputError(node.where, fmt::format("more than {} elements are placed", kMostVisited));
-    if (node.view && !view_) see(*node.view, world, node.where);
-    if (node.light) lights_.emplace_back(&*node.light, world);
+    if ((keys_ += world.motion.size()) > kMostKeys)
+      throw InputError(node.where, fmt::format("what moves has more than {} keys", kMostKeys));
+    if (!node.views.empty() && views_.empty()) see(node.views, world, node.where);
+    if (node.light) {
+      if (!world.motion.empty()) notes_.add("lights do not move", node.where);
+      lights_.emplace_back(&*node.light, world.first);
+    }
     if (!node.shapes.empty()) {
       const auto [at, fresh] = placed_index_.try_emplace(&node, placed_.size());
       if (fresh) placed_.push_back({&node, {}});
@@ -304,24 +348,53 @@ class EmbreeReader {
     }
     if (node.places.empty())
       for (const NodePtr& child : node.children) visit(*child, world);
-    for (const glm::dmat4& place : node.places)
-      for (const NodePtr& child : node.children) visit(*child, world * place);
+    for (const Place& place : node.places) {
+      if (node.children.empty()) break;
+      const Place within = world * place;
+      for (const NodePtr& child : node.children) visit(*child, within);
+    }
   }
 
-  void see(const View& view, const glm::dmat4& world, const SourceLocation& where) {
-    view_ = view;
-    view_->from = glm::dvec3(world * glm::dvec4(view.from, 1));
-    view_->to = glm::dvec3(world * glm::dvec4(view.to, 1));
-    view_->up = glm::dmat3(world) * view.up;
+  /// Keeps a camera, at its own time steps or, where it has one, at the keys of its place.
+  void see(const std::vector<View>& views, const Place& world, const SourceLocation& where) {
+    const auto moved = [](View view, const glm::dmat4& by) {
+      view.from = glm::dvec3(by * glm::dvec4(view.from, 1));
+      view.to = glm::dvec3(by * glm::dvec4(view.to, 1));
+      view.up = glm::dmat3(by) * view.up;
+      return view;
+    };
     view_at_ = where;
+    views_.clear();
+    if (views.size() > 1 && !world.motion.empty())
+      notes_.add("a camera that moves within what moves does not go with it", where);
+    if (views.size() == 1 && !world.motion.empty())
+      for (const TransformKey& key : world.motion)
+        views_.emplace_back(key.time, moved(views[0], key.matrix));
+    else
+      for (std::size_t step = 0; step < views.size(); ++step)
+        views_.emplace_back(views.size() > 1 ? time_of(step, views.size()) : 0,
+                            moved(views[step], world.first));
+  }
+
+  void set_camera() {
+    if (views_.empty()) return;
+    Camera& camera = scene_.view.camera;
+    camera = camera_of(views_[0].second, scene_.view.film, view_at_);
+    for (const auto& [time, view] : views_) {
+      if (view.fov != views_[0].second.fov)
+        notes_.add("the field of view stays as at its first moment", view_at_);
+      if (views_.size() > 1)
+        camera.motion.push_back(
+            {time, camera_of(view, scene_.view.film, view_at_).world_from_camera});
+    }
   }
 
   void place() {
     for (const Placed& one : placed_) {
       std::vector<Shape> shapes = one.node->shapes;
-      if (one.places.size() == 1) {
+      if (one.places.size() == 1 && one.places[0].motion.empty()) {
         for (Shape& shape : shapes) {
-          shape.world_from_object = one.places[0] * shape.world_from_object;
+          shape.world_from_object = one.places[0].first * shape.world_from_object;
           scene_.shapes.push_back(std::move(shape));
         }
         continue;
@@ -331,15 +404,15 @@ class EmbreeReader {
       object.name = shapes[0].name;
       object.where = one.node->where;
       object.shapes = std::move(shapes);
-      for (const glm::dmat4& place : one.places)
-        scene_.instances.push_back({index, place, one.node->where});
+      for (const Place& place : one.places)
+        scene_.instances.push_back({index, place.first, one.node->where, place.motion});
       scene_.objects.push_back(std::move(object));
     }
   }
 
   struct Placed {
     const Node* node;
-    std::vector<glm::dmat4> places;
+    std::vector<Place> places;
   };
 
   const ImageReader& reader_;
@@ -351,10 +424,10 @@ class EmbreeReader {
   std::map<std::string, NodePtr> nodes_;
   std::map<std::string, MeshMaterial> looks_;
   std::optional<std::uint32_t> plain_;
-  std::optional<View> view_;
+  std::vector<std::pair<double, View>> views_;  // of the camera, by time
   std::vector<std::pair<const LightElement*, glm::dmat4>> lights_;
   SourceLocation view_at_;
-  std::size_t visited_ = 0, placements_ = 0;
+  std::size_t visited_ = 0, placements_ = 0, keys_ = 0;
   std::vector<Placed> placed_;
   std::map<const Node*, std::size_t> placed_index_;
 };
