@@ -11,10 +11,10 @@ from typing import Any, TypeVar
 Of = TypeVar("Of")
 
 
-def nearest(name, known, offer="it has"):
+def nearest(name, known):
     """What a message about an unknown name ends with: the nearest of those that are known, or all where none is near."""
     near = difflib.get_close_matches(name, known, 1)
-    return f"the nearest is {near[0]!r}" if near else f"{offer} {', '.join(known)}"
+    return f"the nearest is {near[0]!r}" if near else f"it has {', '.join(known)}"
 
 
 def _checked(function):
