@@ -112,6 +112,15 @@ TEST(EmbreeMotion, ManyPlacesMoveEachByItself) {
               HasSubstr("g.xml:4:2: has 1 transforms, the first time step 2"));
 }
 
+// 2,001 time steps, which 2,000 empty groups would each have.
+TEST(EmbreeMotion, KeysAreBounded) {
+  std::string text = "<Group id=\"none\"/><TransformAnimation>";
+  for (int step = 0; step < 2001; ++step) text += "<AffineSpace translate=\"0 0 0\"/>";
+  for (int i = 0; i < 2000; ++i) text += "<ref id=\"none\"/>";
+  EXPECT_THAT(complaint([&] { scene_of(text + triangle() + "</TransformAnimation>"); }),
+              HasSubstr("g.xml:3:2: what moves has more than 4000000 keys"));
+}
+
 TEST(EmbreeMotion, CamerasMove) {
   const auto camera = [](int x) {
     return "<PerspectiveCamera from=\"" + std::to_string(x) +
@@ -121,6 +130,7 @@ TEST(EmbreeMotion, CamerasMove) {
                              camera(4) + "</AnimatedPerspectiveCamera>");
   EXPECT_EQ(path_of(own.view.camera.motion),
             (Path{{0, {1, 0, 9}}, {0.5, {2, 0, 9}}, {1, {4, 0, 9}}}));
+  EXPECT_FALSE(own.automatic_camera);
   const glm::dvec3 forward(own.view.camera.motion[2].matrix[2]);
   EXPECT_LT(glm::length(forward - glm::normalize(glm::dvec3(-4, 0, -9))), 1e-12);
   const Scene carried = scene_of(triangle() +
