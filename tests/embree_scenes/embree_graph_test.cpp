@@ -52,6 +52,22 @@ TEST(EmbreeGraph, CamerasLookFromTo) {
 }
 
 // XML's comments and white space stand anywhere between elements, and say nothing.
+// A quarter turn about z takes y to -x.
+TEST(EmbreeGraph, LightsAndCamerasLieWithinTransforms) {
+  const Scene scene =
+      scene_of(triangle() +
+               "<Transform><AffineSpace translate=\"1 2 3\"/>"
+               "<PointLight><AffineSpace translate=\"1 0 0\"/><I>4 4 4</I></PointLight>"
+               "<Transform><AffineSpace rotate_z=\"90\"/><PerspectiveCamera from=\"0 5 -9\" "
+               "to=\"0 5 0\" up=\"0 1 0\" fov=\"60\"/></Transform></Transform>");
+  ASSERT_EQ(scene.lights.size(), 1U);
+  EXPECT_EQ(std::get<PointLight>(scene.lights[0].model).position, glm::dvec3(2, 2, 3));
+  const glm::dmat4& camera = scene.view.camera.world_from_camera;
+  EXPECT_LT(glm::length(glm::dvec3(camera[3]) - glm::dvec3(-4, 2, -6)), 1e-12);
+  EXPECT_LT(glm::length(glm::dvec3(camera[1]) - glm::dvec3(-1, 0, 0)), 1e-12);
+  EXPECT_LT(glm::length(glm::dvec3(camera[2]) - glm::dvec3(0, 0, 1)), 1e-12);
+}
+
 /// Returns the times and translations of a motion.
 std::vector<std::pair<double, glm::dvec3>> path_of(const TransformKeys& keys) {
   std::vector<std::pair<double, glm::dvec3>> out;

@@ -203,6 +203,7 @@ TEST(EmbreeNotes, AreOfNothingElse) {
            "<indices>0</indices></RoundLineSegments><ConeSegments>" + points +
            "<indices>0</indices></ConeSegments><Transform><AffineSpace translate=\"1 0 0\"/>" +
            kTriangle +
+           "<PointLight><AffineSpace translate=\"1 0 0\"/><I>1 1 1</I></PointLight>"
            "</Transform><PerspectiveCamera from=\"0 0 0\" to=\"0 0 1\" up=\"0 1 0\" fov=\"60\"/>");
   EXPECT_EQ(log.text(), "");
 }
