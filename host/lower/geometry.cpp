@@ -246,7 +246,9 @@ class GeometryLowering {
     std::map<std::pair<std::array<double, 16>, uint>, Subtree*> by_space;
     for (std::size_t i = 0; i < shapes.size(); ++i) {
       const Shape& shape = shapes[i];
-      if (std::holds_alternative<CsgShape>(shape.geometry) && bounds_of(shape).empty()) continue;
+      if (const auto* csg = std::get_if<CsgShape>(&shape.geometry);
+          csg && is_empty(*csg, shape.world_from_object))
+        continue;
       Subtree* subtree = &lowered.subtrees[0];
       const SubtreeKey own = subtree_key(shape, shape.world_from_object);
       if (!own.is_common()) {

@@ -481,36 +481,55 @@ double distance_to_touch(const Line& line, const MolecularPatch& patch) {
 constexpr double no_limit = -HUGE_VAL;
 
 // Returns the least of f over [0, 1], where f(x) - f(y) <= steepness |x - y|. Cells that this shows
-// to hold nothing less than the known least are skipped; the others are split twice, and then
-// searched by halving. With a limit, it is enough to know whether the least is above it.
-double least_over(int samples, double steepness, double limit,
-                  const std::function<double(double)>& f) {
-  double least = HUGE_VAL;
-  const auto search = [&](const auto& self, double low, double high, int count, int level) -> void {
-    std::vector<double> at;
-    const double step = (high - low) / count;
-    for (int i = 0; i <= count; ++i) least = std::min(least, at.emplace_back(f(low + i * step)));
-    for (std::size_t i = 0; i + 1 < at.size() && least > limit; ++i) {
-      if (0.5 * (at[i] + at[i + 1] - steepness * step) >
-          std::min(least, limit >= 0 ? limit : HUGE_VAL))
-        continue;
-      const double begin = low + static_cast<double>(i) * step;
-      if (level > 0) {
-        self(self, begin, begin + step, 64, level - 1);
-        continue;
-      }
-      double best = at[i] < at[i + 1] ? begin : begin + step,
-             value_there = std::min(at[i], at[i + 1]);
-      for (double width = 0.5 * step; width > 1e-16; width *= 0.5)
-        for (const double x : {best - width, best + width}) {
-          if (x < 0 || x > 1) continue;
-          const double there = f(x);
-          if (there < value_there) value_there = there, best = x;
-        }
-      least = std::min(least, value_there);
-    }
+// to hold nothing less than the known least are left out; each level splits the others in eight,
+// and the last ones are searched by halving around samples below their neighbours. With a limit, it
+// is enough to know whether the least is above it.
+template <class Function>
+double least_over(int levels, double steepness, double limit, const Function& f) {
+  constexpr int split = 8;
+  struct Cell {
+    int index;
+    double at_begin, at_end;
   };
-  search(search, 0, 1, samples, 1);
+  std::vector<Cell> cells{{0, f(0.0), f(1.0)}}, parts;
+  double least = std::min(cells[0].at_begin, cells[0].at_end), width = 1;
+  for (int level = 0; level < levels && least > limit; ++level) {
+    width /= split;
+    parts.clear();
+    for (const Cell& cell : cells) {
+      double before = cell.at_begin;
+      for (int i = 0; i < split; ++i) {
+        const int index = split * cell.index + i;
+        const double after = i + 1 < split ? f((index + 1) * width) : cell.at_end;
+        least = std::min(least, after);
+        parts.push_back({index, before, after});
+        before = after;
+      }
+    }
+    const double enough = limit >= 0 ? std::min(least, limit) : least;
+    std::erase_if(parts, [&](const Cell& cell) {
+      return 0.5 * (cell.at_begin + cell.at_end - steepness * width) > enough;
+    });
+    cells.swap(parts);
+  }
+  for (std::size_t i = 0; i < cells.size() && least > limit; ++i) {
+    const Cell& cell = cells[i];
+    const bool is_begin = cell.at_begin <= cell.at_end;
+    if (is_begin ? i > 0 && cells[i - 1].index == cell.index - 1 &&
+                       cells[i - 1].at_begin <= cell.at_begin
+                 : i + 1 < cells.size() && cells[i + 1].index == cell.index + 1 &&
+                       cells[i + 1].at_end <= cell.at_end)
+      continue;
+    double best = (cell.index + (is_begin ? 0 : 1)) * width,
+           value_there = std::min(cell.at_begin, cell.at_end);
+    for (double step = 0.5 * width; step > 1e-16; step *= 0.5)
+      for (const double x : {best - step, best + step}) {
+        if (x < 0 || x > 1) continue;
+        const double there = f(x);
+        if (there < value_there) value_there = there, best = x;
+      }
+    least = std::min(least, value_there);
+  }
   return least;
 }
 
@@ -526,7 +545,7 @@ double distance_line_to_curve(const Line& line, const Curve& curve, double limit
     return distance_to_segment(dvec3(0), a - glm::dot(a, line.unit) * line.unit,
                                b - glm::dot(b, line.unit) * line.unit);
   }
-  return least_over(256, curve.radius * std::abs(curve.to - curve.from), limit,
+  return least_over(5, curve.radius * std::abs(curve.to - curve.from), limit,
                     [&](double s) { return distance_line_to_point(line, curve.at(s)); });
 }
 
@@ -549,7 +568,7 @@ double distance_to_fold(const Line& line, const Bilinear& patch, double limit) {
       std::max(glm::length(seen.p01 - seen.p00), glm::length(seen.p11 - seen.p10));
   for (std::size_t i = 0; i + 1 < ends.size(); ++i)
     least = std::min(
-        least, least_over(256, sides * glm::length(ends[i + 1] - ends[i]), limit, [&](double s) {
+        least, least_over(5, sides * glm::length(ends[i + 1] - ends[i]), limit, [&](double s) {
           const dvec2 uv = ends[i] + s * (ends[i + 1] - ends[i]);
           return glm::length(seen.at(uv.x, uv.y));
         }));
@@ -557,7 +576,7 @@ double distance_to_fold(const Line& line, const Bilinear& patch, double limit) {
 }
 
 double least_along(const Primitive& primitive, const Line& line) {
-  return least_over(2048, 2 * line.reach, no_limit, [&](double s) {
+  return least_over(6, 2 * line.reach, no_limit, [&](double s) {
     return value(primitive, line.foot + (2 * s - 1) * line.reach * line.unit);
   });
 }

@@ -496,6 +496,7 @@ dvec3 CaseMaker::point_of(const reference::Solid<Model>& solid, dvec3* normal) {
     double low = 0, high = 1;
     for (int i = 0; i < 100; ++i) {
       const double middle = 0.5 * (low + high);
+      if (middle <= low || middle >= high) break;
       int at = surface;
       x = surface_beyond(solid.shape, inside, a + middle * (b - a), &at);
       (at == surface ? low : high) = middle;

@@ -9,9 +9,11 @@
 
 #include <cmath>
 #include <cstdlib>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/gtc/matrix_transform.hpp>
 #include <mutex>
+#include <random>
 
 #include "csg_cases.h"
 #include "reference/solver.h"
@@ -454,6 +456,75 @@ TEST(Csg, BoundsAreTight) {
     EXPECT_NEAR(center, 0.5 * (low + high), 1e-3);
     EXPECT_NEAR(radius, 0.5 * std::sqrt(3.0) * (high - low), 1e-3);
   }
+}
+
+// Caps of balls, cut off by a plane of a box: its side moves to 1/32 of the box, those around the
+// rim to 1/16.
+TEST(Csg, BoundsOfWhatIsCutOff) {
+  for (const double at : {-0.4, 0.1, 0.7}) {
+    const auto cut = operand(box(dvec3(-3), dvec3(at, 3, 3)));
+    const double rim = at < 0 ? 1 : std::sqrt(1 - at * at);
+    for (const auto& ball : {operand(SphereShape{1}),
+                             operand(CapsulesShape{{{0, 0, 0}}, {{0, 0, 1e-6F}}, {1}, {}, {}})}) {
+      const Shape cap = csg_shape(Operation::set_difference, {ball, cut});
+      const Bounds bounds = bounds_of(cap);
+      EXPECT_LE(bounds.min.x, at);
+      EXPECT_GE(bounds.min.x, at - 2.0 / 32);
+      EXPECT_GE(bounds.max.x, 1);
+      EXPECT_LE(bounds.max.x, 1 + 2.0 / 64);
+      for (const int side : {1, 2}) {
+        EXPECT_GE(bounds.max[side], rim);
+        EXPECT_LE(bounds.max[side], rim + 2.0 / 16);
+        EXPECT_LE(bounds.min[side], -rim);
+        EXPECT_GE(bounds.min[side], -rim - 2.0 / 16);
+      }
+    }
+  }
+}
+
+TEST(Csg, CapsulesAreNearAsTheirNearestBall) {
+  std::mt19937 random(67);
+  std::uniform_real_distribution<double> within(-3, 3);
+  // The last holds its other ball.
+  for (const float radius : {0.5F, 0.2F, 1.1F, 3.1F}) {
+    const CapsulesShape pill{{{-1, 0.5F, 0}}, {{1, 0, 0.5F}}, {0.5F}, {radius}, {}};
+    for (int i = 0; i < 100; ++i) {
+      const dvec3 p(within(random), within(random), within(random));
+      double least = HUGE_VAL;
+      for (int k = 0; k <= 2000; ++k) {
+        const double s = k / 2000.0;
+        least = std::min(least, glm::length(p - glm::mix(dvec3(-1, 0.5, 0), dvec3(1, 0, 0.5), s)) -
+                                    ((1 - s) * 0.5 + s * double(radius)));
+      }
+      // Balls 1/2000 apart: their distances change by less than 5 / 2000 in between.
+      EXPECT_LE(beyond(pill, p).most, least + 1e-12);
+      EXPECT_GE(beyond(pill, p).least, least - 0.5 * 5.0 / 2000);
+    }
+  }
+}
+
+TEST(Csg, IsEmptyWhereNothingIsLeft) {
+  const auto empty = [](Operation operation, const Geometry& first, const Geometry& second) {
+    const Shape shape = csg_shape(operation, {operand(first), operand(second)});
+    const bool found = is_empty(std::get<CsgShape>(shape.geometry), glm::dmat4(1));
+    EXPECT_EQ(bounds_of(shape).empty(), found);
+    return found;
+  };
+  const CapsulesShape pill{{{-1, 0, 0}}, {{1, 0, 0}}, {0.5F}, {0.4F}, {}};
+  EXPECT_TRUE(empty(Operation::set_difference, box(dvec3(-0.2), dvec3(0.2)), pill));
+  EXPECT_TRUE(empty(Operation::set_difference, pill, box(dvec3(-1.6), dvec3(1.6))));
+  EXPECT_FALSE(empty(Operation::set_difference, pill, box(dvec3(-1.6), dvec3(1.3, 2, 2))));
+  EXPECT_FALSE(empty(Operation::set_difference, SphereShape{1}, pill));
+  for (const int axis : {0, 1, 2}) {
+    dvec3 apart(0.5), beside(0.5);
+    apart[axis] = 2;
+    beside[axis] = 0.9;
+    const BoxShape unit = box(dvec3(0), dvec3(1));
+    EXPECT_TRUE(empty(Operation::set_intersection, unit, box(apart, apart + 1.0)));
+    EXPECT_FALSE(empty(Operation::set_intersection, unit, box(beside, beside + 1.0)));
+  }
+  // Their boxes meet, they do not.
+  EXPECT_TRUE(empty(Operation::set_intersection, SphereShape{1}, box(dvec3(0.7), dvec3(1.7))));
 }
 
 }  // namespace

@@ -75,6 +75,7 @@ glm::dvec3 surface_beyond(const Type& solid, const glm::dvec3& inside, const glm
   while (beyond(solid, inside + high * along).most < 0) high *= 2;
   for (int i = 0; i < 200; ++i) {
     const double middle = 0.5 * (low + high);
+    if (middle <= low || middle >= high) break;
     (beyond(solid, inside + middle * along).most > 0 ? high : low) = middle;
   }
   const glm::dvec3 p = inside + low * along;

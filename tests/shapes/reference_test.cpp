@@ -246,6 +246,35 @@ TEST(Reference, PartsOfSpheresAndTubes) {
   EXPECT_NEAR(value(tube, {3, 0, 4}), std::sqrt(8), rounding);
 }
 
+TEST(Reference, MarginsOfOpenShapesAreDistancesToTheirBoundary) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> within(-1.3, 1.3);
+  const PartialDisk sector{0, 1, 0.4, 2};
+  for (int i = 0; i < 200; ++i) {
+    const dvec3 p(within(random), within(random), 0);
+    const double rho = glm::length(p), phi = std::atan2(p.y, p.x);
+    const bool between = phi >= 0 && phi <= 2;
+    double distance = HUGE_VAL;
+    for (const double angle : {0.0, 2.0}) {
+      const dvec3 along(std::cos(angle), std::sin(angle), 0);
+      distance =
+          std::min(distance, glm::length(p - std::clamp(glm::dot(p, along), 0.4, 1.0) * along));
+    }
+    for (const double arc : {0.4, 1.0})
+      if (between) distance = std::min(distance, std::abs(rho - arc));
+    const bool inside = between && rho >= 0.4 && rho <= 1;
+    EXPECT_NEAR(margin(sector, {p - dvec3(0, 0, 3), {0, 0, 1}}), inside ? distance : -distance,
+                1e-12)
+        << p.x << ", " << p.y;
+  }
+  // Along (1, 1, 0) z = x y folds at the parabola z = -a^2 / 2, with a the place across the ray.
+  const Bilinear saddle{{-1, -1, 1}, {1, -1, -1}, {-1, 1, -1}, {1, 1, 1}};
+  for (int i = 0; i < 200; ++i) {
+    const double z = std::uniform_real_distribution<double>(-0.9, 0.35)(random);
+    EXPECT_NEAR(margin(saddle, {{-2, -2, z}, {1, 1, 0}}), z, 1e-9);
+  }
+}
+
 TEST(Reference, BilinearPatches) {
   // z = x y: two crossings of a line along (1, -1) below, where x y is concave.
   const Bilinear saddle{{-1, -1, 1}, {1, -1, -1}, {-1, 1, -1}, {1, 1, 1}};

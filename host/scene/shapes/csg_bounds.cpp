@@ -69,7 +69,7 @@ class Search {
 
  private:
   enum class Side { outside, inside, unknown };
-  static constexpr int effort = 2048;
+  static constexpr int effort = 512;
 
   void add(const CsgShape& csg, const glm::dmat4& world_from_csg, bool subtracted) {
     for (std::size_t i = 0; i < csg.operands.size(); ++i) {
@@ -139,6 +139,7 @@ class Search {
     const Beyond at_center = beyond(center);
     if (at_center.least > reach) return Side::outside;
     if (at_center.most > 0) return Side::unknown;
+    if (at_center.most <= -reach) return Side::inside;
     // A convex solid that contains the corners contains the box. Only subtracted solids need to be
     // known to contain it.
     if (!solid.subtracted) return Side::unknown;
@@ -152,23 +153,28 @@ class Search {
   std::vector<Solid> solids_;
 };
 
+constexpr double first_share = 1.0 / 16;
+
+/// Returns whether a search of the solid within `bounds` can be made and may find less.
+bool can_tighten(const CsgShape& csg, const Bounds& bounds) {
+  if (csg.operation == CsgShape::Operation::set_union || moves(csg))
+    return false;  // a union of tight bounds is tight
+  const dvec3 size = bounds.max - bounds.min;
+  std::size_t solids = 0;
+  for (const auto& operand : csg.operands) solids += solid_count(*operand);
+  return std::min({size.x, size.y, size.z}) > 0 && std::isfinite(glm::length(size)) &&
+         solids <= max_csg_operands;
+}
+
 /// Tightens `bounds`, which contain the csg solid under `world_from_csg`. Each side moves inward to
-/// the first part, 1/32 of the box long in each direction, that is not shown to be outside, and
-/// then again with 1/128 of the new box, or until a fixed effort is spent (2048 parts per side).
+/// the first part, 1/16 of the box long in each direction, that is not shown to be outside, and
+/// then again with 1/64 of the new box, or until a fixed effort is spent (512 parts per side).
 /// Where the surfaces meet the side at a slant, a few parts remain between. The bounds never cut
 /// the solid, and are empty when no part of the box can contain any of it.
 Bounds tightened(const CsgShape& csg, const glm::dmat4& world_from_csg, const Bounds& bounds) {
-  const dvec3 size = bounds.max - bounds.min;
-  const double least = std::min({size.x, size.y, size.z});
-  if (least < 0) return {};
-  if (csg.operation == CsgShape::Operation::set_union)
-    return bounds;  // a union of tight bounds is tight
-  std::size_t solids = 0;
-  for (const auto& operand : csg.operands) solids += solid_count(*operand);
-  if (!(least > 0) || !std::isfinite(glm::length(size)) || solids > max_csg_operands) return bounds;
   const Search search(csg, world_from_csg);
   Box box{bounds.min, bounds.max};
-  for (const double share : {1.0 / 32, 1.0 / 128})
+  for (const double share : {first_share, 1.0 / 64})
     for (int axis = 0; axis < 3; ++axis) {
       const double high = search.reach(box, axis, 1, share),
                    low = -search.reach(box, axis, -1, share);
@@ -208,9 +214,8 @@ Bounds swept_bounds(const Geometry& geometry, const TransformKeys& keys, const g
   return {out.min - pad, out.max + pad};
 }
 
-}  // namespace
-
-Bounds bounds_under(const CsgShape& csg, const glm::dmat4& m) {
+/// Returns the bounds that follow from those of the operands; empty where those do not meet.
+Bounds bounds_of_operands(const CsgShape& csg, const glm::dmat4& m) {
   Bounds bounds;
   for (std::size_t i = 0; i < csg.operands.size(); ++i) {
     if (csg.operation == CsgShape::Operation::set_difference && i > 0) break;
@@ -225,7 +230,23 @@ Bounds bounds_under(const CsgShape& csg, const glm::dmat4& m) {
       bounds.extend(own);
     }
   }
-  return moves(csg) ? bounds : tightened(csg, m, bounds);
+  const dvec3 size = bounds.max - bounds.min;
+  return std::min({size.x, size.y, size.z}) >= 0 ? bounds : Bounds();
+}
+
+}  // namespace
+
+Bounds bounds_under(const CsgShape& csg, const glm::dmat4& m) {
+  const Bounds bounds = bounds_of_operands(csg, m);
+  if (bounds.empty()) return {};
+  return can_tighten(csg, bounds) ? tightened(csg, m, bounds) : bounds;
+}
+
+bool is_empty(const CsgShape& csg, const glm::dmat4& m) {
+  const Bounds bounds = bounds_of_operands(csg, m);
+  if (bounds.empty()) return true;
+  return can_tighten(csg, bounds) &&
+         Search(csg, m).reach({bounds.min, bounds.max}, 0, 1, first_share) == -INFINITY;
 }
 
 }  // namespace caplet

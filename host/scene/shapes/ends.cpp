@@ -52,7 +52,15 @@ Beyond beyond_ends(const dvec3& p, const dvec3& p0, const dvec3& p1, const End& 
     const double taper = (a.radius - b.radius) / l, c = 1 / std::sqrt(1 + taper * taper);
     return Beyond::exactly(std::max({-y, y - l, c * (rho - a.radius + taper * y)}));
   }
-  return beyond_hull(y, rho, l, a, b);
+  if (!a.round || !b.round) return beyond_hull(y, rho, l, a, b);
+  // Of the balls at share s of the axis, the one whose surface is the nearest: the distance is
+  // convex in s, and its derivative is 0 where the ball is seen at the hull's slope.
+  const double slope = (a.radius - b.radius) / l;
+  const double s = std::abs(slope) < 1
+                       ? std::clamp((y - rho * slope / std::sqrt(1 - slope * slope)) / l, 0.0, 1.0)
+                   : slope > 0 ? 0.0
+                               : 1.0;
+  return Beyond::exactly(std::hypot(rho, y - s * l) - ((1 - s) * a.radius + s * b.radius));
 }
 
 /// Returns the bounds of balls or of disks with normal n across the axis, whose image has half
