@@ -372,6 +372,30 @@ void Scene::set_mesh(std::uint32_t shape, const MeshArrays& mesh) {
   data.as_a_whole_in_view();
 }
 
+void Scene::set_operand_motion(std::uint32_t shape, std::size_t operand,
+                               const std::vector<double>& times,
+                               std::span<const Transform> transforms) {
+  const ShapeAt place = place_of(data_->model, shape);
+  const auto* found = std::get_if<CsgShape>(&shape_at(data_->model, place).geometry);
+  if (!found) throw InputError(fmt::format("shape {} is not a csg", shape));
+  if (operand >= found->operands.size())
+    throw InputError(fmt::format("there is no operand {}, of {} counted from 0", operand,
+                                 found->operands.size()));
+  CsgShape csg = *found;
+  csg.motions.resize(csg.operands.size());
+  const TransformKeys& keys = csg.motions[operand] = keys_of(times, transforms);
+  if (!keys.empty()) {
+    auto moved = std::make_shared<Shape>(*csg.operands[operand]);
+    moved->world_from_object = keys.front().matrix;
+    csg.operands[operand] = std::move(moved);
+  }
+  if (std::ranges::all_of(csg.motions, &TransformKeys::empty)) csg.motions.clear();
+  Shape other = with_geometry(data_->model, place, std::move(csg));
+  Data& data = changed();
+  const_cast<Shape&>(shape_at(data.model, place)) = std::move(other);
+  data.as_a_whole_in_view();
+}
+
 std::uint32_t Scene::shape_in(const std::string& object, std::size_t index) const {
   const caplet::Scene& model = data_->model;
   const std::size_t count =

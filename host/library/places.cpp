@@ -22,6 +22,15 @@ Transform to_public(const glm::dmat4& m) {
   return rows;
 }
 
+TransformKeys keys_of(const std::vector<double>& times, std::span<const Transform> transforms) {
+  if (times.size() != transforms.size())
+    throw InputError(
+        fmt::format("there are {} times and {} transforms", times.size(), transforms.size()));
+  TransformKeys out;
+  for (std::size_t i = 0; i < times.size(); ++i) out.push_back({times[i], to_model(transforms[i])});
+  return out;
+}
+
 ShapeAt place_of(const caplet::Scene& scene, std::uint32_t shape) {
   std::size_t left = shape;
   if (left < scene.shapes.size()) return {{}, shape};

@@ -39,16 +39,6 @@ const T& at(const std::vector<T>& values, std::size_t number, const char* what) 
 
 glm::dvec3 to_vector(const std::array<double, 3>& v) { return {v[0], v[1], v[2]}; }
 
-/// Throws InputError where there are not as many times as transforms, or one alone.
-TransformKeys keys_of(const std::vector<double>& times, std::span<const Transform> transforms) {
-  if (times.size() != transforms.size())
-    throw InputError("there are " + std::to_string(times.size()) + " times and " +
-                     std::to_string(transforms.size()) + " transforms");
-  TransformKeys out;
-  for (std::size_t i = 0; i < times.size(); ++i) out.push_back({times[i], to_model(transforms[i])});
-  return out;
-}
-
 }  // namespace
 
 std::uint64_t next_serial() {

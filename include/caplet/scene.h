@@ -107,6 +107,11 @@ class CAPLET_API Scene {
   Transform instance(std::uint32_t instance) const;
   /// Puts an instance elsewhere; its motion goes along.
   void set_instance(std::uint32_t instance, const Transform& to);
+  /// Moves an operand of a csg shape while the shutter of the camera is open: `transforms` at
+  /// `times` (seconds, rising), two or more, map its space to that of the csg; between them it
+  /// moves as an instance does, about its origin. Without times it rests where it is.
+  void set_operand_motion(std::uint32_t shape, std::size_t operand,
+                          const std::vector<double>& times, std::span<const Transform> transforms);
   /// Moves an instance while the shutter of the camera is open: it is at `transforms` at `times`
   /// (seconds, rising), two or more; between them it shifts, turns and stretches evenly, as pbrt's
   /// do, and `pivot`, a point of the object, goes straight on. Without times it rests.

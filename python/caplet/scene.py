@@ -157,6 +157,14 @@ class Shape:
             ends[:, 0], ends[:, 1], materials if len(materials) else None, u if len(u) else None, times.tolist())
         self._scene._changed()
 
+    def animate_operand(self, operand, times, transforms) -> None:
+        """Moves an operand of a csg, counted from 0: transforms (n, 4, 4) at n times (seconds, rising), two or more, take its space to the csg's.
+
+        Between them it moves as `Scene.animate_instance` has it, about its origin. With empty lists it rests where it is at the first time.
+        """
+        self._scene._native.set_operand_motion(self.number, operand, *Scene._keys(times, transforms))
+        self._scene._changed()
+
     def set(self, p0=None, p1=None, radius=None, u=None) -> None:
         """Other capsules: what is not given stays. Shapes as in Scene.add_capsules; their number may change with all three (materials and u,
         where it is not given, then go)."""

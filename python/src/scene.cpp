@@ -365,6 +365,11 @@ void bind_statements(nb::class_<HeldScene>& held) {
                       const Array& transforms, const std::array<double, 3>& pivot) {
              scene.set_instance_motion(number, times, transforms_of(transforms), pivot);
            }))
+      .def("set_operand_motion",
+           in_turn([](Scene& scene, std::uint32_t shape, std::size_t operand,
+                      const std::vector<double>& times, const Array& transforms) {
+             scene.set_operand_motion(shape, operand, times, transforms_of(transforms));
+           }))
       .def("set_shutter", in_turn(&Scene::set_shutter))
       .def("set_camera_motion",
            in_turn([](Scene& scene, const std::vector<double>& times, const Array& transforms) {

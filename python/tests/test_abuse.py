@@ -98,12 +98,14 @@ ANYTHING = {"None": None, "text": "text", "object": object(), "ragged": [[1], [2
             "null": "a\0b", "list of lists": [[[[]]]], "nothing": (), "bool": True}
 
 
-def row():
+def row(with_csg=False):
     scene = caplet.Scene()
     scene.add_capsules([[0, 0, 0], [2, 0, 0]], [[0, 1, 0], [2, 1, 0]], 0.25, name="row")
     scene.add("box", p0=(-1, -1, -1), p1=(1, 1, 1), object="crate")
     scene.add("sphere", radius=0.5, object="ball")
     scene.add_instances("crate", [np.eye(4)])
+    if with_csg:  # not in batches
+        scene.add_csg("difference", ["crate", "ball"], name="hole")
     scene.add("disk", radius=1, emission={"L": (1, 1, 1)}, name="lamp")
     scene.add_light(lights.point(from_=(0, 9, 0)))
     scene.size, scene.spp = (4, 3), 1
@@ -131,6 +133,7 @@ OF = {  # where the same name is something else
     ("from_nibabel", "radius"): 0.1, ("from_sonata", "radius"): 0.1, ("from_neuroml", "radius"): 0.1, ("from_neuroml", "cell"): "c",
     ("from_sonata", "ids"): [0, 1], ("from_sonata", "color"): [[0.1, 0.2, 0.3], [0.4, 0.5, 0.6], [0.7, 0.8, 0.9]],
     ("add", "radius"): 0.5, ("add_molecular_surface", "probe"): 1.4, ("add_many", "radius"): 0.5, ("animate_instance", "transforms"): [np.eye(4)] * 2, ("animate_camera", "transforms"): [np.eye(4)] * 2,
+    ("animate_operand", "operand"): 1, ("animate_operand", "transforms"): [np.eye(4)] * 2,
     ("render_batch", "camera"): sensors.Pinhole(4, 3, fx=4), ("render_batch", "moving"): [0, 1], ("render_batch", "mode"): "rays", ("render_batch", "layers"): ["depth"],
     ("animate", "p0"): [THREE[:2]] * 2, ("animate", "p1"): np.add([THREE[:2]] * 2, 1), ("animate", "radius"): [[0.1, 0.2]] * 2,
     ("animate", "vertices"): None, ("animate", "normals"): None,
@@ -151,7 +154,7 @@ def entries():
         yield name, lambda scene, given, thing=thing: thing(**given), inspect.signature(thing).parameters
     for holder in ("Scene", "Shape"):
         for name, method in vars(getattr(caplet, holder)).items():
-            of = (lambda scene: scene) if holder == "Scene" else lambda scene, name=name: scene["lamp" if name == "set_emission" else "row"]
+            of = (lambda scene: scene) if holder == "Scene" else lambda scene, name=name: scene[{"set_emission": "lamp", "animate_operand": "hole"}.get(name, "row")]
             if isinstance(method, property) and method.fset:
                 yield f"{holder}.{name}", lambda scene, given, of=of, name=name: setattr(of(scene), name, given["to"]), {
                     "to": inspect.Parameter("to", inspect.Parameter.POSITIONAL_OR_KEYWORD)}
@@ -236,7 +239,7 @@ def test_every_entry(entry, tmp_path):
             given = {one: good(entry, one) for one in needed | quick}
             given[name] = value
             try:
-                worked += trial(row(), call, given)
+                worked += trial(row(with_csg=short == "animate_operand"), call, given)
             except BaseException as problem:
                 pytest.fail(f"{entry}({name}={way}): {type(problem).__name__}: {problem}")
         # Of numbers at least those of other types and orders are taken.

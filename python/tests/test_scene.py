@@ -573,6 +573,41 @@ def test_instances_and_cameras_move(tmp_path):
         moving.animate_instance(7, [0, 1], [right, right])
 
 
+def test_operands_of_csg_move(tmp_path):
+    scene = caplet.Scene()
+    scene.add("box", p0=(-2, -2, -2), p1=(2, 2, 2), object="block")
+    scene.add("sphere", radius=0.5, object="ball")
+    left, right = np.eye(4), np.eye(4)
+    left[0, 3], right[0, 3] = -1, 1
+    shape = scene.add_csg("intersection", ["block", "ball"], material=materials.diffuse(reflectance=0), emission={"L": (1, 1, 1)})
+    scene.camera = cameras.orthographic(eye=(0, 0, 5), target=(0, 0, 0), screenwindow=(-2, 2, -2, 2))
+    render = {"spp": 256, "size": (16, 16)}
+    still = caplet.render(scene, **render).rgb[..., 1]
+    shape.animate_operand(1, [0, 1], [left, right])
+    image = caplet.render(scene, **render).rgb[..., 1]
+    # The ball covers pi / 64 of the window all the time, and the middle's pixel while half a chord to both sides passes at 2 a second.
+    assert abs(image.mean() - np.pi / 64) < 0.002 and abs(still.mean() - np.pi / 64) < 0.002
+    assert abs(image[8, 8] - math.sqrt(0.25 - 0.125**2)) < 0.05 and image[8, 4] > 0.1 and still[8, 4] == 0
+    # What a ray meets at a time is the ball there.
+    for time in (0, 0.25, 1):
+        hits = caplet.trace(scene, [(2 * time - 1, 0, 9)], [(0, 0, -1)], time=time)
+        assert abs(hits["t"][0] - 8.5) < 1e-6
+    scene.save(tmp_path / "moving.pbrt")
+    assert same_pictures(scene, caplet.load(tmp_path / "moving.pbrt"))
+    # Another one moves beside it; and each rests where it was first.
+    shape.animate_operand(0, [0, 1], [np.diag([1, 1, 0.05, 1]), np.diag([1, 1, 0.1, 1])])
+    assert abs(caplet.trace(scene, [(1, 0, 9)], [(0, 0, -1)], time=1)["t"][0] - 8.8) < 1e-6
+    shape.animate_operand(0, [], [])
+    shape.animate_operand(1, [], [])
+    assert np.allclose(caplet.trace(scene, [(-1, 0, 9), (0, 0, 9)], [(0, 0, -1)] * 2)["t"], [8.9, np.inf])
+    for wrong, word in (((2, [0, 1], [left, right]), "operand 2, of 2"), ((1, [0, 1], [left]), "2 times and 1"), ((1, [1, 0], [left, right]), ""),
+                        ((1, [0, 1], [left, left @ np.diag([-1, 1, 1, 1])]), "")):
+        with pytest.raises(caplet.InputError, match=word):
+            shape.animate_operand(*wrong)
+    with pytest.raises(caplet.InputError, match="not a csg"):
+        scene.add("sphere", radius=1).animate_operand(0, [0, 1], [left, right])
+
+
 def test_vertices_of_meshes_move(tmp_path):
     scene = caplet.Scene()
     square = np.float32([[-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]])

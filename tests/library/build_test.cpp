@@ -345,6 +345,34 @@ TEST_F(LibraryBuild, PickersCarryPointsWithInstances) {
   EXPECT_THROW(picker.carry(hits, 0, 1, points), caplet::InputError);
 }
 
+TEST_F(LibraryBuild, OperandsOfCsgMove) {
+  caplet::Scene scene;
+  scene.add_shape("sphere", {{"radius", 2.0}}, {.object = "ball"});
+  scene.add_shape("sphere", {{"radius", 1.0}}, {.object = "hole"});
+  const std::uint32_t csg =
+      scene.add_shape("csg", {{"operation", std::string("difference")},
+                              {"operands", std::vector<std::string>{"ball", "hole"}}});
+  caplet::Transform aside = caplet::identity, above = caplet::identity;
+  aside[3] = 9;   // x
+  above[11] = 2;  // z
+  scene.set_operand_motion(csg, 1, {0, 1}, std::vector{above, aside});
+  scene.present();
+  const auto first_t = [&](double time) {
+    caplet::Picker picker(scene, test_device());
+    const auto hit = picker.nearest(caplet::Ray{{0, 0, 9}, {0, 0, -1}, 0, 100, time});
+    return hit ? hit->t : 0;
+  };
+  EXPECT_FLOAT_EQ(first_t(0), 8);
+  EXPECT_FLOAT_EQ(first_t(1), 7);
+  scene.set_operand_motion(csg, 1, {}, {});
+  EXPECT_FLOAT_EQ(first_t(1), 8);  // it rests where it was at first
+  EXPECT_THROW(scene.set_operand_motion(csg, 2, {}, {}), caplet::InputError);
+  EXPECT_THROW(scene.set_operand_motion(csg, 0, {0, 1}, std::vector{aside}), caplet::InputError);
+  EXPECT_THROW(scene.set_operand_motion(csg, 0, {1, 0}, std::vector{aside, above}),
+               caplet::InputError);
+  EXPECT_THROW(scene.set_operand_motion(scene.shape_in("ball", 0), 0, {}, {}), caplet::InputError);
+}
+
 TEST_F(LibraryBuild, CrossingsInNumbersAreTheHits) {
   caplet::Scene scene = three_balls();
   scene.add_shape(
