@@ -21,6 +21,7 @@
 #include "support/data.h"
 #include "support/kinds.h"
 #include "support/test_device.h"
+#include "verify/bounds.h"
 #include "verify/cases.h"
 #include "verify/rays.h"
 #include "verify/torture.h"
@@ -552,6 +553,28 @@ TEST(Cases, BadOnesAreRefused) {
       "taken");
   EXPECT_THROW(load_cases(folder / "none"), InputError);
   EXPECT_THROW(load_cases(test::temporary_folder()), InputError);
+}
+
+// The plane through three points turns by more the nearer they lie to a line, whichever side is the
+// longest.
+TEST(Bounds, TiltOfTrianglesGrowsAsTheirAltitudeShrinks) {
+  const auto tilt = [](double height, std::size_t first) {
+    const glm::vec3 corners[] = {{0, 0, 0}, {64, 0, 0}, {64, static_cast<float>(height), 0}};
+    TriangleMeshShape mesh;
+    for (std::size_t i = 0; i < 3; ++i) mesh.positions.push_back(corners[(first + i) % 3]);
+    mesh.triangles = {{0, 1, 2}};
+    Scene scene;
+    scene.materials.emplace_back();
+    scene.shapes.emplace_back().geometry = std::move(mesh);
+    const reference::SceneReference reference(scene);
+    return Bounds(reference).tilt(0);
+  };
+  for (const std::size_t first : {std::size_t{0}, std::size_t{1}, std::size_t{2}}) {
+    EXPECT_NEAR(tilt(1e-5, first) / tilt(1e-3, first), 100, 1);
+    // Corners move by more than a rounding of their numbers, and by less than 128.
+    EXPECT_GT(tilt(1e-3, first), 64 * eps / 1e-3);
+    EXPECT_LT(tilt(1e-3, first), 128 * 64 * eps / 1e-3);
+  }
 }
 
 }  // namespace
