@@ -452,27 +452,45 @@ std::vector<Crossing> molecular_crossings(const MolecularPatch& patch, const Ray
 // Returns the distance between the patch and the places where a small shift of the line makes or
 // removes two crossings: where the carrier's value has a least or a greatest value on the line.
 double distance_to_touch(const Line& line, const MolecularPatch& patch) {
-  constexpr int samples = 512;
+  constexpr int samples = 512, more_samples = 64;
   const auto at = [&](double s) { return line.foot + s * line.unit; };
   const auto f = [&](double s) { return carrier_value(patch, at(s)); };
-  std::vector<double> places = places_towards_axis(line, patch);
-  for (int i = 1; i < samples; ++i) places.push_back((2.0 * i / samples - 1) * line.reach);
-  std::sort(places.begin(), places.end());
   double least = HUGE_VAL;
-  for (std::size_t i = 1; i + 1 < places.size(); ++i) {
-    double s = places[i], here = f(s);
-    const double before = f(places[i - 1]), after = f(places[i + 1]);
-    const double sign = here <= before && here <= after   ? 1
-                        : here >= before && here >= after ? -1
-                                                          : 0;
-    if (sign == 0) continue;
-    const double step = places[i + 1] - places[i - 1];
+  const auto refine = [&](double s, double here, double sign, double step) {
     for (double width = 0.25 * step; width > 1e-9 * step; width *= 0.5)
       for (const double there : {s - width, s + width})
         if (const double value_there = f(there); sign * value_there < sign * here)
           s = there, here = value_there;
     least = std::min(least, value(patch, at(s)));
-  }
+  };
+  const auto search = [&](const auto& self, const std::vector<double>& places, bool again) -> void {
+    std::vector<double> values;
+    for (const double s : places) values.push_back(f(s));
+    const auto slope = [&](std::size_t i) {
+      return i > 0 && i + 1 < places.size()
+                 ? std::abs((values[i + 1] - values[i - 1]) / (places[i + 1] - places[i - 1]))
+                 : HUGE_VAL;
+    };
+    for (std::size_t i = 1; i + 1 < places.size(); ++i) {
+      const double here = values[i], before = values[i - 1], after = values[i + 1],
+                   step = places[i + 1] - places[i - 1];
+      if (here <= before && here <= after)
+        refine(places[i], here, 1, step);
+      else if (here >= before && here >= after)
+        refine(places[i], here, -1, step);
+      // Where a line nearly follows the surface, a least and a greatest value may both lie between
+      // samples: the slope is small there.
+      if (!again || slope(i) > slope(i - 1) || slope(i) > slope(i + 1)) continue;
+      std::vector<double> between;
+      for (int k = 0; k <= more_samples; ++k)
+        between.push_back(places[i - 1] + k * step / more_samples);
+      self(self, between, false);
+    }
+  };
+  std::vector<double> places = places_towards_axis(line, patch);
+  for (int i = 1; i < samples; ++i) places.push_back((2.0 * i / samples - 1) * line.reach);
+  std::sort(places.begin(), places.end());
+  search(search, places, true);
   return least;
 }
 

@@ -275,6 +275,25 @@ TEST(Reference, MarginsOfOpenShapesAreDistancesToTheirBoundary) {
   }
 }
 
+// Along this line the torus' value has a greatest and a least value 1/500 apart, both within 4e-9.
+TEST(Reference, LinesThatFollowATorusNearlyTouchIt) {
+  const MolecularPatch torus{{0, 0, 0},
+                             0.73492853722728346,
+                             0.9711319765310682,
+                             false,
+                             {},
+                             {0, 0, 1},
+                             {1, 0, 0},
+                             full_turn,
+                             3.34,
+                             3.8,
+                             {0, 0, 0},
+                             1.8};
+  const dvec3 origin(0.09268526, 0.30497208, -0.13677463),
+      direction(-0.7600724, -0.05923139, -0.64713336);
+  EXPECT_LE(std::abs(margin(torus, {origin, direction})), 1e-7);
+}
+
 TEST(Reference, BilinearPatches) {
   // z = x y: two crossings of a line along (1, -1) below, where x y is concave.
   const Bilinear saddle{{-1, -1, 1}, {1, -1, -1}, {-1, 1, -1}, {1, 1, 1}};
