@@ -19,14 +19,20 @@ static inline LocalSurface surface_torus_patch(const SurfaceQuery* q, __global c
   const float3 spoke = unit_or(dot(w, start) * start + dot(w, side) * side, start);
   const float3 tube = q->x - (center + major * spoke);
   LocalSurface s;
-  const float3 outward = unit_or(tube, -q->fallback);  // of the tube
+  float3 outward = unit_or(tube, -q->fallback);  // of the tube
+  float height = dot(outward, axis), out = dot(outward, spoke);
+  // A tube wider than its circle ends at the axis, which a rounded x may lie beyond.
+  if (minor * out < -major) {
+    out = -major / minor;
+    height = copysign(sqrt(1.0f - out * out), height);
+    outward = out * spoke + height * axis;
+  }
   s.ng = s.ns = -outward;
   s.p = center + (major * spoke + minor * outward);
   const float x = dot(spoke, start), y = dot(spoke, side);
   float phi = atan2(y, x);
   if (phi < 0.0f) phi += 2.0f * CAPLET_PI;
   if (phi - phi_max > 2.0f * CAPLET_PI - phi) phi = 0.0f;  // beyond an end: the nearer one
-  const float height = dot(outward, axis), out = dot(outward, spoke);
   float theta = atan2(height, out);
   if (theta < 0.0f) theta += 2.0f * CAPLET_PI;
   s.uv = (float2)(share_of(phi, phi_max), share_of(theta - theta_min, theta_max - theta_min));

@@ -458,7 +458,7 @@ TEST(Csg, BoundsAreTight) {
   }
 }
 
-// Caps of balls, cut off by a plane of a box: its side moves to 1/32 of the box, those around the
+// Caps of balls, cut off by a plane of a box: its side moves to 1/64 of the box, those around the
 // rim to 1/16.
 TEST(Csg, BoundsOfWhatIsCutOff) {
   for (const double at : {-0.4, 0.1, 0.7}) {
@@ -469,7 +469,7 @@ TEST(Csg, BoundsOfWhatIsCutOff) {
       const Shape cap = csg_shape(Operation::set_difference, {ball, cut});
       const Bounds bounds = bounds_of(cap);
       EXPECT_LE(bounds.min.x, at);
-      EXPECT_GE(bounds.min.x, at - 2.0 / 32);
+      EXPECT_GE(bounds.min.x, at - 2.0 / 64);
       EXPECT_GE(bounds.max.x, 1);
       EXPECT_LE(bounds.max.x, 1 + 2.0 / 64);
       for (const int side : {1, 2}) {

@@ -488,6 +488,48 @@ TEST(Comparison, SidesOfAFoldMayComeInEitherOrder) {
   EXPECT_EQ(compared, 2);
 }
 
+// Rays through torture sets on which device and reference once disagreed.
+TEST(Verify, KeptRaysAgree) {
+  struct KeptRay {
+    const char* what;
+    std::uint64_t seed, round;
+    RayRecord ray;
+  };
+  const KeptRay kept[] = {{"follows a torus, with three crossings in 1/500 of its size",
+                           0,
+                           0,
+                           {.ox = -0x1.036c4p-4f,
+                            .oy = -0x1.c2374ep-4f,
+                            .oz = -0x1.944bb2p-5f,
+                            .t_min = 0,
+                            .dx = -0x1.f10c8p-12f,
+                            .dy = 0x1.b77ab8p-11f,
+                            .dz = -0x1.24aa08p-12f,
+                            .t_max = HUGE_VALF}},
+                          {"comes from far to where a torus ends at its axis",
+                           0,
+                           2,
+                           {.ox = 0x1.8cbd32p+27f,
+                            .oy = -0x1.de29dcp+27f,
+                            .oz = -0x1.f13904p+22f,
+                            .t_min = 0,
+                            .dx = -0x1.16edecp-6f,
+                            .dy = 0x1.502cdep-6f,
+                            .dz = 0x1.5d933p-11f,
+                            .t_max = HUGE_VALF}}};
+  for (const KeptRay& one : kept) {
+    const Scene scene = torture_scene(one.seed, one.round);
+    SceneCheck check(scene, devices());
+    int compared = 0;
+    check.check(std::vector{one.ray}, [&](const SceneCheck::Checked& answer) {
+      for (const Disagreement& found : answer.outcomes[0].disagreements)
+        ADD_FAILURE() << one.what << ": " << found.text;
+      ++compared;
+    });
+    EXPECT_EQ(compared, 1);
+  }
+}
+
 TEST(Cases, KeepTheBitsOfTheirRays) {
   const auto folder = test::temporary_folder() / "cases";
   Failure failure;

@@ -69,7 +69,7 @@ class Search {
 
  private:
   enum class Side { outside, inside, unknown };
-  static constexpr int effort = 512;
+  static constexpr int effort = 2048;
 
   void add(const CsgShape& csg, const glm::dmat4& world_from_csg, bool subtracted) {
     for (std::size_t i = 0; i < csg.operands.size(); ++i) {
@@ -168,13 +168,13 @@ bool can_tighten(const CsgShape& csg, const Bounds& bounds) {
 
 /// Tightens `bounds`, which contain the csg solid under `world_from_csg`. Each side moves inward to
 /// the first part, 1/16 of the box long in each direction, that is not shown to be outside, and
-/// then again with 1/64 of the new box, or until a fixed effort is spent (512 parts per side).
+/// then again with 1/128 of the new box, or until a fixed effort is spent (2048 parts per side).
 /// Where the surfaces meet the side at a slant, a few parts remain between. The bounds never cut
 /// the solid, and are empty when no part of the box can contain any of it.
 Bounds tightened(const CsgShape& csg, const glm::dmat4& world_from_csg, const Bounds& bounds) {
   const Search search(csg, world_from_csg);
   Box box{bounds.min, bounds.max};
-  for (const double share : {first_share, 1.0 / 64})
+  for (const double share : {first_share, 1.0 / 128})
     for (int axis = 0; axis < 3; ++axis) {
       const double high = search.reach(box, axis, 1, share),
                    low = -search.reach(box, axis, -1, share);
