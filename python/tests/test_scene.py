@@ -588,7 +588,7 @@ def test_operands_of_csg_move(tmp_path):
     # The ball covers pi / 64 of the window all the time, and the middle's pixel while half a chord to both sides passes at 2 a second.
     assert abs(image.mean() - np.pi / 64) < 0.002 and abs(still.mean() - np.pi / 64) < 0.002
     assert abs(image[8, 8] - math.sqrt(0.25 - 0.125**2)) < 0.05 and image[8, 4] > 0.1 and still[8, 4] == 0
-    # What a ray meets at a time is the ball there.
+    # A ray meets the ball where it is at the ray's time.
     for time in (0, 0.25, 1):
         hits = caplet.trace(scene, [(2 * time - 1, 0, 9)], [(0, 0, -1)], time=time)
         assert abs(hits["t"][0] - 8.5) < 1e-6

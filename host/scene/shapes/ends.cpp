@@ -53,7 +53,7 @@ Beyond beyond_ends(const dvec3& p, const dvec3& p0, const dvec3& p1, const End& 
     return Beyond::exactly(std::max({-y, y - l, c * (rho - a.radius + taper * y)}));
   }
   if (!a.round || !b.round) return beyond_hull(y, rho, l, a, b);
-  // Of the balls at share s of the axis, the one whose surface is the nearest: the distance is
+  // The hull's distance is the least one of its balls, at shares s of the axis. Their distance is
   // convex in s, and its derivative is 0 where the ball is seen at the hull's slope.
   const double slope = (a.radius - b.radius) / l;
   const double s = std::abs(slope) < 1
