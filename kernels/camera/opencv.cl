@@ -41,6 +41,7 @@ static inline int opencv_is_folded(const OpencvDistorted* of) {
 
 // Inverts opencv_distorted by Newton's method, in steps that stay on this side of a fold.
 static inline float2 opencv_undistorted(__global const CameraRecord* camera, float2 place) {
+  if (all(vload8(0, camera->distortion) == (float8)(0.0f))) return place;
   float2 at = (float2)(0.0f);
   OpencvDistorted now = opencv_distorted(camera, at);
   for (int i = 0; i < 24; ++i) {
