@@ -6,8 +6,8 @@
 usage: beside_fields.py CAPLET DATA OUT [NAME...]
 
 Left is Caplet's picture, right the other program's, of the same file at the same size: PyMOL (Debian's package `pymol`), MuJoCo's own
-renderer, VTK by PyVista, and FURY. Needs Open Image Denoise, PyPI's mujoco, pyvista, fury, nibabel and pillow, OSMesa, and a display,
-as `xvfb-run -a` makes one. Prints the seconds that each command takes.
+renderer, VTK by PyVista, and FURY. Needs Open Image Denoise, PyPI's mujoco, pyvista, 'fury<2' (later ones draw by
+WebGPU), nibabel and pillow, OSMesa, and a display, as `xvfb-run -a` makes one. Prints the seconds that each command takes.
 """
 import os
 import pathlib
@@ -104,6 +104,8 @@ def neuron(program, data, ours, theirs):
 def streamlines(program, data, ours, theirs):
     import fury
     import nibabel
+    if int(fury.__version__.split(".")[0]) >= 2:
+        raise SystemExit(f"FURY before 2 is needed (pip install 'fury<2'), not {fury.__version__}")
     file = data / "fibres/streamlines/tracks300.trk"
     timed("caplet, streamlines", caplet, program, file, ours, "--view", "right", "--background", "black", "--radius", "0.4")
 
