@@ -186,7 +186,7 @@ def cell(figures):
         return "**fails**"
     if "registers" not in figures:
         return "valid"
-    text = f"{figures['registers']} / {figures['stack']} / {figures['code'] / 1000:.0f}"
+    text = f"{figures['registers']}/{figures['stack']}/{figures['code'] / 1000:.0f}"
     return text + (f", {figures['scalar spill']} scalars spilled" if figures.get("scalar spill") else "")
 
 

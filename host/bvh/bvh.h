@@ -49,7 +49,7 @@ struct Tree {
 /// No path of a tree is longer than this, whatever the boxes: the builder splits at the median once
 /// the surface area heuristic has used up its share, so that the levels left always suffice. This
 /// holds for up to 2^31 references.
-inline constexpr int max_depth = 40;
+inline constexpr int max_depth = 39;
 
 /// With 65,536 and more references, `quick` uses smaller cells of a grid, and uses them farther
 /// down, before it uses references one by one: a fifth less processor time for 0.4 to 0.8 % more

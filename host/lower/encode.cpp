@@ -20,7 +20,7 @@
 namespace caplet {
 namespace {
 
-static_assert(bvh::max_depth == CAPLET_TREE_DEPTH_MAX);
+static_assert(bvh::max_depth + 1 == CAPLET_TREE_DEPTH_MAX, "trees may be joined by one more node");
 static_assert(bvh::width == CAPLET_WIDTH);
 static_assert(shape_count <= 64, "sets of shapes, and six bits of leaf references, hold 64 kinds");
 

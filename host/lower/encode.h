@@ -16,8 +16,11 @@ namespace caplet {
 
 struct EncodedTree {
   std::uint32_t root = 0;            // node index
-  std::vector<std::uint32_t> slots;  // of each primitive given: HitRecord.slot
+  std::uint32_t intervals = 0;       // as in WorldRecord: what moves may have several trees
+  std::uint32_t roots_begin = 0;     // WorldRecord.roots
+  std::vector<std::uint32_t> slots;  // of each primitive given: HitRecord.slot, of one of the trees
   float min[3] = {0, 0, 0}, max[3] = {0, 0, 0};
+  std::vector<ReferenceBox> boxes{};  // of the trees of intervals, where they are several
   std::uint64_t nodes = 0;
   int depth = 0;
   double sah = 0;

@@ -13,8 +13,8 @@
 
 #include "base/check.h"
 #include "lower/all_rows.h"
-#include "lower/detail/encode.h"
 #include "lower/detail/flat_shapes.h"
+#include "lower/detail/interval_trees.h"
 #include "lower/detail/shapes.h"
 #include "lower/detail/textures.h"
 #include "lower/geometry_pages.h"
@@ -99,6 +99,7 @@ class GeometryLowering {
   LoweredGeometry run() {
     check_counts();
     LoweredGeometry lowered;
+    placed_ = &lowered.placed;
     lowered.world = lower_shapes(scene_.shapes, 0, nullptr);
     const auto object_number = narrow<std::uint32_t>(scene_.shapes.size());
     for (const Object& object : scene_.objects)
@@ -133,6 +134,8 @@ class GeometryLowering {
                    placed.motion ? &*placed.motion : nullptr, lowered.emitters);
     }
     out_.world.root = top.tree.root;
+    out_.world.intervals = top.tree.intervals;
+    out_.world.roots = top.tree.roots_begin;
     set_world_bounds(top.tree, out_.world);
     out_.primitive_count = 0;
     for (const auto& [kind, count] : count_primitives(scene_)) out_.primitive_count += count;
@@ -567,10 +570,36 @@ class GeometryLowering {
     }
   }
 
+  const PlacedSubtree& placed(const FlatPrimitive& instance) const {
+    return (*placed_)[instance.id];
+  }
+
+  /// Returns whether a primitive moves. Operands of csg shapes may, within the whole's box.
+  bool moves(const FlatPrimitive& p) const {
+    if (p.shape != shape_instance) return shape_has(p.shape, trait_moves);
+    return placed(p).motion.has_value() || placed(p).subtree->tree.intervals > 1;
+  }
+
+  /// Sets the kept box of one that does (MovingBoxes).
+  void set_box(FlatPrimitive& p, float begin, float end) const {
+    if (p.shape == shape_moving_capsule) {
+      set_moving_capsule_box(p, out_.leaves, begin, end);
+    } else if (p.shape == shape_moving_triangle) {
+      set_moving_triangle_box(p, out_.leaves, begin, end);
+    } else {
+      const PlacedSubtree& of = placed(p);
+      set_instance_box(*of.subtree, of.world_from_subtree, of.motion ? &*of.motion : nullptr, p,
+                       begin, end);
+    }
+  }
+
   void encode(Subtree& subtree) {
     const bool release = linking_.release && !out_.has_media();
-    subtree.tree = encode_tree({subtree.primitives, subtree.loose, subtree.linked}, release,
-                               out_.nodes, out_.leaves, kind_bits_);
+    const MovingBoxes boxes{
+        [&](const FlatPrimitive& p) { return moves(p); },
+        [&](FlatPrimitive& p, float begin, float end) { set_box(p, begin, end); }};
+    subtree.tree = encode_trees({subtree.primitives, subtree.loose, subtree.linked}, boxes, release,
+                                out_.nodes, out_.leaves, kind_bits_);
     out_.bvh_nodes += subtree.tree.nodes;
     out_.bvh_depth = std::max(out_.bvh_depth, subtree.tree.depth);
   }
@@ -629,7 +658,8 @@ class GeometryLowering {
   } asset_;                // of the shape before
   bool reversed_ = false;  // of the shape being appended
   std::uint32_t group_ = 0;
-  int kind_bits_ = 0;  // of leaf references
+  int kind_bits_ = 0;                                   // of leaf references
+  const std::vector<PlacedSubtree>* placed_ = nullptr;  // by instance, as far as there are
 };
 
 }  // namespace

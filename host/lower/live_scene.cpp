@@ -325,9 +325,16 @@ struct LiveScene::State {
            std::holds_alternative<InstanceEdit>(edit);
   }
 
-  /// Returns whether an instance moves, or did: then a displacement has everything lowered again.
-  bool instances_move() const {
-    return std::ranges::any_of(scene.instances,
+  /// Returns whether an instance moves, or did, or a tree has parts of the shutter's time: then a
+  /// displacement has everything lowered again.
+  bool is_moving() const {
+    const auto has_intervals = [](const LoweredShapes& shapes) {
+      return std::ranges::any_of(shapes.subtrees,
+                                 [](const Subtree& one) { return one.tree.intervals > 1; });
+    };
+    return has_intervals(lowering->geometry.world) ||
+           std::ranges::any_of(lowering->geometry.objects, has_intervals) ||
+           std::ranges::any_of(scene.instances,
                                [](const Instance& one) { return !one.motion.empty(); }) ||
            std::ranges::any_of(lowering->geometry.placed,
                                [](const PlacedSubtree& one) { return one.motion.has_value(); });
@@ -360,8 +367,7 @@ struct LiveScene::State {
     put_edit(scene, edit);
     try {
       const std::size_t spectra = flat().spectra.size(), tables = flat().spectrum_tables.size();
-      const bool followed = !parts_media(edit, before) &&
-                            !(is_displacement(edit) && instances_move()) &&
+      const bool followed = !parts_media(edit, before) && !(is_displacement(edit) && is_moving()) &&
                             std::visit(
                                 [&](const auto& one) {
                                   return follow(one, std::get<std::decay_t<decltype(one)>>(before));

@@ -41,6 +41,13 @@ Matrix value(const Cubic& cubic, double u) {
   return cubic[0] + u * (cubic[1] + u * (cubic[2] + u * cubic[3]));
 }
 
+/// Returns the part of a cubic from u = a to u = b, as a cubic over [0, 1].
+Cubic between(const Cubic& c, double a, double b) {
+  const double width = b - a;
+  return {value(c, a), width * (c[1] + a * (2.0 * c[2] + 3.0 * a * c[3])),
+          width * width * (c[2] + 3.0 * a * c[3]), width * width * width * c[3]};
+}
+
 /// Returns whether the matrices are the same up to half a rounding of floats: of the largest entry
 /// of a row's linear part, and of the translations.
 bool is_near(const Matrix& a, const Matrix& b) {
@@ -138,21 +145,31 @@ Matrix MotionPath::greatest(bool of_inverse) const {
   return out;
 }
 
-Bounds MotionPath::swept(const Bounds& box) const {
+Bounds MotionPath::swept(const Bounds& box, float begin, float end) const {
   Bounds out;
   if (box.empty()) return out;
-  for (const Segment& segment : segments_)
+  for (std::size_t i = 0; i < segments_.size(); ++i) {
+    const auto from = static_cast<float>(segments_[i].begin),
+               to = i + 1 < segments_.size() ? static_cast<float>(segments_[i + 1].begin) : 1.0f;
+    if (from > end || to < begin) continue;
+    // These are u as kernels round it, which rises with the time (motion_segment).
+    const auto u_at = [&](float time) {
+      return (time - from) * static_cast<float>(1 / (segments_[i].end - segments_[i].begin));
+    };
+    const Cubic part = between(segments_[i].matrix, double{u_at(std::max(begin, from))},
+                               double{u_at(std::min(end, to))});
     for (int corner = 0; corner < 8; ++corner) {
       const glm::dvec4 p(corner & 1 ? box.max.x : box.min.x, corner & 2 ? box.max.y : box.min.y,
                          corner & 4 ? box.max.z : box.min.z, 1);
       // A cubic lies within the hull of its Bezier points.
       std::array<glm::dvec3, 4> c;
-      for (std::size_t k = 0; k < 4; ++k) c[k] = glm::dvec3(segment.matrix[k] * p);
+      for (std::size_t k = 0; k < 4; ++k) c[k] = glm::dvec3(part[k] * p);
       out.extend(c[0]);
       out.extend(c[0] + c[1] / 3.0);
       out.extend(c[0] + 2.0 / 3 * c[1] + c[2] / 3.0);
       out.extend(c[0] + c[1] + c[2] + c[3]);
     }
+  }
   return out;
 }
 

@@ -41,8 +41,8 @@ class MotionPath {
   const glm::dmat4& start() const { return start_; }
   /// Returns bounds of the absolute values of the entries of the matrices, or of their inverses.
   glm::dmat4 greatest(bool of_inverse) const;
-  /// Returns a box of all places of a box that moves.
-  Bounds swept(const Bounds& box) const;
+  /// Returns a box of all places of a box that moves, from one time to another.
+  Bounds swept(const Bounds& box, float begin = 0, float end = 1) const;
   /// Appends the path as kernels read it; `with_inverse`: the inverse matrices first.
   void append(bool with_inverse, std::vector<float>& to) const;
 

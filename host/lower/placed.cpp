@@ -24,19 +24,30 @@ namespace {
 using Matrix = glm::dmat4;
 using glm::dvec3;
 
+/// Returns the box of a subtree in its space, from one time to another.
+Bounds subtree_bounds(const EncodedTree& tree, float begin, float end) {
+  Bounds out;
+  const auto extend = [&](const float* min, const float* max) {
+    out.extend({{min[0], min[1], min[2]}, {max[0], max[1], max[2]}});
+  };
+  const auto of_interval = [&](std::size_t i) {
+    return static_cast<float>(i) / static_cast<float>(tree.boxes.size());
+  };
+  for (std::size_t i = 0; i < tree.boxes.size(); ++i)
+    if (of_interval(i) < end && begin < of_interval(i + 1))
+      extend(tree.boxes[i].min, tree.boxes[i].max);
+  if (tree.boxes.empty()) extend(tree.min, tree.max);
+  return out;
+}
+
 /// Returns the bounds of the transformed shapes themselves while they are few; for large objects
 /// those of the tree's transformed box.
 Bounds placed_bounds(const Subtree& subtree, const Matrix& world_from_subtree,
-                     const MotionPath* motion) {
+                     const MotionPath* motion, float begin, float end) {
+  const Bounds own = subtree_bounds(subtree.tree, begin, end);
+  if (motion) return motion->swept(own, begin, end);
   Bounds box;
-  if (motion) {
-    for (int k = 0; k < 3; ++k) {
-      box.min[k] = subtree.tree.min[k];
-      box.max[k] = subtree.tree.max[k];
-    }
-    return motion->swept(box);
-  }
-  if (subtree.size() <= 256) {
+  if (subtree.size() <= 256 && subtree.tree.boxes.empty()) {
     // A subtree with its own transform holds its shapes in their object space.
     const bool baked = subtree.placed == Matrix(1);
     for (const Shape* shape : subtree.shapes)
@@ -46,8 +57,7 @@ Bounds placed_bounds(const Subtree& subtree, const Matrix& world_from_subtree,
   }
   for (int corner = 0; corner < 8; ++corner) {
     dvec3 p;
-    for (int k = 0; k < 3; ++k)
-      p[k] = (corner >> k) & 1 ? subtree.tree.max[k] : subtree.tree.min[k];
+    for (int k = 0; k < 3; ++k) p[k] = (corner >> k) & 1 ? own.max[k] : own.min[k];
     box.extend(apply_point(world_from_subtree, p));
   }
   return box;
@@ -146,6 +156,8 @@ InstanceRecord instance_record(const Subtree& subtree, const Matrix& world_from_
   write_matrix(record.object_from_world, subtree_from_world);
   write_matrix(record.world_from_object, world_from_subtree);
   record.root = subtree.tree.root;
+  record.intervals = subtree.tree.intervals;
+  record.roots = subtree.tree.roots_begin;
   record.light_base = CAPLET_NONE;
   record.object = object;
   record.flags = subtree.flags;
@@ -155,8 +167,8 @@ InstanceRecord instance_record(const Subtree& subtree, const Matrix& world_from_
 }
 
 void set_instance_box(const Subtree& subtree, const Matrix& world_from_subtree,
-                      const MotionPath* motion, FlatPrimitive& instance) {
-  const Bounds box = placed_bounds(subtree, world_from_subtree, motion);
+                      const MotionPath* motion, FlatPrimitive& instance, float begin, float end) {
+  const Bounds box = placed_bounds(subtree, world_from_subtree, motion, begin, end);
   double largest = 0;
   for (int k = 0; k < 3; ++k)
     largest = std::max({largest, std::abs(box.min[k]), std::abs(box.max[k])});

@@ -34,6 +34,30 @@ static inline Affine world_from_object(const Tree* tree, uint instance) {
 }
 #endif
 
+// Returns the top node of the world's tree, or of an instance's object, at the tree's time. What
+// moves has a tree for each of several parts of the time that the shutter is open
+// (host/lower/interval_trees.cpp).
+#ifdef CAPLET_MOTION
+static inline uint root_then(const Tree* tree, uint root, uint intervals, uint roots) {
+  if (intervals <= 1u) return root;
+  // `intervals` is a power of two, so the product is exact.
+  const uint now = min((uint)(tree->time * (float)intervals), intervals - 1u);
+  return as_uint(*floats_at(leaves_of(tree), roots + now));
+}
+static inline uint world_root(const Tree* tree) {
+  return root_then(tree, tree->world->root, tree->world->intervals, tree->world->roots);
+}
+static inline uint instance_root(const Tree* tree, uint instance) {
+  __global const InstanceRecord* placed = tree->instances + instance;
+  return root_then(tree, placed->root, placed->intervals, placed->roots);
+}
+#else
+static inline uint world_root(const Tree* tree) { return tree->world->root; }
+static inline uint instance_root(const Tree* tree, uint instance) {
+  return tree->instances[instance].root;
+}
+#endif
+
 // Returns the ray for the tree's shapes, at the tree's time.
 static inline ShapeRay shape_ray_of(const Tree* tree, float3 o, float3 d, float t_min) {
   ShapeRay ray = shape_ray(o, d, t_min, leaves_of(tree));
@@ -62,6 +86,11 @@ static inline Tree tree_at(const Tree* tree, float time) {
   (void)time;
 #endif
   return out;
+}
+
+static inline uint world_root_at(const Tree* tree, float time) {
+  const Tree then = tree_at(tree, time);
+  return world_root(&then);
 }
 
 #endif

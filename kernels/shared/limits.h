@@ -27,8 +27,8 @@
 #define CAPLET_PACKED_NODE_FLOATS \
   24  // the same in bytes, for rays that are traced one at a time (kernels/trace/packed.cl)
 #define CAPLET_TREE_DEPTH_MAX \
-  40  // nodes on the longest path of one tree (bvh guarantees it; the traversal's stack relies on
-      // it)
+  40  // nodes on the longest path of one tree, of which bvh makes all but one (host/lower/encode.cpp);
+      // the traversal's stack relies on it
 
 // These are sizes of the light tree (kernels/lights/tree.cl).
 #define CAPLET_LIGHT_NODE 56           // numbers a node

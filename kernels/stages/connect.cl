@@ -10,11 +10,11 @@ static __global const RayRecord* traced_ray_at(const Stage* g, uint item) {
 }
 static void traced_hit(const Stage* g, uint item, const HitRecord* hit) {
   const uint path = g->shadows.queue_shadow[item];
-  if (shadow_is_free(hit, g->shadows.path_shadow_target[path]))
+  if (shadow_is_free(&g->tree, hit, g->shadows.path_shadow_target[path]))
     g->radiance.path_radiance[path] += g->shadows.path_shadow_radiance[path];
 }
 #define TRACED_TREE(g) (&(g)->tree)
-#define TRACED_ROOT(g, item) ((g)->tree.world->root)
+#define TRACED_ROOT(g, item) world_root_at(&(g)->tree, TRACED_TIME(g, item))
 #define TRACED_ENOUGH(g, item) \
   ((g)->shadows.path_shadow_target[(g)->shadows.queue_shadow[item]].enough)
 #define TRACED_TIME(g, item) PATH_TIME(g, (g)->shadows.queue_shadow[item])

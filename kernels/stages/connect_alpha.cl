@@ -15,7 +15,7 @@ static void stage_item(const Stage* g, uint item) {
   RayRecord ray = g->shadows.path_shadow[path];
   for (;;) {
     const HitRecord hit = trace_closest(&scene.tree, ray);
-    if (shadow_is_free(&hit, target)) break;
+    if (shadow_is_free(&scene.tree, &hit, target)) break;
     if (alpha_stops(&scene, &ray, &hit)) return;
     ray.t_min = hit.t;
   }

@@ -38,7 +38,7 @@ static void stage_item(const Stage* g, uint item) {
       hit = crossings.hits[crossings.at - 1u];
     else
       hit.slot = CAPLET_NONE;
-    const int ends = shadow_is_free(&hit, target);
+    const int ends = shadow_is_free(&g->tree, &hit, target);
     const int crosses = !ends && alpha_stops(&scene, &ray, &hit);
     if (crosses && !surface_passes(&g->tree, &g->surfaces, &g->materials, &hit)) return;
     stack = medium_stack_before(&g->tree, &g->surfaces, &g->media, &hit, isinf(ray.t_max), stack);

@@ -11,6 +11,6 @@ static void traced_hit(const Stage* g, uint item, const HitRecord* hit) {
   g->rays.path_hit[g->queues.queue[item]] = *hit;
 }
 #define TRACED_TREE(g) (&(g)->tree)
-#define TRACED_ROOT(g, item) ((g)->tree.world->root)
+#define TRACED_ROOT(g, item) world_root_at(&(g)->tree, TRACED_TIME(g, item))
 #define TRACED_TIME(g, item) PATH_TIME(g, (g)->queues.queue[item])
 #include "trace/many.cl"

@@ -14,6 +14,6 @@ static void traced_hit(const Stage* g, uint item, const HitRecord* hit) {
   g->picks.picks[item] = pick_record(&g->tree, &g->surfaces, &ray, hit);
 }
 #define TRACED_TREE(g) (&(g)->tree)
-#define TRACED_ROOT(g, item) ((g)->tree.world->root)
+#define TRACED_ROOT(g, item) world_root_at(&(g)->tree, TRACED_TIME(g, item))
 #define TRACED_TIME(g, item) QUERY_TIME(g, item)
 #include "trace/many.cl"

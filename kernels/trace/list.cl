@@ -170,7 +170,7 @@ static inline uint trace_list(const Tree* tree, uint root, RayRecord ray, uint c
       if (CAPLET_HAS_SHAPE(shape_instance) && kind == shape_instance) {
         instance = ((__global const uint*)leaf_block(tree, row))[0];
         floor = top;
-        current = (int)tree->instances[instance].root;
+        current = (int)instance_root(tree, instance);
         if (ray_to_instance(tree, instance, world_o, world_d, t_min, &slab, &shape)) continue;
       } else {
         list_add_leaf(&list, &shape, kind, row, instance);
@@ -193,7 +193,7 @@ static inline uint trace_list(const Tree* tree, uint root, RayRecord ray, uint c
 // Finds all crossings in the whole scene.
 static inline uint trace_all(const Tree* tree, RayRecord ray, uint capacity,
                              CAPLET_LIST_SPACE HitRecord* sorted) {
-  return trace_list(tree, tree->world->root, ray, capacity, sorted);
+  return trace_list(tree, world_root(tree), ray, capacity, sorted);
 }
 
 #endif

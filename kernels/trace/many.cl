@@ -13,7 +13,8 @@
 //   TRACED_ENOUGH(g, item)           // if some rays need not find the closest hit: one nearer than
 //                                    // this will do (INFINITY: any)
 //   TRACED_TIME(g, item)             // when the ray sees the scene, where something moves (Tree)
-//   TRACED_NEIGHBOURS                // 1: rays are neighbours of those before them
+//   TRACED_NEIGHBOURS                // 1: rays are neighbours of those before them, and of one
+//   time
 // Programs may be built with CAPLET_ONE_BY_ONE to trace a ray after the other, or with
 // CAPLET_PORTABLE to trace many at once on any device.
 #ifndef CAPLET_TRACE_MANY_CL
@@ -50,7 +51,7 @@ static void stage_share(const Stage* g, uint begin, uint end) {
     traced_hit(g, begin, &hit);
   }
 }
-#elif TRACED_NEIGHBOURS
+#elif TRACED_NEIGHBOURS && !defined(CAPLET_MOTION)
 #include "trace/stream.cl"
 static void stage_share(const Stage* g, uint begin, uint end) {
   while (begin < end) {

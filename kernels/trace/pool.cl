@@ -109,7 +109,7 @@ static inline void pool_enter_instance(PooledRay* r, const Stage* g, const Tree*
   r->flip = octant_of(&r->slab);
   if (!valid) return;
   r->enter[r->top] = 0;
-  r->child[r->top++] = (int)tree->instances[instance].root;
+  r->child[r->top++] = (int)instance_root(&then, instance);
 }
 
 static inline void pool_leave_instance(PooledRay* r, const Stage* g, const Tree* tree) {

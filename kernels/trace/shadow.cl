@@ -11,12 +11,24 @@
 #define CAPLET_TRACE_SHADOW_CL
 
 #include "groups.cl"
+#include "slots.cl"
+
+// Returns whether two slots are of one primitive. Trees of what moves have slots of their own for
+// each part of the shutter's time.
+static inline int same_primitive(const Tree* tree, uint slot, uint other) {
+#ifdef CAPLET_MOTION
+  return other != CAPLET_NONE && primitive_at(tree, slot) == primitive_at(tree, other);
+#else
+  (void)tree;
+  return slot == other;
+#endif
+}
 
 // Returns 1 if the ray reaches its light. `hit`: the nearest one, or one that is nearer than
 // target.enough. A ray that rounding leads past the light's silhouette meets nothing.
-static inline int shadow_is_free(const HitRecord* hit, ShadowTarget target) {
-  return hit->slot == CAPLET_NONE ||
-         (hit->slot == target.slot && hit->instance == target.instance && hit->t >= target.enough);
+static inline int shadow_is_free(const Tree* tree, const HitRecord* hit, ShadowTarget target) {
+  return hit->slot == CAPLET_NONE || (hit->instance == target.instance && hit->t >= target.enough &&
+                                      same_primitive(tree, hit->slot, target.slot));
 }
 
 #endif

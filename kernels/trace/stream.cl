@@ -4,7 +4,8 @@
 // Traces neighbouring rays through the tree together, for processors with eight lanes: a node is
 // fetched once for all rays that come to it, and each of its children is visited by those that meet
 // it. This pays for camera rays, which share most of their way. Those that come to an instance go
-// through its tree together, too. Hits are those of trace_ray to the bit, because the hit does not
+// through its tree together, too. Where something moves each ray has a time and a tree of its own,
+// and pool.cl traces them. Hits are those of trace_ray to the bit, because the hit does not
 // depend on the order of traversal or of tests.
 //
 // The including file defines what many.cl lists.
@@ -83,12 +84,11 @@ static void stream_instance(const Stage* g, uint first, const Tree* tree, uint i
   uint octants = 0;
   for (int i = 0; i < n; i++) {
     const uint id = l->ids[at + i];
-    const Tree then = tree_at(tree, TRACED_TIME(g, first + id));
     const RayRecord ray = traced_ray(g, first + id);
     const float t_min = space->slabs[id].t_min;
     SlabRay slab;
     ShapeRay shape;
-    const int valid = ray_to_instance(&then, instance, (float3)(ray.ox, ray.oy, ray.oz),
+    const int valid = ray_to_instance(tree, instance, (float3)(ray.ox, ray.oy, ray.oz),
                                       (float3)(ray.dx, ray.dy, ray.dz), t_min, &slab, &shape);
     octants |= stream_ray(inner, id, &slab, &shape, t_min, nearest[id].t, valid);
   }
@@ -125,8 +125,7 @@ static void trace_stream(const Stage* g, uint first, uint count) {
     const float3 o = (float3)(ray.ox, ray.oy, ray.oz), d = (float3)(ray.dx, ray.dy, ray.dz);
     const SlabRay slab = slab_ray(o, d);
     const float t_min = ray.t_min > 0.0f ? ray.t_min : 0.0f;
-    const Tree then = tree_at(tree, TRACED_TIME(g, first + i));
-    const ShapeRay shape = shape_ray_of(&then, o, d, t_min);
+    const ShapeRay shape = shape_ray_of(tree, o, d, t_min);
     nearest[i] = nothing_before(ray.t_max);
     const int valid = line_is_valid(o, d) && ray.t_min < ray.t_max && t_min < nearest[i].t;
     octants |= stream_ray(&space, i, &slab, &shape, t_min, nearest[i].t, valid);

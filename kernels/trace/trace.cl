@@ -208,7 +208,7 @@ static inline HitRecord trace_ray(const Tree* tree, uint root, RayRecord ray, co
       if (CAPLET_HAS_SHAPE(shape_instance) && kind == shape_instance) {
         instance = ((__global const uint*)leaf_block(tree, row))[0];
         floor = top;
-        current = (int)tree->instances[instance].root;
+        current = (int)instance_root(tree, instance);
         if (ray_to_instance(tree, instance, world_o, world_d, t_min, &slab, &shape)) continue;
       } else {
         for (uint lane = 0; lane < CAPLET_WIDTH; lane += CAPLET_REAL_WIDTH)
@@ -241,12 +241,12 @@ static inline HitRecord trace_ray(const Tree* tree, uint root, RayRecord ray, co
 
 // Returns the nearest hit with t in (t_min, t_max).
 static inline HitRecord trace_closest(const Tree* tree, RayRecord ray) {
-  return trace_ray(tree, tree->world->root, ray, 0.0f);
+  return trace_ray(tree, world_root(tree), ray, 0.0f);
 }
 
 // Returns 1 if anything is hit with t in (t_min, t_max).
 static inline int trace_any(const Tree* tree, RayRecord ray) {
-  return trace_ray(tree, tree->world->root, ray, INFINITY).slot != CAPLET_NONE;
+  return trace_ray(tree, world_root(tree), ray, INFINITY).slot != CAPLET_NONE;
 }
 #endif
 

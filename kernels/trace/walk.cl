@@ -164,7 +164,7 @@ static inline int walk_next(const Tree* tree, uint root, CAPLET_RAY_SPACE const 
         w->instance = ((__global const uint*)leaf_block(tree, CAPLET_LEAF_ROW(next)))[0];
         w->floor = w->top;
         w->turns = 1;
-        visit = (int)tree->instances[w->instance].root;
+        visit = (int)instance_root(tree, w->instance);
       }
     } else if (w->top > max(w->floor, w->bottom)) {
       const uint2 entry = stack[--w->top % CAPLET_STACK_SIZE];
@@ -175,7 +175,7 @@ static inline int walk_next(const Tree* tree, uint root, CAPLET_RAY_SPACE const 
       again = lost.x;
       left = lost.y;  // on the way down others may be lost
       w->top = w->bottom = w->floor;
-      visit = (int)(placed ? tree->instances[w->instance].root : root);
+      visit = (int)(placed ? instance_root(tree, w->instance) : root);
     } else if (placed) {
       w->instance = CAPLET_NONE;
       w->floor = 0;

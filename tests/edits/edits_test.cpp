@@ -414,6 +414,34 @@ TEST(AnEdit, OfTheShutterReachesCapsulesThatMove) {
   edited.expect_fresh("under another shutter");
 }
 
+// What moves fast has trees for parts of the shutter's time, all of which hold what rests, too.
+TEST(AnEdit, BesideWhatMovesFastReachesAllItsTrees) {
+  Scene scene = mixed_scene(20);
+  Shape swarm;
+  CapsulesShape moving;
+  for (int i = 0; i < 200; ++i) {
+    const float at = static_cast<float>(i % 2) * 6 - 3, high = 0.02f * static_cast<float>(i);
+    moving.p0.emplace_back(at, 0, high);
+    moving.p1.emplace_back(at, 0.1f, high);
+    moving.radius0.push_back(0.05f);
+  }
+  for (std::size_t i = 0; i < 200; ++i) {
+    moving.p0.push_back(-moving.p0[i]);
+    moving.p1.push_back(-moving.p1[i]);
+    moving.radius0.push_back(0.05f);
+  }
+  moving.times = {0, 1};
+  swarm.geometry = moving;
+  scene.shapes.push_back(swarm);
+  Edited edited(scene);
+  ASSERT_GT(edited.live.flat().world.intervals, 1u);
+  const ShapeAt resting{{}, static_cast<std::uint32_t>(scene.shapes.size() - 2)};
+  edited.edit(CapsuleEdit{resting, 3, {{0, 0, 2}, {1, 0, 2}, 0.3f, 0.3f}});
+  edited.expect_fresh("a capsule");
+  edited.edit(InstanceEdit{0, glm::translate(dmat4(1), dvec3(0.5, 0.2, 1))});
+  edited.expect_fresh("an instance");
+}
+
 // Motions come, go along with what they are of, and go again; other edits keep them.
 TEST_F(OneEdit, AMotion) {
   const dmat4 place = glm::translate(dmat4(1), dvec3(0.5, 0.2, 1)),

@@ -51,8 +51,8 @@ __kernel void sample_lights(SCENE, float px, float py, float pz, __global const 
   if (!s.infinite) {
     ShadowTarget target;
     const RayRecord ray = shadow_ray(&s, p, &target);
-    const HitRecord hit = trace_ray(&scene.tree, scene.tree.world->root, ray, target.enough);
-    o[10] = (float)!shadow_is_free(&hit, target);
+    const HitRecord hit = trace_ray(&scene.tree, world_root(&scene.tree), ray, target.enough);
+    o[10] = (float)!shadow_is_free(&scene.tree, &hit, target);
   }
 }
 

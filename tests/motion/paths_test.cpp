@@ -232,6 +232,40 @@ TEST(MotionPath, SweepsTheBoxThroughAllItsPlaces) {
   EXPECT_LT(empty_share, 0.01);  // and hardly more
 }
 
+TEST(MotionPath, SweepsABoxThroughItsPlacesOfAWhile) {
+  std::vector<Seen> motions = many_motions();
+  // This one is a single cubic, and its box about a point, so that all four coefficients matter.
+  motions.push_back({{{0, dmat4(1)}, {1, turned(4, {0, 0, 1})}}, shutter(0, 1)});
+  for (const Seen& seen : motions) {
+    const Bounds box = &seen == &motions.back() ? Bounds{dvec3(2, 0, 0), dvec3(2, 0, 0)}
+                                                : Bounds{dvec3(-1, -0.5, 0), dvec3(2, 0.25, 1)};
+    const auto path = MotionPath::of(seen.keys, seen.film);
+    ASSERT_TRUE(path);
+    const AnimatedTransform animated(seen.keys);
+    for (const auto& [begin, end] :
+         {std::pair(0.0f, 0.0625f), std::pair(0.3125f, 0.375f), std::pair(0.5f, 0.625f),
+          std::pair(0.9375f, 1.0f), std::pair(0.5f, 1.0f)}) {
+      const Bounds swept = path->swept(box, begin, end);
+      Bounds met;
+      for (int i = 0; i <= 200; ++i) {
+        const double time = begin + i / 200.0 * double{end - begin};
+        const dmat4 m = animated.at(seen.film.shutter_open + time * seen.film.exposure_time);
+        for (int corner = 0; corner < 8; ++corner)
+          met.extend(dvec3(m * glm::dvec4(corner & 1 ? box.max.x : box.min.x,
+                                          corner & 2 ? box.max.y : box.min.y,
+                                          corner & 4 ? box.max.z : box.min.z, 1)));
+      }
+      for (int k = 0; k < 3; ++k) {
+        const double size = met.max[k] - met.min[k], slack = 1e-5 * size + 2e-7;
+        EXPECT_LE(swept.min[k], met.min[k] + slack) << begin;
+        EXPECT_GE(swept.max[k], met.max[k] - slack) << begin;
+        EXPECT_LT(met.min[k] - swept.min[k] + swept.max[k] - met.max[k], 0.01 * size + 4e-7)
+            << begin;
+      }
+    }
+  }
+}
+
 TEST(MotionPath, IsNoneOfWhatRestsWhileTheShutterIsOpen) {
   const TransformKeys keys = {{0, dmat4(1)}, {1, shifted({1, 0, 0})}};
   EXPECT_FALSE(MotionPath::of({}, shutter(0, 1)));

@@ -3,6 +3,7 @@
 //
 // Pictures of moving things against closed forms, and against the mean of pictures of the scene
 // frozen at many times.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -18,6 +19,7 @@
 #include "lower/lower.h"
 #include "render_scene.h"
 #include "scene/frozen.h"
+#include "support/environment.h"
 #include "support/thorough.h"
 
 namespace caplet::test {
@@ -313,6 +315,41 @@ TEST(MotionPictures, OfLampsOfAllKindsAreTheMeanOfFrozenOnes) {
           "AttributeBegin\nTranslate -1 1 0\nScale 0.3 0.15 0.4\nShape \"sphere\"\nAttributeEnd\n"
           "AttributeBegin\nTranslate 1 1.5 0\nShape \"disk\" \"float radius\" 0.3\nAttributeEnd\n",
       512);
+}
+
+// Trees are for parts of the shutter's time, beside what rests and together with it. Rods that go
+// far, in rows of leaves of their own, cast shadows of lamps that move and of one that rests.
+TEST(MotionPictures, OfWhatMovesFarAreTheMeanOfFrozenOnes) {
+  // Kernels for all rows know alpha, and so another stage traces their shadow rays.
+  const ScopedVariable rows("CAPLET_ROWS", "scene");
+  const auto moving = [](int count, double reach, double height, double radius) {
+    std::string p0, p1, radii;
+    for (const double side : {-1, 1})
+      for (int i = 0; i < count; ++i) {
+        const double at = 6.0 * (i + 0.5) / count - 3, x = (i % 2 == 0 ? side : -side) * reach;
+        p0 += fmt::format("{} {} {} ", x, at, height);
+        p1 += fmt::format("{} {} {} ", x + 0.3, at + 0.1 * side, height + 0.1);
+        radii += fmt::format("{} ", radius);
+      }
+    return fmt::format(
+        "Shape \"capsules\" \"float times\" [0 1] \"point3 p0\" [{}] \"point3 p1\" [{}] "
+        "\"float radius\" [{}]\n",
+        p0, p1, radii);
+  };
+  std::string text = in_front + "WorldBegin\n" + ground + moving(40, 3, 0.3, 0.1) +
+                     "AttributeBegin\nAreaLightSource \"diffuse\" \"rgb L\" [9 9 9]\n" +
+                     moving(4, 1, 1.2, 0.1) +
+                     "Translate 0.3 1 1.2\nShape \"sphere\" \"float radius\" 0.2\nAttributeEnd\n";
+  EXPECT_GE(lower(scene_of_text(text)).world.intervals, 8u);
+  expect_mean_of_frozen(text, 1024, 128);
+  for (int i = 0; i < 60; ++i)
+    text += "Translate 0.05 -0.01 0.005\nShape \"sphere\" \"float radius\" 0.1\n";
+  EXPECT_GE(lower(scene_of_text(text)).world.intervals, 8u);
+  expect_mean_of_frozen(text, 1024, 128);
+  expect_mean_of_frozen(
+      in_front + "WorldBegin\n" + ground + moving(40, 3, 0.3, 0.15) +
+          "LightSource \"distant\" \"point3 from\" [0 0 1] \"point3 to\" [0 0 0]\n",
+      512, 128);
 }
 
 // A light tree has boxes and cones of lights.

@@ -6,6 +6,8 @@
 #pragma once
 
 #include <array>
+#include <cmath>
+#include <cstdint>
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
 #include <glm/mat4x4.hpp>
@@ -83,6 +85,37 @@ class MovingCapsules {
 
 /// Writes the segments of time of a shape's keys, up to a whole row; returns where they begin.
 std::uint32_t append_key_times(const ShutterKeys& times, std::vector<float>& leaves);
+
+/// KeyPlace is a share u, from 0 to 1, of the way from key number `segment` to the next one.
+struct KeyPlace {
+  std::uint32_t segment;
+  float u;
+};
+/// Returns places between which all goes straight: those of two times in [0, 1], to the bit as
+/// kernels find them (motion_segment), and the keys between them. `times`: what append_key_times
+/// returned.
+std::vector<KeyPlace> key_places(const std::vector<float>& leaves, std::uint32_t times,
+                                 std::uint32_t segments, float begin, float end);
+
+/// SweptBox is the box of points that go straight between places.
+class SweptBox {
+ public:
+  /// Adds a point at a place: from `from` (at the key before) to `to` (at the next one), less and
+  /// more a radius along each axis.
+  void add(const float* from, const float* to, float u, float from_radius, float to_radius);
+  /// Sets the kept box of a primitive.
+  void keep(FlatPrimitive& p) const;
+
+ private:
+  std::array<double, 3> low_{INFINITY, INFINITY, INFINITY}, high_{-INFINITY, -INFINITY, -INFINITY};
+  double largest_ = 0;
+};
+
+/// These set the kept box of a moving primitive to what it sweeps from one time to another.
+void set_moving_capsule_box(FlatPrimitive& p, const std::vector<float>& leaves, float begin,
+                            float end);
+void set_moving_triangle_box(FlatPrimitive& p, const std::vector<float>& leaves, float begin,
+                             float end);
 
 /// MovingTriangles makes primitives of a mesh whose vertices move, and writes how they move to
 /// `leaves`.

@@ -106,10 +106,11 @@ SubtreeKey subtree_key(const Shape& shape, const glm::dmat4& world_from_object);
 /// Returns the record of a subtree as placed; `object`: InstanceRecord.object.
 InstanceRecord instance_record(const Subtree& subtree, const glm::dmat4& world_from_subtree,
                                std::uint32_t object);
-/// Writes the box of an instance into its primitive of the top tree. `motion`: its path; null: it
-/// rests.
+/// Writes the box of an instance into its primitive of the top tree. `motion`: its path, from one
+/// time to another; null: it rests.
 void set_instance_box(const Subtree& subtree, const glm::dmat4& world_from_subtree,
-                      const MotionPath* motion, FlatPrimitive& instance);
+                      const MotionPath* motion, FlatPrimitive& instance, float begin = 0,
+                      float end = 1);
 
 /// Sets the lights of an emissive shape of a subtree as placed, one for each of its primitives.
 void set_emitters(const Subtree& subtree, const Subtree::Emissive& emissive, std::uint32_t instance,

@@ -34,27 +34,24 @@ FlatPrimitive MovingCapsules::primitive(std::size_t i) {
   p.data[moving_capsule_at_begin] = std::bit_cast<float>(narrow<std::uint32_t>(leaves_.size()));
   p.data[moving_capsule_at_times] = std::bit_cast<float>(times_);
   p.data[moving_capsule_at_segments] = std::bit_cast<float>(motion_.times().segments());
-  std::array<double, 3> low, high;
-  low.fill(INFINITY);
-  high.fill(-INFINITY);
-  double largest = 0;
   for (std::size_t key = 0; key <= motion_.times().segments(); ++key) {
     const std::array<float, 8> ends = motion_.key(i, key);
     leaves_.insert(leaves_.end(), ends.begin(), ends.end());
-    for (const float value : ends) largest = std::max(largest, std::abs(double{value}));
-    for (const std::size_t end : {0U, 4U})
-      for (std::size_t k = 0; k < 3; ++k) {
-        low[k] = std::min(low[k], double{ends[end + k]} - double{ends[end + 3]});
-        high[k] = std::max(high[k], double{ends[end + k]} + double{ends[end + 3]});
-      }
   }
-  // Between two keys everything is linear, and so are the sides of the box. A fused product rounds
-  // a difference and a sum: less than 2^-20 of the largest number.
-  for (std::size_t k = 0; k < 3; ++k) {
-    p.kept_box()[k] = std::nextafter(static_cast<float>(low[k] - 0x1p-20 * largest), -INFINITY);
-    p.kept_box()[3 + k] = std::nextafter(static_cast<float>(high[k] + 0x1p-20 * largest), INFINITY);
-  }
+  set_moving_capsule_box(p, leaves_, 0, 1);
   return p;
+}
+
+void set_moving_capsule_box(FlatPrimitive& p, const std::vector<float>& leaves, float begin,
+                            float end) {
+  SweptBox box;
+  for (const KeyPlace& place : key_places(leaves, moving_capsule_times(p.data),
+                                          moving_capsule_segments(p.data), begin, end)) {
+    const float* from = &leaves[moving_capsule_begin(p.data) + std::size_t{8} * place.segment];
+    for (const std::size_t at : {0U, 4U})
+      box.add(from + at, from + 8 + at, place.u, from[at + 3], from[8 + at + 3]);
+  }
+  box.keep(p);
 }
 
 double moving_capsule_area(const FlatPrimitive& p, const std::vector<float>& leaves) {

@@ -30,6 +30,45 @@ std::uint32_t append_key_times(const ShutterKeys& times, std::vector<float>& lea
   return begin;
 }
 
+std::vector<KeyPlace> key_places(const std::vector<float>& leaves, std::uint32_t times,
+                                 std::uint32_t segments, float begin, float end) {
+  const float* pairs = &leaves[times];
+  const auto place_of = [&](float time) {
+    std::uint32_t segment = 0;
+    while (segment + 1 < segments && pairs[2 * segment + 2] <= time) ++segment;
+    return KeyPlace{segment, std::min((time - pairs[2 * segment]) * pairs[2 * segment + 1], 1.0f)};
+  };
+  std::vector<KeyPlace> places{place_of(begin)};
+  const KeyPlace last = place_of(end);
+  for (std::uint32_t segment = places[0].segment + 1; segment <= last.segment; ++segment)
+    places.push_back({segment, 0});
+  places.push_back(last);
+  return places;
+}
+
+void SweptBox::add(const float* from, const float* to, float u, float from_radius,
+                   float to_radius) {
+  const auto mix = fused_between(u);
+  const double radius = mix(from_radius, to_radius);
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double at = mix(from[k], to[k]);
+    low_[k] = std::min(low_[k], at - radius);
+    high_[k] = std::max(high_[k], at + radius);
+    for (const float value : {from[k], to[k], from_radius, to_radius})
+      largest_ = std::max(largest_, std::abs(double{value}));
+  }
+}
+
+// Between two places everything is linear, and so are the sides of the box. A fused product rounds
+// a difference and a sum: less than 2^-20 of the largest number.
+void SweptBox::keep(FlatPrimitive& p) const {
+  const double more = 0x1p-20 * largest_;
+  for (std::size_t k = 0; k < 3; ++k) {
+    p.kept_box()[k] = std::nextafter(static_cast<float>(low_[k] - more), -INFINITY);
+    p.kept_box()[3 + k] = std::nextafter(static_cast<float>(high_[k] + more), INFINITY);
+  }
+}
+
 MovingTriangles::MovingTriangles(const MeshMotion& motion, std::vector<float>& leaves)
     : motion_(motion), leaves_(leaves), times_(append_key_times(motion.times(), leaves)) {}
 
@@ -44,27 +83,25 @@ FlatPrimitive MovingTriangles::primitive(const std::array<std::uint32_t, 3>& cor
     for (const std::uint32_t corner : corners)
       for (int k = 0; k < 3; ++k) leaves_.push_back(of[corner][k]);
   };
-  glm::vec3 low(INFINITY), high(-INFINITY), largest(0);
   for (const MeshMotion::Key& key : motion_.keys()) {
     put_all(key.positions);
     if (has_normals) put_all(key.normals);
-    for (const std::uint32_t corner : corners) {
-      low = glm::min(low, key.positions[corner]);
-      high = glm::max(high, key.positions[corner]);
-      largest = glm::max(largest, glm::abs(key.positions[corner]));
-    }
   }
   while (leaves_.size() % 8 != 0) leaves_.push_back(0);
-  // Vertices go straight between two keys. A fused product rounds a difference and a sum: less than
-  // 2^-20 of the largest number.
-  for (int k = 0; k < 3; ++k) {
-    const double more = 0x1p-20 * static_cast<double>(largest[k]);
-    p.kept_box()[k] =
-        std::nextafter(static_cast<float>(static_cast<double>(low[k]) - more), -INFINITY);
-    p.kept_box()[3 + k] =
-        std::nextafter(static_cast<float>(static_cast<double>(high[k]) + more), INFINITY);
-  }
+  set_moving_triangle_box(p, leaves_, 0, 1);
   return p;
+}
+
+void set_moving_triangle_box(FlatPrimitive& p, const std::vector<float>& leaves, float begin,
+                             float end) {
+  SweptBox box;
+  const std::size_t stride = moving_triangle_stride(p.data);
+  for (const KeyPlace& place : key_places(leaves, moving_triangle_times(p.data),
+                                          moving_triangle_segments(p.data), begin, end)) {
+    const float* from = &leaves[moving_triangle_begin(p.data) + stride * place.segment];
+    for (const std::size_t at : {0U, 3U, 6U}) box.add(from + at, from + stride + at, place.u, 0, 0);
+  }
+  box.keep(p);
 }
 
 double moving_triangle_area(const FlatPrimitive& p, const std::vector<float>& leaves) {
