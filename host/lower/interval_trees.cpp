@@ -50,9 +50,8 @@ class IntervalTrees {
     if (intervals == 1) return encode_tree(items_, release, nodes_, leaves_, kind_bits_);
     EncodedTree out;
     out.slots.resize(items_.primitives.size());
-    const bool is_large =
-        resting_.size() + items_.loose.size() + items_.linked.size() > moving_.size();
-    const bool is_apart = is_large || items_.loose.size() + items_.linked.size() > 0;
+    const bool is_apart =
+        resting_.size() > moving_.size() || items_.loose.size() + items_.linked.size() > 0;
     EncodedTree rest;
     if (is_apart) {
       rest = encode_resting(release, out.slots);

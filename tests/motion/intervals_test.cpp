@@ -273,14 +273,14 @@ AttributeEnd
   scene.shapes.emplace_back().geometry = far_capsules(60, {0, 1.3, 1.9, 4}, 3, 3);
   scene.objects[0].shapes.emplace_back().geometry = far_capsules(20, {0.5, 2}, 2, 4);
   CapsulesShape row;
-  for (int i = 0; i < 200; ++i) {
+  for (int i = 0; i < 20; ++i) {
     const auto at = [](int k) {
       const float a = 0.1f * static_cast<float>(k);
       return vec3(3 * std::cos(a), 3 * std::sin(a), 0.02f * static_cast<float>(k) - 2);
     };
     row.p0.push_back(at(i));
     row.p1.push_back(at(i + 1));
-    row.radius0.push_back(0.05f);
+    row.radius0.push_back(0.5f);
   }
   scene.shapes.emplace_back().geometry = row;
   return scene;

@@ -22,8 +22,8 @@ struct MovingBoxes {
 
 /// Does as encode_tree where nothing moves. Otherwise the times at which a ray may see the scene
 /// are divided by a power of two, as long as each halving makes the sum of the boxes' areas smaller
-/// by a fifth. What rests has a tree of its own, which all of these trees share, unless it is less
-/// than what moves.
+/// by a fifth. What rests has a tree of its own, which all of these trees share, unless it is but
+/// primitives, no more than those that move.
 EncodedTree encode_trees(const TreeItems& items, const MovingBoxes& boxes, bool release,
                          std::vector<float>& nodes, std::vector<float>& leaves, int kind_bits);
 
