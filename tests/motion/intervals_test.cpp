@@ -207,6 +207,8 @@ TEST(Intervals, HoldNoMoreThanIsSweptInThem) {
     // Bounds of the world hold all of them.
     EXPECT_NEAR(flat.world.center_x, 50, 0.01);
     EXPECT_GE(flat.world.radius, 51);
+    // A tree of one ball costs the same wherever it is.
+    EXPECT_NEAR(flat.bvh_sah, lower(scene_with("Shape \"sphere\"\n")).bvh_sah, 1e-6);
   }
 }
 
